@@ -45,12 +45,12 @@ INSTANTS = 25
 def derivations() -> dict[str, Any]:
     """Every transfer function of every shipped diagram, as it is printed and as LaTeX."""
     from teleopdesign.derive import all_transfers
-    from teleopdesign.diagrams import SHIPPED, shipped
+    from teleopdesign.diagrams import SHIPPED, load_shipped
     from teleopdesign.realise.tips import linear_tips
 
     found = {}
     for name in sorted(SHIPPED):
-        transfers = all_transfers(linear_tips(shipped(name)))
+        transfers = all_transfers(linear_tips(load_shipped(name)))
         found[name] = {"text": repr(transfers).splitlines(), "latex": transfers.latex().split("\n")}
     return found
 

@@ -33,7 +33,7 @@ def _given_out(axis: Axes, data: xarray.Dataset) -> None:
     texts = {"fast": "low-pass 1 kHz", "slow": "low-pass 30 Hz"}
     f = data["frequency"].values
     for name, colour in zip(data["filter"].values, (BLACK, *COLOURS), strict=False):
-        one = data["given_out"].sel(filter=name).values
+        one = data["released_energy"].sel(filter=name).values
         axis.plot(f, one, color=colour, label=texts.get(str(name), str(name)))
         if name in texts:
             points = data["given_out_simulated"].sel(simulated_filter=name)

@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 from _study import write_study
 
-from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
+from teleopdesign.diagrams import four_cases, read_open_number, world_haptics_2005
 from teleopdesign.frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
 from teleopdesign.plot import plot_spread
 
@@ -31,8 +31,8 @@ FORCE = 10.0  # N; what the actuator gives
 
 def largest_amplitude(frequency: np.ndarray) -> np.ndarray:
     """Amplitude (m) at which rod, load and friction need the whole force of the actuator."""
-    moved = reading("mass") + reading("load")
-    inertial = FORCE - reading("coulomb_level")
+    moved = read_open_number("mass") + read_open_number("load")
+    inertial = FORCE - read_open_number("coulomb_level")
     return inertial / (moved * (2 * np.pi * np.asarray(frequency)) ** 2)
 
 

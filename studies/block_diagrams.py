@@ -28,10 +28,10 @@ from teleopdesign.diagrams import (
     Diagram,
     Junction,
     Moving,
-    by_jacobian,
     haptic_interface,
     teleoperator,
     teleoperator_of_arms,
+    tip_coordinates,
     write_diagram,
 )
 from teleopdesign.plot import draw_diagram, save_figure
@@ -43,7 +43,7 @@ def joints() -> Diagram:
     """Two arms of two joints, the slave's compensated one by one."""
     body = Body("revolute", {"inertia": Value(0.1)})
     dahl = controller("dahl", {"level": 0.1, "stiffness": 100.0})
-    tip = by_jacobian(np.eye(2))
+    tip = tip_coordinates(np.eye(2))
     slave = Arm((body, body), tip, (dahl, dahl))
     return teleoperator_of_arms(Arm((body, body), tip), slave, stiffness=500.0 * np.eye(2))
 

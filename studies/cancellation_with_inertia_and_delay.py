@@ -59,8 +59,8 @@ BESIDE = (0.9, 1.1)  # share over its limit; growth and decay are then seen with
 class LateInertia:
     """What a late, low-passed cancellation of inertia brings and costs.
 
-    data: `given_out` (N s/m), `felt` and `apparent_mass` (1) over frequency, `passive_share` over
-    the low-pass's bandwidth, `stable_share` over delay, and simulated points beside them
+    data: `released_energy` (N s/m), `felt` and `apparent_mass` (1) over frequency, `passive_share`
+    over the low-pass's bandwidth, `stable_share` over delay, and simulated points beside them
     claims: sentence of each claim of passivity -> how it is settled
     """
 
@@ -117,7 +117,7 @@ def given_out() -> dict[str, xarray.DataArray]:
     unit = {"units": "N*s/m"}
     frequency = ("frequency", FREQUENCIES, {"units": "Hz"})
     return {
-        "given_out": xarray.DataArray(
+        "released_energy": xarray.DataArray(
             curves,
             {"filter": list(filters), "frequency": frequency},
             attrs=unit,

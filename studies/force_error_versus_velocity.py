@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from _study import write_study
 
-from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
+from teleopdesign.diagrams import four_cases, read_open_number, world_haptics_2005
 from teleopdesign.simulate import ForceVelocity, Sampling, force_velocity, simulate, sine
 
 IDEAL = 1e-8  # m; the contact gives by this before it slides: 0.5 % of a reversal's sample
@@ -24,15 +24,15 @@ IDEAL = 1e-8  # m; the contact gives by this before it slides: 0.5 % of a revers
 
 def run(*, quick: bool = False) -> ForceVelocity:
     """The force error of the four cases over one settled cycle; quick: a coarser contact."""
-    frequency = reading("frequency")
+    frequency = read_open_number("frequency")
     cycles = 2 if quick else 4  # the slowest pole, 20 Hz, has settled after one
-    motion = sine(amplitude=reading("amplitude"), frequency=frequency)
+    motion = sine(amplitude=read_open_number("amplitude"), frequency=frequency)
     simulations = {
         case: simulate(
             diagram,
             duration=cycles / frequency,
             motion={"L": motion},
-            computer=Sampling(period=reading("sample_period")),
+            computer=Sampling(period=read_open_number("sample_period")),
             give=1e-7 if quick else IDEAL,
             every_step=True,
         )

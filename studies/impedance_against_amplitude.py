@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from _study import write_study
 
-from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
+from teleopdesign.diagrams import four_cases, read_open_number, world_haptics_2005
 from teleopdesign.frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
 from teleopdesign.simulate import Sampling
 
@@ -31,7 +31,7 @@ def run(*, quick: bool = False) -> tuple[ImpedanceMap, ImpedanceMap]:
     """Simulated and quasi-linear impedance of the four cases from 0.5 to 20 mm."""
     cases = four_cases(world_haptics_2005())
     amplitude = 1e-3 * np.geomspace(0.5, 20.0, 5 if quick else 25)
-    period = Sampling(period=reading("sample_period"))
+    period = Sampling(period=read_open_number("sample_period"))
     measured = measured_impedance(cases, amplitude=amplitude, frequency=FREQUENCY, computer=period)
     return measured, quasi_linear_impedance(cases, amplitude=amplitude, frequency=FREQUENCY)
 

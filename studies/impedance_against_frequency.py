@@ -23,10 +23,10 @@ from __future__ import annotations
 import numpy as np
 from _study import write_study
 
-from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
+from teleopdesign.diagrams import four_cases, read_open_number, world_haptics_2005
 from teleopdesign.frequency import (
     ImpedanceMap,
-    falling,
+    falling_profile,
     measured_impedance,
     quasi_linear_impedance,
 )
@@ -42,13 +42,13 @@ EXPONENT = 0.8
 def profile_factor() -> float:
     """Amplitude at 1 Hz (m) of the profile on which mass and friction weigh alike at the corner."""
     # m omega^2 A = 4 F_C/pi with A = a_0 f^-0.8
-    mass, level = reading("mass"), reading("coulomb_level")
+    mass, level = read_open_number("mass"), read_open_number("coulomb_level")
     return level / (np.pi**3 * mass * CORNER ** (2 - EXPONENT))
 
 
 def corner_of(factor: float) -> float:
     """Frequency (Hz) at which mass and friction weigh alike on the profile of that factor (m)."""
-    weight = reading("coulomb_level") / (np.pi**3 * reading("mass") * factor)
+    weight = read_open_number("coulomb_level") / (np.pi**3 * read_open_number("mass") * factor)
     return float(weight ** (1 / (2 - EXPONENT)))
 
 
@@ -59,7 +59,7 @@ def phases_of_cancellation() -> dict[float, float]:
         factor: float(
             measured_impedance(
                 cases,
-                amplitude=falling(factor, exponent=EXPONENT),
+                amplitude=falling_profile(factor, exponent=EXPONENT),
                 frequency=[MASS_LIKE],
                 computer="continuous",
             ).phase.values.item()
@@ -74,7 +74,7 @@ def run(*, quick: bool = False) -> tuple[ImpedanceMap, ImpedanceMap]:
     frequency = np.array([1.0, 2, 5, 20, 50, 100, 200, 400])
     if not quick:
         frequency = np.geomspace(1.0, 400.0, 27)
-    profile = falling(profile_factor(), exponent=EXPONENT)
+    profile = falling_profile(profile_factor(), exponent=EXPONENT)
     # continuous: at 400 Hz a sample of 1 ms is two fifths of a cycle
     measured = measured_impedance(
         cases, amplitude=profile, frequency=frequency, computer="continuous"
@@ -86,7 +86,7 @@ def at_ten_millimetres(*, quick: bool = False) -> tuple[ImpedanceMap, ImpedanceM
     """The same with the other reading of the profile's factor, up to 100 Hz."""
     cases = four_cases(world_haptics_2005())
     frequency = np.array([1.0, 4, 20, 100]) if quick else np.geomspace(1.0, 100.0, 19)
-    profile = falling(TEN_MILLIMETRES, exponent=EXPONENT)
+    profile = falling_profile(TEN_MILLIMETRES, exponent=EXPONENT)
     measured = measured_impedance(
         cases, amplitude=profile, frequency=frequency, computer="continuous"
     )

@@ -30,7 +30,7 @@ import numpy as np
 import xarray
 from _study import write_study
 
-from teleopdesign.diagrams import Diagram, four_cases, reading, world_haptics_2005
+from teleopdesign.diagrams import Diagram, four_cases, read_open_number, world_haptics_2005
 from teleopdesign.frequency import delay_margin, loop_gain, measured_impedance
 from teleopdesign.plot.design import TWO_COLUMNS
 from teleopdesign.plot.frequency_axes import logarithmic
@@ -91,7 +91,7 @@ class TradeOff:
         axis.set_title("(b) hybrid", loc="left", pad=3)
 
     def _spread(self, axis: matplotlib.axes.Axes) -> None:
-        at = float(abs(self.data["bandwidth"] - reading("bandwidth")).idxmin())
+        at = float(abs(self.data["bandwidth"] - read_open_number("bandwidth")).idxmin())
         self._against_b(axis, self.data["spread"].sel(case="hybrid", bandwidth=at))
         axis.set_ylabel(r"spread of $|\hat Z_M|$ (dB)")
         axis.set_title(f"(c) hybrid, {at:g} Hz", loc="left", pad=3)

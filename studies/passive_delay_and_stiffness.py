@@ -34,7 +34,7 @@ from teleopdesign.errors import GrowsWithoutBound
 from teleopdesign.passivity import Claim, delayed_spring, region, sampled_coupling
 from teleopdesign.plot.onset import plot_delay_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
-from teleopdesign.studies import least_that_grows
+from teleopdesign.studies import find_onset
 
 MASSES, DAMPINGS = (0.2, 0.5), (1.0, 2.5)  # kg and N s/m, of master and slave
 HEAVY = 2.0  # kg at the master where hand and load are heavy
@@ -133,7 +133,7 @@ def onset(
     steps: int,
 ) -> float:
     """Least stiffness (N/m) at which a swing grows, by bisection; NaN where none within."""
-    return least_that_grows(
+    return find_onset(
         lambda stiffness: grows(kind, late, stiffness, masses), within=within, steps=steps
     )
 

@@ -38,7 +38,7 @@ from teleopdesign.passivity import Claim, region, required_damping, sampled_pass
 from teleopdesign.passivity.theorems.sampled_data import Z
 from teleopdesign.plot.onset import plot_period_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
-from teleopdesign.studies import least_that_grows
+from teleopdesign.studies import find_onset
 
 MASS, DAMPING = 0.15, 2.0  # kg, N s/m
 FRICTION, PRESLIDING, SHARE = 0.5, 5e3, 0.9  # N, N/m, f_D/f_C
@@ -117,7 +117,7 @@ def onset(late: int, period: float, *, free: bool, steps: int) -> float:
     """Least stiffness at which a small swing grows, N/m, by bisection; NaN where none is found."""
     low = 0.9 * (limit(late, period) if free else damping_limit(late, period))
     high = max(4 * PRESLIDING, 2 * low) if free else 4 * low
-    return least_that_grows(
+    return find_onset(
         lambda stiffness: grows(late, period, stiffness, free=free), within=(low, high), steps=steps
     )
 

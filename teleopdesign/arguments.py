@@ -21,12 +21,19 @@ from itertools import repeat
 from typing import Any, TypeVar
 
 from .errors import ExperimentError, ModelError
-from .expectations import TypeCheck, WrongValue, check_of, described, number_check, with_article
+from .expectations import (
+    TypeCheck,
+    WrongValue,
+    check_of,
+    describe_value,
+    number_check,
+    with_article,
+)
 
 __all__ = [
     "check_arguments",
-    "checked",
-    "described",
+    "check_types",
+    "describe_value",
     "instance",
     "matrix_of",
     "number",
@@ -38,7 +45,7 @@ Target = TypeVar("Target", bound=Callable[..., Any])
 _OF_EXPERIMENTS = ("measurement", "examples")
 
 
-def checked(target: Target) -> Target:
+def check_types(target: Target) -> Target:
     """The function with its arguments checked; of a dataclass, what it is made from.
 
     Annotations that only type checkers can resolve, and `Any`, are not checked.
@@ -87,7 +94,7 @@ def check_arguments(names: dict[str, Any], public: Iterable[str]) -> None:
     for name in public:
         function = names[name]
         if isinstance(function, types.FunctionType) and not hasattr(function, "_is_checked"):
-            names[name] = checked(function)
+            names[name] = check_types(function)
             # also where it is defined: a function pickles as what its module has under its name
             setattr(sys.modules[function.__module__], function.__name__, names[name])
 
@@ -124,7 +131,7 @@ def _error(module: str, function: str, argument: str, wrong: WrongValue) -> Exce
     kind = ExperimentError if of_experiment else ModelError
     where = f"{function}: {argument}" if function else argument
     return kind(
-        f"{where}{wrong.place}: found {described(wrong.value)}, expected {wrong.expected}"
+        f"{where}{wrong.place}: found {describe_value(wrong.value)}, expected {wrong.expected}"
         f"{wrong.hint}"
     )
 

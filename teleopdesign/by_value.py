@@ -8,7 +8,7 @@ from typing import Any
 
 
 class ByValue:
-    """Base of frozen dataclasses (with eq=False): `same` compares their fields, arrays print short.
+    """Base of frozen dataclasses (with eq=False): `is_same` compares fields, arrays print short.
 
     A class that writes its `__repr__` keeps it.
     """
@@ -16,10 +16,10 @@ class ByValue:
     def __init_subclass__(cls) -> None:
         # a dataclass writes a `__repr__` with every number of an array where the class has none
         if cls.__repr__ is object.__repr__:
-            cls.__repr__ = _by_fields  # type: ignore[method-assign]
+            cls.__repr__ = _repr_by_fields  # type: ignore[method-assign]
 
     def __eq__(self, other: object) -> bool:
-        return same(self, other) if type(self) is type(other) else NotImplemented
+        return is_same(self, other) if type(self) is type(other) else NotImplemented
 
     def __hash__(self) -> int:
         # of fields that are names and counts: arrays and NaN have no hash that equality keeps
@@ -27,7 +27,7 @@ class ByValue:
         return hash((type(self), *(v for v in plain if isinstance(v, str | int))))
 
 
-def _by_fields(self: Any) -> str:
+def _repr_by_fields(self: Any) -> str:
     shown = (f"{f.name}={_short(getattr(self, f.name))}" for f in fields(self) if f.repr)
     return f"{type(self).__qualname__}({', '.join(shown)})"
 
@@ -45,7 +45,7 @@ def _short(value: Any) -> str:
     return f"<{entries} numbers, {low:.4g} to {high:.4g}>"
 
 
-def same(one: Any, other: Any) -> bool:
+def is_same(one: Any, other: Any) -> bool:
     """Whether two things have the same content; NaN is the same as NaN, arrays go by entry.
 
     Dataclasses are compared field by field, whatever their `==` says.
@@ -55,18 +55,18 @@ def same(one: Any, other: Any) -> bool:
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         if hasattr(one, "identical"):  # a Dataset of xarray
             return bool(hasattr(other, "identical") and one.identical(other))
-        return one.keys() == other.keys() and all(same(v, other[k]) for k, v in one.items())
+        return one.keys() == other.keys() and all(is_same(v, other[k]) for k, v in one.items())
     if type(one) is not type(other):
         return bool(one == other) if _is_plain(one) and _is_plain(other) else False
     if is_dataclass(one) and not isinstance(one, type):
         pairs = ((getattr(one, f.name), getattr(other, f.name)) for f in fields(one) if f.compare)
-        return all(same(a, b) for a, b in pairs)
+        return all(is_same(a, b) for a, b in pairs)
     if isinstance(one, list | tuple):
-        return len(one) == len(other) and all(map(same, one, other))
+        return len(one) == len(other) and all(map(is_same, one, other))
     if hasattr(one, "identical"):  # a DataArray of xarray
         return bool(one.identical(other))
     if hasattr(one, "dtype") and hasattr(one, "shape"):
-        return _same_arrays(one, other)
+        return _are_same_arrays(one, other)
     if isinstance(one, float):
         return one == other or (one != one and other != other)
     return bool(one == other)
@@ -76,7 +76,7 @@ def _is_plain(value: Any) -> bool:
     return isinstance(value, bool | int | float | complex | str) or value is None
 
 
-def _same_arrays(one: Any, other: Any) -> bool:
+def _are_same_arrays(one: Any, other: Any) -> bool:
     import numpy as np
 
     if one.shape != other.shape or one.dtype != other.dtype:
@@ -84,5 +84,5 @@ def _same_arrays(one: Any, other: Any) -> bool:
     if one.dtype.kind in "fc":
         return bool(np.array_equal(one, other, equal_nan=True))
     if one.dtype.kind == "O":
-        return all(map(same, one.ravel().tolist(), other.ravel().tolist()))
+        return all(map(is_same, one.ravel().tolist(), other.ravel().tolist()))
     return bool(np.array_equal(one, other))

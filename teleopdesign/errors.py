@@ -58,7 +58,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return "" if match is None else f'; did you mean "{match}"?'
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """`text` in double quotes, shortened if it is long."""
     if len(text) > _LONGEST_QUOTE:
         text = text[: _LONGEST_QUOTE - 3] + "..."
@@ -70,8 +70,8 @@ def printable(text: str, *, keep: str = "") -> str:
 
     keep: such characters that stay
     """
-    return "".join(c if c.isprintable() or c in keep else _escaped(c) for c in text)
+    return "".join(c if c.isprintable() or c in keep else _escape(c) for c in text)
 
 
-def _escaped(character: str) -> str:
+def _escape(character: str) -> str:
     return character.encode("unicode_escape").decode("ascii")

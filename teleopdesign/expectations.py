@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
-from .errors import did_you_mean, quoted
+from .errors import did_you_mean, quote
 
 _LONGEST = 60  # characters of a value that a message repeats
 
@@ -30,12 +30,12 @@ class WrongValue:
 TypeCheck = Callable[[Any], WrongValue | None]
 
 
-def described(value: Any) -> str:
+def describe_value(value: Any) -> str:
     """A value in words: 'the number 0.15', 'the text "C"', 'a Body'."""
     if value is None or isinstance(value, bool):
         return str(value)
     if isinstance(value, str):
-        return f"the text {quoted(value)}"
+        return f"the text {quote(value)}"
     if isinstance(value, type):
         return f"the class {value.__name__}"
     if isinstance(value, int | float | complex):
@@ -61,28 +61,28 @@ def check_of(annotation: Any) -> TypeCheck | None:
     if annotation is Any or annotation is object or isinstance(annotation, TypeVar | str):
         return None
     if annotation is None or annotation is type(None):
-        return _plain("None", lambda v: v is None)
+        return _make_check("None", lambda v: v is None)
     if annotation in _SIMPLE:
         return _SIMPLE[annotation]
     if origin is Literal:
         return _one_of(inner)
     if origin in (Union, types.UnionType):
-        return _any_of(inner)
+        return _make_any_check(inner)
     if origin in (Mapping, dict):
-        return _mapping(*inner)
+        return _make_mapping_check(*inner)
     if origin is tuple and not (len(inner) == 2 and inner[1] is Ellipsis):
-        return _fixed(inner)
+        return _make_tuple_check(inner)
     if origin in (tuple, list, set, frozenset, Sequence, Collection, Iterable):
         return _several(origin, inner[0])
     if annotation is Callable or origin is Callable:
-        return _plain("a function", callable)
+        return _make_check("a function", callable)
     kind = origin or annotation
     if not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
         return None
-    return _of_class(kind)
+    return _make_class_check(kind)
 
 
-def _plain(expected: str, accepts: Callable[[Any], bool]) -> TypeCheck:
+def _make_check(expected: str, accepts: Callable[[Any], bool]) -> TypeCheck:
     return lambda value: None if accepts(value) else WrongValue("", value, expected)
 
 
@@ -108,7 +108,7 @@ def number_check(value: Any) -> WrongValue | None:
     return WrongValue("", value, "a number (SI), not NaN") if math.isnan(float(value)) else None
 
 
-def _whole(value: Any) -> WrongValue | None:
+def _check_whole(value: Any) -> WrongValue | None:
     whole = _isnumber_check(value) and hasattr(value, "__index__")
     return None if whole else WrongValue("", value, "a whole number")
 
@@ -127,10 +127,10 @@ def _complex(value: Any) -> WrongValue | None:
 
 _SIMPLE: dict[Any, TypeCheck] = {
     float: number_check,
-    int: _whole,
+    int: _check_whole,
     bool: _truth,
     complex: _complex,
-    str: _plain("a text", lambda v: isinstance(v, str)),
+    str: _make_check("a text", lambda v: isinstance(v, str)),
 }
 
 
@@ -148,7 +148,7 @@ def _one_of(values: tuple[Any, ...]) -> TypeCheck:
     return check
 
 
-def _any_of(parts: tuple[Any, ...]) -> TypeCheck | None:
+def _make_any_check(parts: tuple[Any, ...]) -> TypeCheck | None:
     checks = [check_of(part) for part in parts]
     if any(c is None for c in checks):
         return None
@@ -175,7 +175,7 @@ def _any_of(parts: tuple[Any, ...]) -> TypeCheck | None:
     return check
 
 
-def _mapping(key: Any, content: Any) -> TypeCheck:
+def _make_mapping_check(key: Any, content: Any) -> TypeCheck:
     of_key, of_content = check_of(key), check_of(content)
 
     def check(value: Any) -> WrongValue | None:
@@ -217,7 +217,7 @@ def _is_container(value: Any, kind: Any) -> bool:
     return isinstance(value, kind)
 
 
-def _fixed(parts: tuple[Any, ...]) -> TypeCheck:
+def _make_tuple_check(parts: tuple[Any, ...]) -> TypeCheck:
     checks = [check_of(part) for part in parts]
 
     def check(value: Any) -> WrongValue | None:
@@ -231,19 +231,19 @@ def _fixed(parts: tuple[Any, ...]) -> TypeCheck:
     return check
 
 
-def _of_class(kind: type[Any]) -> TypeCheck:
+def _make_class_check(kind: type[Any]) -> TypeCheck:
     name = kind.__name__
     if name == "ndarray":
-        return _plain("an array of numbers", _is_array)
+        return _make_check("an array of numbers", _is_array)
     if name == "Expr":
-        return _plain("an expression of sympy", lambda v: isinstance(v, kind))
+        return _make_check("an expression of sympy", lambda v: isinstance(v, kind))
     if hasattr(kind, "_is_outside"):
         package = {"control": "python-control"}.get(kind.__module__, kind.__module__)
         expected = f"{with_article(name)} of {package}"
-        return _plain(expected, lambda v: _is_from_outside(v, kind))
+        return _make_check(expected, lambda v: _is_from_outside(v, kind))
     expected = "a path" if name in ("Path", "PurePath") else with_article(name)
     expected = "ANY" if name == "AnyBlock" else expected
-    return _plain(expected, lambda v: isinstance(v, kind))
+    return _make_check(expected, lambda v: isinstance(v, kind))
 
 
 def _is_from_outside(value: Any, kind: type[Any]) -> bool:

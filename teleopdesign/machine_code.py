@@ -14,7 +14,7 @@ from numba import njit
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def kept(function: Function) -> Function:
+def compile_and_keep(function: Function) -> Function:
     """The compiled function, without the lock of the interpreter; its machine code is kept."""
     dispatcher: Any
     try:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from .arguments import checked, described, instance
+from .arguments import check_types, describe_value, instance
 from .blocks import CONTACT, Body, Value
 from .blocks.described import free_body_of, joint_with_links, with_environment
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
@@ -16,7 +16,7 @@ from .errors import ExperimentError, ModelError, did_you_mean
 from .frozen import Frozen
 from .measurement.experiment import Experiment
 from .notebook import html_table
-from .quantity import after_number
+from .quantity import unit_after_number
 from .standard_error import with_standard_error
 
 
@@ -49,7 +49,7 @@ class Model:
             object.__setattr__(self, "record_shift", Frozen(self.record_shift))
 
     @classmethod
-    @checked
+    @check_types
     def from_experiment(
         cls, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
     ) -> Model:
@@ -76,7 +76,7 @@ class Model:
             bodies[touching] = with_environment(bodies[touching], experiment.environment, known)
         return cls(Frozen(bodies), known)
 
-    @checked
+    @check_types
     def body(self, at: str) -> Body:
         """The body at that place; ModelError with the nearest place where there is none.
 
@@ -84,7 +84,7 @@ class Model:
         """
         return self.bodies[self.holder(at)]
 
-    @checked
+    @check_types
     def with_effect(
         self,
         effect: str | Effect,
@@ -113,7 +113,7 @@ class Model:
             )
         return self._with_body(place, self.body(place).with_effect(added, values))
 
-    @checked
+    @check_types
     def without_effect(self, effect: str, *, at: str | None = None) -> Model:
         """The model without that effect."""
         removed = self.known.get(effect)
@@ -172,17 +172,17 @@ class Model:
         return place, local_name
 
     def _refuse_parameter(self, name: object) -> None:
-        said = f'"{name}"' if isinstance(name, str) else described(name)
+        said = f'"{name}"' if isinstance(name, str) else describe_value(name)
         near = did_you_mean(name, self.parameters) if isinstance(name, str) else ""
         raise ModelError(f"model: no parameter {said}{near}")
 
-    @checked
+    @check_types
     def declared(self, name: str) -> Parameter:
         """Declaration of the parameter of that full name."""
         place, local_name = self.locate(name)
         return self.body(place).parameter(local_name)
 
-    @checked
+    @check_types
     def unit(self, name: str) -> str:
         """Unit of the parameter of that full name."""
         place, local_name = self.locate(name)
@@ -291,7 +291,7 @@ class Model:
         for name, value in self.parameters.items():
             mark = "  (fixed)" if value.fixed else ""
             best = with_standard_error(value.value, value.stderr)
-            lines.append(f"  {name} = {best}{after_number(self.unit(name))}{mark}")
+            lines.append(f"  {name} = {best}{unit_after_number(self.unit(name))}{mark}")
         return "Model\n" + "\n".join(lines)
 
     def _repr_html_(self) -> str:

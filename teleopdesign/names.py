@@ -9,7 +9,7 @@ from __future__ import annotations
 import keyword
 import re
 
-from .errors import ModelError, did_you_mean, quoted
+from .errors import ModelError, did_you_mean, quote
 
 #: characters; the longest name in the package has 30. What is longer is no name but a text.
 LONGEST = 100
@@ -27,23 +27,23 @@ def check_name(name: object, *, where: str, dotted: bool = False) -> str:
     words = name.split(".") if dotted else [name]
     if len(name) > LONGEST:
         raise ModelError(
-            f"{where}: found the name {quoted(name)} of {len(name)} characters, "
+            f"{where}: found the name {quote(name)} of {len(name)} characters, "
             f"expected at most {LONGEST}"
         )
     if not all(_WORD.fullmatch(word) for word in words):
         raise ModelError(
-            f"{where}: found the name {quoted(name)}, expected letters (a to z), digits and "
-            f"underscores, no digit first{did_you_mean(name, [_mended(name)])}"
+            f"{where}: found the name {quote(name)}, expected letters (a to z), digits and "
+            f"underscores, no digit first{did_you_mean(name, [_mend(name)])}"
         )
     if any(keyword.iskeyword(word) for word in words):
         raise ModelError(
-            f"{where}: found the name {quoted(name)}, a word of Python that no expression can "
+            f"{where}: found the name {quote(name)}, a word of Python that no expression can "
             f'hold; did you mean "{name}_"?'
         )
     return name
 
 
-def _mended(name: str) -> str:
+def _mend(name: str) -> str:
     """The name with an underscore for everything that it may not hold."""
     word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     return f"_{word}" if word[:1].isdigit() else word

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _TRIAL = 4096  # bytes that a trial writes: a block, which a full disk has not
 
 
-def plain(value: object, *, digits: int | None = None) -> Any:
+def make_plain(value: object, *, digits: int | None = None) -> Any:
     """What JSON knows: mappings, lists, texts, numbers, true and false, null.
 
     Dataclasses become mappings in the order of their fields, arrays and tuples lists, sets sorted
@@ -36,16 +36,16 @@ def plain(value: object, *, digits: int | None = None) -> Any:
     """
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = dataclasses.fields(value)
-        return {f.name: plain(getattr(value, f.name), digits=digits) for f in fields}
+        return {f.name: make_plain(getattr(value, f.name), digits=digits) for f in fields}
     if isinstance(value, Mapping):
-        return {str(k): plain(v, digits=digits) for k, v in value.items()}
+        return {str(k): make_plain(v, digits=digits) for k, v in value.items()}
     if isinstance(value, np.ndarray):
         listed = value.tolist()  # of a 0-dimensional array: its number
-        return _rounded(listed, digits) if digits is not None else plain(listed)
+        return _round(listed, digits) if digits is not None else make_plain(listed)
     if isinstance(value, list | tuple):
-        return [plain(v, digits=digits) for v in value]
+        return [make_plain(v, digits=digits) for v in value]
     if isinstance(value, Set):
-        return [plain(v, digits=digits) for v in sorted(value)]
+        return [make_plain(v, digits=digits) for v in sorted(value)]
     if value is None or isinstance(value, str):
         return value if value is None else str(value)
     if isinstance(value, bool | np.bool_):
@@ -61,7 +61,7 @@ def plain(value: object, *, digits: int | None = None) -> Any:
 
 def json_text(data: object) -> str:
     """The data as JSON: one space a level, keys in their order, a line break at the end."""
-    return json.dumps(plain(data), indent=1, allow_nan=False) + "\n"
+    return json.dumps(make_plain(data), indent=1, allow_nan=False) + "\n"
 
 
 def write_json(path: str | Path, data: object) -> None:
@@ -71,19 +71,19 @@ def write_json(path: str | Path, data: object) -> None:
 
 def write_text(path: str | Path, text: str) -> None:
     """Write a text in UTF-8 with line feeds; raises ExperimentError where that cannot be done."""
-    with replacing(path) as part:
+    with write_beside(path) as part:
         # backslashes: a file name that is no UTF-8 comes as halves of pairs, which UTF-8 lacks
         part.write_bytes(text.encode("utf-8", "backslashreplace"))
 
 
 def write_netcdf(path: str | Path, data: xarray.Dataset) -> None:
     """Write a data set as netCDF; raises ExperimentError where the file cannot be written."""
-    with replacing(path) as part:
+    with write_beside(path) as part:
         data.to_netcdf(part)
 
 
 @contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
+def write_beside(path: str | Path) -> Iterator[Path]:
     """A path beside `path` to write to, with the same ending; it becomes `path` at the end.
 
     Where writing fails `path` stays what it was, and nothing is left beside it.
@@ -111,7 +111,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def check_writable(path: str | Path) -> None:
-    """Try whether `path` could be written, as `replacing` does it; leaves what is there.
+    """Try whether `path` could be written, as `write_beside` does it; leaves what is there.
 
     raises ExperimentError: an unwritable folder, a full disk
     """
@@ -140,9 +140,9 @@ def harmless_cell(text: str) -> str:
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
-def _rounded(value: Any, digits: int) -> Any:
+def _round(value: Any, digits: int) -> Any:
     if isinstance(value, list):
-        return [_rounded(v, digits) for v in value]
+        return [_round(v, digits) for v in value]
     if isinstance(value, float) and math.isfinite(value):
         return float(f"{value:.{digits}g}")
-    return plain(value)
+    return make_plain(value)

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .errors import ExperimentError, did_you_mean, quoted
+from .errors import ExperimentError, did_you_mean, quote
 from .unit_text import SYMBOLS, NotAUnit, multiply, parse_unit
 
 AXES = ("prismatic", "revolute")
@@ -81,7 +81,7 @@ def unit_of(quantity: str, axis: str) -> str:
     return _kind(quantity, axis, "").units[0]
 
 
-def after_number(unit: str) -> str:
+def unit_after_number(unit: str) -> str:
     """A unit as it stands behind a number: " N*m"; nothing where the number has no dimension."""
     return "" if unit in ("", "1") else f" {unit}"
 
@@ -106,7 +106,7 @@ def si_factor(
 ) -> float:
     """Factor from `unit` to the SI unit of `quantity`; arguments and errors of `to_si`."""
     kind = _kind(quantity, axis, where)
-    expected = f"expected {kind.noun} such as " + " or ".join(quoted(u) for u in kind.units)
+    expected = f"expected {kind.noun} such as " + " or ".join(quote(u) for u in kind.units)
     if unit is None:
         if quantity in ("dimensionless", "angle"):
             return 1.0
@@ -115,10 +115,10 @@ def si_factor(
         parsed = parse_unit(unit)
     except NotAUnit as problem:
         hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, SYMBOLS)
-        raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}{hint}") from None
+        raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}{hint}") from None
     wanted = parse_unit(kind.units[0])
     if parsed.dimension != wanted.dimension:
-        raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}")
+        raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}")
     if quantity == "frequency" and parsed.powers[-1] == 1:
         return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
     return parsed.scale
@@ -142,14 +142,14 @@ def converting_factor(
         except NotAUnit as problem:
             hint = did_you_mean(problem.part, SYMBOLS)
             raise ExperimentError(
-                f"{_begin(where)}found {quoted(text)}, expected a unit such as "
-                f"{quoted('A')} or {quoted(kind.units[0])}{hint}"
+                f"{_begin(where)}found {quote(text)}, expected a unit such as "
+                f"{quote('A')} or {quote(kind.units[0])}{hint}"
             ) from None
     product, wanted = multiply(parts[0], parts[1], 1, unit), parse_unit(kind.units[0])
     if product.dimension != wanted.dimension:
         raise ExperimentError(
-            f"{_begin(where)}found {quoted(unit)} times {quoted(constant or '1')}, "
-            f"expected {kind.noun} such as {quoted(kind.units[0])}"
+            f"{_begin(where)}found {quote(unit)} times {quote(constant or '1')}, "
+            f"expected {kind.noun} such as {quote(kind.units[0])}"
         )
     return product.scale
 
@@ -175,12 +175,12 @@ def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:
 def _kind(quantity: str, axis: str, where: str) -> _Kind:
     if quantity not in QUANTITIES:
         raise ExperimentError(
-            f"{_begin(where)}no quantity {quoted(quantity)}, expected one of "
+            f"{_begin(where)}no quantity {quote(quantity)}, expected one of "
             f"{', '.join(QUANTITIES)}{did_you_mean(quantity, QUANTITIES)}"
         )
     if axis not in AXES:
         raise ExperimentError(
-            f"{_begin(where)}no axis {quoted(axis)}, expected {' or '.join(AXES)}"
+            f"{_begin(where)}no axis {quote(axis)}, expected {' or '.join(AXES)}"
             f"{did_you_mean(axis, AXES)}"
         )
     return QUANTITIES[quantity][AXES.index(axis)]

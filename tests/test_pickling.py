@@ -12,7 +12,7 @@ import pytest
 from example_objects import BODY, LAW, QUICK, SLOW
 
 import teleopdesign as td
-from teleopdesign.by_value import same
+from teleopdesign.by_value import is_same
 from teleopdesign.finding import Finding
 from teleopdesign.frozen import Catalogue, Frozen
 
@@ -64,7 +64,7 @@ def test_what_differs_in_one_number_is_not_equal():
     experiment = QUICK["experiment"]()
     other = copy.deepcopy(experiment)
     other.records[0].time[3] += 1e-9
-    assert other != experiment and same(other.records[1], experiment.records[1])
+    assert other != experiment and is_same(other.records[1], experiment.records[1])
 
 
 def test_catalogued_things_stay_themselves():
@@ -279,7 +279,7 @@ def test_every_public_class_pickles_copies_and_prints():
         # a state holds code: the effect or the law that it belongs to pickles, by its name
         if kind not in (td.State, td.controllers.ControllerState):
             for again in (pickle.loads(pickle.dumps(thing)), copy.deepcopy(thing)):
-                assert same(again, thing) and again == thing, type(thing).__name__
+                assert is_same(again, thing) and again == thing, type(thing).__name__
             text = repr(thing)
             assert len(text) < 2500 and "array(" not in text and " object at 0x" not in text
     assert {c.__name__ for c in public - classes.keys()} - DEAR == set()

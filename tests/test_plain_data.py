@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.errors import ExperimentError
-from teleopdesign.plain_data import json_text, plain, replacing, write_json, write_text
+from teleopdesign.plain_data import json_text, make_plain, write_beside, write_json, write_text
 
 NUMBERS = st.floats() | st.integers() | st.floats(width=32).map(np.float32) | st.booleans()
 LEAVES = NUMBERS | st.text() | st.none() | st.lists(st.floats()).map(np.array)
@@ -40,8 +40,8 @@ def numbers_of(data):
 def test_whatever_is_written_is_read_back_as_its_plain_data(data):
     text = json_text(data)
     read = json.loads(text, parse_constant=pytest.fail)
-    assert read == plain(data) and text.endswith("\n")
-    assert plain(read) == read
+    assert read == make_plain(data) and text.endswith("\n")
+    assert make_plain(read) == read
     assert all(math.isfinite(n) for n in numbers_of(read) if isinstance(n, float))
 
 
@@ -55,19 +55,19 @@ def test_each_kind_of_value_has_one_form():
             "none": (math.nan, np.inf, np.array(2.0)),
         }
     )
-    assert plain(data) == {
+    assert make_plain(data) == {
         "part": {"second": 1.5, "first": [[1, 2]]},
         "path": str(Path("a/b")),
         "set": ["a", "b"],
         "flag": True,
         "none": [None, None, 2.0],
     }
-    assert list(plain(data)["part"]) == ["second", "first"], "in the order of the fields"
-    assert plain(data)["flag"] is True
+    assert list(make_plain(data)["part"]) == ["second", "first"], "in the order of the fields"
+    assert make_plain(data)["flag"] is True
 
 
 def test_arrays_may_be_shortened_and_single_numbers_are_not():
-    assert plain({"x": np.array([math.pi, np.nan]), "y": math.pi}, digits=3) == {
+    assert make_plain({"x": np.array([math.pi, np.nan]), "y": math.pi}, digits=3) == {
         "x": [3.14, None],
         "y": math.pi,
     }
@@ -75,16 +75,16 @@ def test_arrays_may_be_shortened_and_single_numbers_are_not():
 
 def test_what_has_no_form_is_refused_by_its_type():
     with pytest.raises(TypeError, match="found complex"):
-        plain({"z": 1j})
+        make_plain({"z": 1j})
 
 
 def test_a_file_that_fails_half_way_leaves_the_old_one_and_nothing_beside_it(tmp_path):
     path = tmp_path / "answer.json"
     write_json(path, {"a": 1})
-    with pytest.raises(ZeroDivisionError), replacing(path) as part:
+    with pytest.raises(ZeroDivisionError), write_beside(path) as part:
         part.write_text("half")
         raise ZeroDivisionError
-    with pytest.raises(ExperimentError, match="No space left"), replacing(path) as part:
+    with pytest.raises(ExperimentError, match="No space left"), write_beside(path) as part:
         part.write_text("half")
         raise OSError(28, "No space left on device")
     assert json.loads(path.read_text()) == {"a": 1}
@@ -92,7 +92,7 @@ def test_a_file_that_fails_half_way_leaves_the_old_one_and_nothing_beside_it(tmp
 
 
 def test_the_part_has_the_ending_of_the_file_and_lies_beside_it(tmp_path):
-    with replacing(tmp_path / "a.csv.gz") as part:
+    with write_beside(tmp_path / "a.csv.gz") as part:
         assert part.name.endswith(".csv.gz") and part.parent == tmp_path
         part.write_text("")
 

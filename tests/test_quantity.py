@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.errors import ExperimentError, nearest
-from teleopdesign.quantity import AXES, QUANTITIES, after_number, si_factor, to_si, unit_of
+from teleopdesign.quantity import AXES, QUANTITIES, si_factor, to_si, unit_after_number, unit_of
 
 EVERY = [(quantity, axis) for quantity in QUANTITIES for axis in AXES]
 PREFIXES = {"": 1.0, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
@@ -92,7 +92,7 @@ def test_what_is_no_unit_is_refused(unit):
     ("quantity", "shown"), [("force", "3 N"), ("dimensionless", "3"), ("velocity", "3 m/s")]
 )
 def test_a_number_without_dimension_is_shown_without_a_unit(quantity, shown):
-    assert f"3{after_number(unit_of(quantity, 'prismatic'))}" == shown
+    assert f"3{unit_after_number(unit_of(quantity, 'prismatic'))}" == shown
 
 
 def test_a_quantity_or_axis_that_does_not_exist_is_named():

@@ -74,7 +74,12 @@ def residual_chart(data: Dataset, body: str, use: str) -> Chart:
             "width": width,
             "height": HIGH,
             "mark": {"type": "circle", "size": 9, "opacity": 0.7},
-            "encoding": {"x": along, "y": residual, "color": _by_direction(), "tooltip": _tip()},
+            "encoding": {
+                "x": along,
+                "y": residual,
+                "color": _colour_by_direction(),
+                "tooltip": _tip(),
+            },
         }
 
     half = WIDE // 2 - 35
@@ -106,7 +111,12 @@ def _forces(unit: dict[str, str]) -> dict[str, Any]:
             "x": {"field": "time", "type": "quantitative", "title": f"time ({unit['time']})"},
             "y": force,
             "detail": {"field": "record", "type": "nominal"},
-            "color": {"field": "force", "type": "nominal", "scale": colours, "legend": _above()},
+            "color": {
+                "field": "force",
+                "type": "nominal",
+                "scale": colours,
+                "legend": _legend_above(),
+            },
         },
     }
 
@@ -126,7 +136,7 @@ def comparison_chart(
     unit = one["residual"].attrs["units"]
     residual = {"field": "residual", "type": "quantitative", "title": f"residual ({unit})"}
     colours = {"domain": list(names), "range": [BEFORE, AFTER]}
-    of = {"field": "of", "type": "nominal", "scale": colours, "legend": _above()}
+    of = {"field": "of", "type": "nominal", "scale": colours, "legend": _legend_above()}
 
     def over(name: str) -> dict[str, Any]:
         title = f"{name} ({one[name].attrs['units']})"
@@ -149,17 +159,17 @@ def comparison_chart(
     )
 
 
-def _by_direction() -> dict[str, Any]:
+def _colour_by_direction() -> dict[str, Any]:
     """Colour by the direction of motion; what is not selected is grey."""
     colours = {
         "domain": ["forward", "backward", "at rest"],
         "range": [FORWARD, BACKWARD, "darkgray"],
     }
-    shown = {"field": "direction", "type": "nominal", "scale": colours, "legend": _above()}
+    shown = {"field": "direction", "type": "nominal", "scale": colours, "legend": _legend_above()}
     return {"condition": {"param": "span", **shown}, "value": "lightgray"}
 
 
-def _above() -> dict[str, Any]:
+def _legend_above() -> dict[str, Any]:
     return {"title": None, "orient": "top"}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..diagnose.answer import write_answer
 from ..errors import TeleopDesignError
-from ..plain_data import replacing, write_text
+from ..plain_data import write_beside, write_text
 from .pages import propose_design
 from .workbench import Workbench
 
@@ -54,7 +54,7 @@ def write_all(
     left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
     write_report(diagnosis, target / "report.html", unexplained=left)
     write_answer(diagnosis, target / "answer.json")
-    with replacing(target / "figure.svg") as part:
+    with write_beside(target / "figure.svg") as part:
         diagnosis.plot().savefig(part, format="svg")
     write_text(target / "script.py", script(bench, str(bench.experiment.folder)) + "\n")
     names = ["report.html", "answer.json", "figure.svg", "script.py"]

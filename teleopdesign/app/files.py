@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from ..errors import ExperimentError
-from ..plain_data import replacing
+from ..plain_data import write_beside
 
 #: endings of files that may be dropped on the page
 LOGS = (".csv", ".txt", ".tsv", ".gz", ".parquet", ".xlsx", ".mat", ".npz", ".h5", ".hdf5", ".bag")
@@ -43,7 +43,7 @@ def is_inside(folder: Path, path: Path) -> bool:
     return path.resolve().is_relative_to(folder.resolve())
 
 
-def inside(folder: Path, name: str) -> Path:
+def resolve_inside(folder: Path, name: str) -> Path:
     """The path of that name in the folder; raises ExperimentError where it leads out of it."""
     path = folder / name
     if not is_inside(folder, path):
@@ -65,12 +65,12 @@ def keep_dropped(folder: Path, name: str, content: bytes) -> str:
         )
     if len(content) > LARGEST:
         raise ExperimentError(f'"{plain}": {len(content)} bytes, expected at most {LARGEST}')
-    target = inside(folder, DROPPED)
+    target = resolve_inside(folder, DROPPED)
     target.mkdir(exist_ok=True)
     path, number = target / plain, 1
     while path.exists():
         number += 1
         path = target / f"{Path(plain).stem}-{number}{Path(plain).suffix}"
-    with replacing(path) as part:
+    with write_beside(path) as part:
         part.write_bytes(content)
     return str(path.relative_to(folder))

@@ -11,7 +11,7 @@ from ..errors import ExperimentError
 from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
 from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log
-from .files import inside
+from .files import resolve_inside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -87,7 +87,7 @@ def preview(folder: Path, name: str, choices: Choices | None = None) -> Preview:
     choices: columns, axis and constants that the user states; the rest is detected
     raises ExperimentError: the log cannot be read, or holds no position or no force
     """
-    path = inside(folder, name)
+    path = resolve_inside(folder, name)
     log = open_log(path, path.name)
     return Preview(name, tuple(log.names), survey_log(log, path.name, choices or Choices()))
 
@@ -105,9 +105,9 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
     spans: of the fit and the check record; default: those that are proposed
     raises ExperimentError: the folder is there already, or cannot be written; spans that overlap
     """
-    log = inside(folder, shown.name)
+    log = resolve_inside(folder, shown.name)
     stem = log.name.split(".")[0] or "experiment"
-    target = inside(folder, f"{stem}_experiment")
+    target = resolve_inside(folder, f"{stem}_experiment")
     if target.exists():
         raise ExperimentError(f"{target.name}: is there already: rename it or the log")
     make_folder(shown.survey, [log], target, title=stem, spans=spans)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..diagnose.comparison import residual_data
 from ..errors import TeleopDesignError
-from ..quantity import after_number
+from ..quantity import unit_after_number
 from ..report.words import number, unit_text, with_error
 from .workbench import Workbench
 
@@ -71,7 +71,7 @@ def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
     ]
 
 
-def compared(bench: Workbench, one: int, other: int) -> str:
+def compare_rungs(bench: Workbench, one: int, other: int) -> str:
     """Errors and parameters of two rungs side by side, as a Markdown table."""
     first, second = bench.rungs[one].fit, bench.rungs[other].fit
     lines = [
@@ -97,7 +97,7 @@ def _estimate(model: Model, name: str) -> str:
     return f"{best}{sure} {unit_text(model.unit(name))}"
 
 
-def moved(bench: Workbench, parameter: str, factor: float) -> str:
+def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
     """What the errors become where one parameter is `factor` times its value."""
     value = bench.model.parameters[parameter]
     unit = unit_text(bench.model.unit(parameter))
@@ -111,7 +111,7 @@ def moved(bench: Workbench, parameter: str, factor: float) -> str:
         ("check", there.check_error, errors[1]),
     )
     table = "\n".join(f"| {n} | {_percent(a)} | {_percent(b)} |" for n, a, b in rows)
-    there_now = f"{number(factor * value.value)}{after_number(unit)}"
+    there_now = f"{number(factor * value.value)}{unit_after_number(unit)}"
     return (
         f"`{parameter}` = {there_now} (estimated: {_estimate(bench.model, parameter)})"
         f"\n\n| error | as estimated | as moved |\n|---|---:|---:|\n{table}"
@@ -165,7 +165,7 @@ def design_parts(bench: Workbench, body: str) -> list[tuple[str, Figure | Drawin
     except TeleopDesignError as error:
         return [("No design", str(error))]
     try:
-        parts.append(("Simulation", _pushed(design).plot()))
+        parts.append(("Simulation", _push_device(design).plot()))
     except TeleopDesignError as error:
         parts.append(("Simulation", str(error)))
     return parts
@@ -176,7 +176,7 @@ def propose_design(bench: Workbench, body: str) -> Design:
     return _designs(_Key(bench, bench.model), body)
 
 
-def _pushed(design: Design) -> Simulation:
+def _push_device(design: Design) -> Simulation:
     """The designed device, pushed for a second with half of the largest recorded command."""
     from ..simulate import simulate
 

@@ -21,7 +21,7 @@ PageElement = Any
 Spans = Sequence[tuple[float, float]]
 
 
-def beside(*elements: PageElement) -> PageElement:
+def place_side_by_side(*elements: PageElement) -> PageElement:
     """Elements in a row, on a narrow page in several."""
     return mo.hstack(list(elements), justify="start", wrap=True)
 
@@ -77,7 +77,7 @@ def log_parts(
         return [form, *sliders, mo.callout(str(error), kind="warn")]
     return [
         mo.md("What is left empty is found. Choose what was found wrongly:"),
-        beside(*form.elements.values()),
+        place_side_by_side(*form.elements.values()),
         mo.md(understood.table()),
         mo.md("What is fitted, and what is checked:"),
         *sliders,
@@ -97,7 +97,7 @@ def residual_view(
     data = pages.residuals(bench, rung.value)
     return mo.vstack(
         [
-            beside(body, use, rung),
+            place_side_by_side(body, use, rung),
             charts.residual_chart(data, body.value, use.value),
             mo.md("Draw a span in one panel: the others show the same samples."),
         ]
@@ -109,12 +109,12 @@ def compare_view(
 ) -> PageElement:
     """Two models beside each other."""
     one, other = models
-    parts = [beside(one, other)]
+    parts = [place_side_by_side(one, other)]
     if one.value == other.value:
         parts.append(mo.md("Choose two models of the ladder; *Add* makes another one."))
     else:
         parts += [
-            mo.md(pages.compared(bench, one.value, other.value)),
+            mo.md(pages.compare_rungs(bench, one.value, other.value)),
             charts.comparison_chart(
                 pages.residuals(bench, one.value),
                 pages.residuals(bench, other.value),
@@ -133,8 +133,8 @@ def ladder_view(
     return mo.vstack(
         [
             mo.md(pages.ladder(bench)),
-            beside(candidate, buttons["add"], buttons["back"]),
-            beside(buttons["rank"], buttons["all"]),
+            place_side_by_side(candidate, buttons["add"], buttons["back"]),
+            place_side_by_side(buttons["rank"], buttons["all"]),
             mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
             if bench.candidates
             else mo.md("The candidates beside this model were not looked at yet."),
@@ -152,7 +152,10 @@ def slider_view(
     """One parameter moved: the errors that the model then has, and its force beside the record."""
     if not which.value:
         return mo.md("This model has no free parameter.")
-    parts = [beside(which, factor), mo.md(pages.moved(bench, which.value, factor.value))]
+    parts = [
+        place_side_by_side(which, factor),
+        mo.md(pages.move_parameter(bench, which.value, factor.value)),
+    ]
     data = pages.moved_residuals(bench, which.value, factor.value)
     if data is not None:
         parts.append(charts.residual_chart(data, body.value, use.value))

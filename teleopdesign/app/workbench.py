@@ -12,7 +12,7 @@ from pathlib import Path
 from ..diagnose.conclusion import conclude
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.error import force_error
-from ..diagnose.ladder import next_move
+from ..diagnose.ladder import make_next_move
 from ..diagnose.ladder_state import LadderSearch, LadderState, begin, look, search_for
 from ..diagnose.ranking import Ranked
 from ..diagnose.rung import Rung
@@ -119,7 +119,7 @@ class Workbench:
         bench = self.rank(progress)
         search = replace(self.search, progress=progress) if progress else self.search
         states = bench.states
-        while (moved := next_move(search, states[-1])) is not None:
+        while (moved := make_next_move(search, states[-1])) is not None:
             states = (*states, look(search, moved.rungs, moved))
         return replace(bench, states=states)
 

@@ -97,7 +97,7 @@ def inertia_about(mass: float, centre: Array, inertia: Array) -> Array:
     return np.array([mass, *(mass * c), *_moments(about)])
 
 
-def seen_from(inertial: Array, rotation: Array, origin: Array) -> Array:
+def express_in_frame(inertial: Array, rotation: Array, origin: Array) -> Array:
     """Inertial parameters (10,) of a body in a frame, as another frame has them.
 
     rotation, origin: of the frame of the body, in the other frame

@@ -46,9 +46,9 @@ def force_columns(arm: Chain, position: Array, velocity: Array, acceleration: Ar
     frames = _frames(arm, position, velocity, acceleration)
     columns = np.zeros((k, p * k, n))
     for i, here in enumerate(frames):
-        force, moment = _of_link(here)
+        force, moment = _link_columns(here)
         for j in range(i + 1):
-            axis, lever = _seen_in(here, frames[j], arm.links[j])
+            axis, lever = _express_axis(here, frames[j], arm.links[j])
             if arm.links[j].kind == "prismatic":
                 columns[j, p * i : p * (i + 1)] = np.einsum("nc,npc->pn", axis, force)
                 continue
@@ -69,19 +69,19 @@ def _frames(arm: Chain, position: Array, velocity: Array, acceleration: Array) -
     )
     frames = []
     for link, q, v, a in zip(arm.links, position, velocity, acceleration, strict=True):
-        here = _next(here, link, q, v, a)
+        here = _next_frame(here, link, q, v, a)
         frames.append(here)
     return frames
 
 
-def _next(before: _Frames, link: Link, q: Array, v: Array, a: Array) -> _Frames:
+def _next_frame(before: _Frames, link: Link, q: Array, v: Array, a: Array) -> _Frames:
     """The frame of a link from that of the link before it."""
     axis = link.axis
     if link.kind == "prismatic":
         relative = np.broadcast_to(link.rotation, (len(q), 3, 3))
         offset = link.origin + q[:, None] * (link.rotation @ axis)
     else:
-        relative = link.rotation @ _about(axis, q)
+        relative = link.rotation @ _rotation_about(axis, q)
         offset = np.broadcast_to(link.origin, (len(q), 3))
     spin, turn = before.spin, before.turn
     lift = before.lift + np.cross(turn, offset) + np.cross(spin, np.cross(spin, offset))
@@ -101,7 +101,7 @@ def _next(before: _Frames, link: Link, q: Array, v: Array, a: Array) -> _Frames:
     )
 
 
-def _about(axis: Array, angle: Array) -> Array:
+def _rotation_about(axis: Array, angle: Array) -> Array:
     """Rotations (n, 3, 3) about an axis (Rodrigues)."""
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -109,7 +109,7 @@ def _about(axis: Array, angle: Array) -> Array:
     return np.asarray(np.eye(3) + s * cross + (1.0 - c) * (cross @ cross))
 
 
-def _of_link(frame: _Frames) -> tuple[Array, Array]:
+def _link_columns(frame: _Frames) -> tuple[Array, Array]:
     """Force, and moment about the origin of its frame, per inertial parameter (n, 10, 3)."""
     w, t, lift = frame.spin, frame.turn, frame.lift
     n = len(w)
@@ -126,7 +126,7 @@ def _of_link(frame: _Frames) -> tuple[Array, Array]:
     return force, moment
 
 
-def _seen_in(frame: _Frames, below: _Frames, link: Link) -> tuple[Array, Array]:
+def _express_axis(frame: _Frames, below: _Frames, link: Link) -> tuple[Array, Array]:
     """Axis of a joint below, and lever from its origin to that of a frame, in axes of the frame."""
     axis = np.einsum("nji,njk,k->ni", frame.rotation, below.rotation, link.axis)
     lever = np.einsum("nji,nj->ni", frame.rotation, frame.origin - below.origin)

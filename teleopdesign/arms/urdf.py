@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import ExperimentError, did_you_mean, quoted
-from .chain import Array, Chain, Link, inertia_about, rotation_of, seen_from, tensor
+from ..errors import ExperimentError, did_you_mean, quote
+from .chain import Array, Chain, Link, express_in_frame, inertia_about, rotation_of, tensor
 
 #: bytes of a file, and its elements and their depth: a hundred times what a large robot needs
 LARGEST, ELEMENTS, DEPTH = 20_000_000, 200_000, 64
@@ -67,7 +67,7 @@ def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Chain:
                 axis=joint.axis,
                 rotation=rotation @ joint.rotation,
                 origin=origin + rotation @ joint.origin,
-                inertial=_carried(robot, joint.child, moving),
+                inertial=_inertia_with_children(robot, joint.child, moving),
             )
         )
         before = joint.child
@@ -113,7 +113,7 @@ def _root(path: Path, file: str) -> ET.Element:
     except (ET.ParseError, ValueError) as problem:
         raise ExperimentError(f"{file}: not valid XML: {problem}") from None
     if not isinstance(root, ET.Element) or root.tag != "robot":
-        tag = quoted(root.tag) if isinstance(root, ET.Element) else "nothing"
+        tag = quote(root.tag) if isinstance(root, ET.Element) else "nothing"
         raise ExperimentError(f'{file}: found {tag} at the top, expected "robot" of a URDF')
     return root
 
@@ -123,8 +123,8 @@ def _robot(root: ET.Element, file: str) -> _Robot:
     for element in root.findall("link"):
         name = _name(element, file, "link")
         if name in links:
-            raise ExperimentError(f"{file}: link {quoted(name)} is given twice")
-        links[name] = _inertial(element, f"{file}: link {quoted(name)}")
+            raise ExperimentError(f"{file}: link {quote(name)} is given twice")
+        links[name] = _inertial(element, f"{file}: link {quote(name)}")
     joints = [
         _joint(element, file, links)
         for element in root.findall("joint")
@@ -137,7 +137,7 @@ def _robot(root: ET.Element, file: str) -> _Robot:
             if word in names:
                 what = "joint" if one == "name" else "link"
                 said = "is given twice" if one == "name" else "hangs on two joints"
-                raise ExperimentError(f"{file}: {what} {quoted(word)} {said}")
+                raise ExperimentError(f"{file}: {what} {quote(word)} {said}")
             names.add(word)
     return _Robot(file, links, tuple(joints))
 
@@ -171,7 +171,7 @@ def _inertial(link: ET.Element, where: str) -> Array:
 
 def _joint(element: ET.Element, file: str, links: dict[str, Array]) -> _Joint:
     name = _name(element, file, "joint")
-    where = f"{file}: joint {quoted(name)}"
+    where = f"{file}: joint {quote(name)}"
     kind = element.get("type", "")
     ends = []
     for end in ("parent", "child"):
@@ -179,7 +179,7 @@ def _joint(element: ET.Element, file: str, links: dict[str, Array]) -> _Joint:
         link = "" if part is None else part.get("link", "")
         if link not in links:
             raise ExperimentError(
-                f"{where}: {end}: no link {quoted(link)}{did_you_mean(link, links)}"
+                f"{where}: {end}: no link {quote(link)}{did_you_mean(link, links)}"
             )
         ends.append(link)
     axis = np.array([1.0, 0.0, 0.0])
@@ -208,14 +208,14 @@ def _numbers(
     text = element.get(key, default)
     expected = "a finite number" if count == 1 else f"{count} finite numbers"
     if text is None:
-        raise ExperimentError(f"{where}: no {quoted(key)}, expected {expected}")
+        raise ExperimentError(f"{where}: no {quote(key)}, expected {expected}")
     words = text.split()
     try:
         numbers = [float(word) for word in words]
     except ValueError:
         numbers = []
     if len(numbers) != count or not all(math.isfinite(x) for x in numbers):
-        raise ExperimentError(f"{where}: {key}: found {quoted(text)}, expected {expected}")
+        raise ExperimentError(f"{where}: {key}: found {quote(text)}, expected {expected}")
     return np.array(numbers)
 
 
@@ -225,11 +225,11 @@ def _chain(robot: _Robot, joints: Sequence[str]) -> list[_Joint]:
     for name in joints:
         if name not in by_name:
             raise ExperimentError(
-                f"{robot.file}: no joint {quoted(name)}{did_you_mean(name, by_name)}"
+                f"{robot.file}: no joint {quote(name)}{did_you_mean(name, by_name)}"
             )
         if by_name[name].kind not in _KINDS:
             raise ExperimentError(
-                f"{robot.file}: joint {quoted(name)}: found {quoted(by_name[name].kind)}, expected "
+                f"{robot.file}: joint {quote(name)}: found {quote(by_name[name].kind)}, expected "
                 f"{', '.join(_KINDS)}"
             )
     carrier = {j.child: j for j in robot.joints}
@@ -243,7 +243,7 @@ def _chain(robot: _Robot, joints: Sequence[str]) -> list[_Joint]:
             chain.insert(0, joint)
         elif joint.kind != _FIXED and wanted - {j.name for j in chain}:
             raise ExperimentError(
-                f"{robot.file}: joint {quoted(joint.name)} moves the arm too: expected it among "
+                f"{robot.file}: joint {quote(joint.name)} moves the arm too: expected it among "
                 "[model.arm.joints]"
             )
         link = joint.parent
@@ -267,13 +267,13 @@ def _rigidly(robot: _Robot, frame: str, joint: _Joint) -> tuple[Array, Array]:
     return rotation, origin
 
 
-def _carried(robot: _Robot, link: str, moving: set[str]) -> Array:
+def _inertia_with_children(robot: _Robot, link: str, moving: set[str]) -> Array:
     """Inertial parameters (10,) of a link with all that hangs on it by joints that do not move."""
     whole = np.zeros(10)
     waiting = [(link, np.eye(3), np.zeros(3))]
     while waiting:
         name, rotation, origin = waiting.pop()
-        whole = whole + seen_from(robot.links[name], rotation, origin)
+        whole = whole + express_in_frame(robot.links[name], rotation, origin)
         waiting += [
             (j.child, rotation @ j.rotation, origin + rotation @ j.origin)
             for j in robot.joints

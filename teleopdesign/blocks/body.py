@@ -14,12 +14,12 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ..arguments import checked, instance, number
-from ..effects import EFFECTS, Effect, Parameter, ordered
-from ..errors import ModelError, did_you_mean, quoted
+from ..arguments import check_types, instance, number
+from ..effects import EFFECTS, Effect, Parameter, sort_by_action
+from ..errors import ModelError, did_you_mean, quote
 from ..frozen import Frozen
 from ..notebook import html_table
-from ..quantity import AXES, after_number, unit_of
+from ..quantity import AXES, unit_after_number, unit_of
 from .body_equation import (
     BodyEquation,
     actuation_of,
@@ -62,7 +62,7 @@ class Body:
         expected = [name for name, _ in self.declared()]
         for name in self.parameters:
             if name not in expected:
-                raise _no_parameter(name, expected)
+                raise _missing_parameter_error(name, expected)
         optional = {name: Value(0.0) for name, p in self.declared() if p.optional}
         parameters = {**optional, **{n: _value(v, n) for n, v in self.parameters.items()}}
         for name, parameter in self.declared():
@@ -73,7 +73,7 @@ class Body:
                 raise ModelError(f"body: {name} is NaN, expected a number ({self.unit(name)})")
             if not parameter.lower <= value <= parameter.upper:
                 raise ModelError(
-                    f"body: {name} = {value:g}{after_number(self.unit(name))} is outside "
+                    f"body: {name} = {value:g}{unit_after_number(self.unit(name))} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
         object.__setattr__(self, "parameters", Frozen(parameters))
@@ -87,10 +87,10 @@ class Body:
         """Declaration of the parameter of that name; ModelError with the nearest one."""
         declared = dict(self.declared())
         if name not in declared:
-            raise _no_parameter(name, declared)
+            raise _missing_parameter_error(name, declared)
         return declared[name]
 
-    @checked
+    @check_types
     def unit(self, name: str) -> str:
         """Unit of a parameter on the axis of this body."""
         return unit_of(self.parameter(name).quantity, self.axis)
@@ -105,9 +105,9 @@ class Body:
         Of a role that one effect of a body can have, another one of that role will do; so will an
         effect that counts as the one needed, where the law holds no parameter of that one.
         """
-        return _missing(self.effects, effect)
+        return _list_missing_parts(self.effects, effect)
 
-    @checked
+    @check_types
     def effect(self, name: str) -> Effect:
         """The effect of that name; ModelError where the body has none."""
         for effect in self.effects:
@@ -116,7 +116,7 @@ class Body:
         near = did_you_mean(name, [e.name for e in self.effects])
         raise ModelError(f'body: has no effect "{name}"{near}')
 
-    @checked
+    @check_types
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
         """The body with one more effect, at these values (default: those at which it is absent).
 
@@ -149,7 +149,7 @@ class Body:
             },
         )
 
-    @checked
+    @check_types
     def without_effect(self, name: str) -> Body:
         """The body without that effect."""
         self.effect(name)
@@ -171,7 +171,7 @@ class Body:
         new = {}
         for name, number_or_value in values.items():
             if name not in self.parameters:
-                raise _no_parameter(name, self.parameters)
+                raise _missing_parameter_error(name, self.parameters)
             value = _value(number_or_value, name)
             new[name] = (
                 value
@@ -197,7 +197,7 @@ class Body:
 
     def tip_level(self) -> sp.Expr:
         """Level of the dry friction that holds the tip of a structure."""
-        return sp.Add(*(e.expression() for e in ordered(self.effects, "tip_level")))
+        return sp.Add(*(e.expression() for e in sort_by_action(self.effects, "tip_level")))
 
     def contact(self) -> sp.Expr:
         """Force that a modelled environment takes from the body; 0 where there is none."""
@@ -219,7 +219,9 @@ class Body:
         return actuation_of(self.effects, s)
 
     def __repr__(self) -> str:
-        rows = [f"  {n} = {v:.5g}{after_number(self.unit(n))}" for n, v in self._plain().items()]
+        rows = [
+            f"  {n} = {v:.5g}{unit_after_number(self.unit(n))}" for n, v in self._plain().items()
+        ]
         return "\n".join([f"Body, {self.axis}", *rows])
 
     def _repr_html_(self) -> str:
@@ -236,14 +238,14 @@ def _value(number_or_value: object, name: object) -> Value:
     return Value(number(number_or_value, f"body: {name}"))
 
 
-def _no_parameter(name: object, known: Iterable[str]) -> ModelError:
+def _missing_parameter_error(name: object, known: Iterable[str]) -> ModelError:
     near = did_you_mean(name, known) if isinstance(name, str) else ""
-    said = quoted(name) if isinstance(name, str) else repr(name)
+    said = quote(name) if isinstance(name, str) else repr(name)
     return ModelError(f"body: no parameter {said}, has {', '.join(known)}{near}")
 
 
 @lru_cache(maxsize=4096)
-def _missing(effects: tuple[Effect, ...], effect: Effect) -> tuple[str, ...]:
+def _list_missing_parts(effects: tuple[Effect, ...], effect: Effect) -> tuple[str, ...]:
     """What `Body.lacks` says of a body with these effects."""
     roles = {e.role for e in effects} & set(ONE_ONLY)
     known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
@@ -268,7 +270,7 @@ def _check_effects(effects: tuple[Effect, ...], axis: str) -> None:
         if len(same) > 1:
             raise ModelError(f"body: two {words}, {' and '.join(same)}: one is possible")
     for effect in effects:
-        if missing := _missing(effects, effect):
+        if missing := _list_missing_parts(effects, effect):
             raise ModelError(f'body: "{effect.name}" needs "{missing[0]}" beside it')
         if axis in effect.elsewhere:
             raise ModelError(
@@ -278,9 +280,9 @@ def _check_effects(effects: tuple[Effect, ...], axis: str) -> None:
 
 
 def _refuse_axis(axis: object) -> None:
-    instance(axis, str, "Body: axis", expected=" or ".join(map(quoted, AXES)))
+    instance(axis, str, "Body: axis", expected=" or ".join(map(quote, AXES)))
     raise ModelError(
-        f"Body: axis: found {quoted(str(axis))}, expected {' or '.join(map(quoted, AXES))}"
+        f"Body: axis: found {quote(str(axis))}, expected {' or '.join(map(quote, AXES))}"
         f"{did_you_mean(str(axis), AXES)}"
     )
 

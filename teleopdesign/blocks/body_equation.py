@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ..effects import SIGNALS, Effect, ordered
+from ..effects import SIGNALS, Effect, sort_by_action
 from ..frozen import Frozen
 from .environment import contact_force
 
@@ -35,7 +35,7 @@ class BodyEquation:
 def compose_equation(effects: tuple[Effect, ...]) -> BodyEquation:
     """The equation that the effects make together."""
     acceleration, velocity = SIGNALS["acceleration"], SIGNALS["velocity"]
-    forces = [*ordered(effects, "force"), *ordered(effects, "structure")]
+    forces = [*sort_by_action(effects, "force"), *sort_by_action(effects, "structure")]
     force = sp.expand(sum((e.expression() for e in forces), sp.S(0)))
     share = force.coeff(acceleration, 1)
     rates: dict[sp.Symbol, sp.Expr] = {}
@@ -51,7 +51,7 @@ def compose_equation(effects: tuple[Effect, ...]) -> BodyEquation:
         rates |= {symbols[n]: r for n, r in effect.rates(level_symbol).items()}
         if effect.role == "friction_shape":
             friction = effect.expression(level_symbol)
-    for effect in ordered(effects, "actuation"):
+    for effect in sort_by_action(effects, "actuation"):
         symbols = effect.state_symbols()
         rates |= {symbols[n]: r for n, r in effect.rates({"command": acting}).items()}
         acting = effect.expression({"command": acting})
@@ -86,7 +86,7 @@ def actuation_of(effects: tuple[Effect, ...], s: sp.Symbol) -> tuple[sp.Expr, tu
     """Transfer function of the actuation stages, and those without a linear form."""
     transfer: sp.Expr = sp.S(1)
     left_out = []
-    for effect in ordered(effects, "actuation"):
+    for effect in sort_by_action(effects, "actuation"):
         part = effect.linear_form(s)
         if part is None:
             left_out.append(effect.name)
@@ -108,11 +108,11 @@ def body_symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
 @lru_cache(maxsize=256)
 def friction_level(effects: tuple[Effect, ...]) -> sp.Expr:
     """Sum of the levels, each times its factors, at the speed that it depends on."""
-    factors = ordered(effects, "friction_factor")
+    factors = sort_by_action(effects, "friction_factor")
     level = sp.S(0)
-    for effect in ordered(effects, "friction_level"):
+    for effect in sort_by_action(effects, "friction_level"):
         of_this_level = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
         level += effect.expression() * sp.Mul(*of_this_level)
-    for effect in ordered(effects, "friction_speed"):
+    for effect in sort_by_action(effects, "friction_speed"):
         level = level.subs(SIGNALS["velocity"], effect.expression())
     return level

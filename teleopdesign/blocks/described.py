@@ -12,7 +12,7 @@ from dataclasses import replace
 from ..effects import CONTACT_ROLES, Effect, Parameter, find_effect
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..measurement.description import BodyDescription, Effects, EnvironmentDescription, ModelValue
-from ..quantity import after_number, unit_of
+from ..quantity import unit_after_number, unit_of
 from .body import INERTIA, Body
 from .environment import CONTACT
 from .value import Value
@@ -80,7 +80,7 @@ def value_of(written: ModelValue, parameter: Parameter, axis: str) -> Value:
     if not parameter.lower <= number <= parameter.upper:
         unit = written.unit or unit_of(parameter.quantity, axis)
         raise ExperimentError(
-            f"{written.where}: {written.value:g}{after_number(unit)} is outside "
+            f"{written.where}: {written.value:g}{unit_after_number(unit)} is outside "
             f"{parameter.lower:g} .. {parameter.upper:g}"
         )
     return Value(number, written.fixed) if error is None else Value(number, written.fixed, error)

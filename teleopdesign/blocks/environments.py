@@ -29,7 +29,7 @@ def spring_damper(body: Body, *, stiffness: float, damping: float, position: flo
 
     stiffness: N/m;  damping: N s/m, of which the force jumps at the touch
     """
-    return _touching(body, stiffness, position, damping=damping)
+    return _add_environment(body, stiffness, position, damping=damping)
 
 
 def hunt_crossley(
@@ -46,7 +46,7 @@ def hunt_crossley(
     stiffness: K, secant stiffness at the depth d_0 = `depth`, N/m and m
     reference_velocity: v_0, m/s;  power: n, 1.5 for a sphere on a flat (Hertz)
     """
-    wall = _touching(body, stiffness, position)
+    wall = _add_environment(body, stiffness, position)
     hard = wall.with_effect(EFFECTS["contact_hardening"], {"power": power, "depth": depth})
     return hard.with_effect(
         BLOCK_EFFECTS["impact_damping"], {"reference_velocity": reference_velocity}
@@ -68,11 +68,13 @@ def soft_rubber(
     stiffness: N/m;  damping: N s/m;  level: of the friction inside, N
     give: depth over which that friction builds up, m;  recovery_time: s
     """
-    wall = _touching(body, stiffness, position, damping=damping)
+    wall = _add_environment(body, stiffness, position, damping=damping)
     inside = {"level": level, "stiffness": level / give, "recovery_time": recovery_time}
     return wall.with_effect(BLOCK_EFFECTS["contact_hysteresis"], inside)
 
 
-def _touching(body: Body, stiffness: float, position: float, *, damping: float = 0.0) -> Body:
+def _add_environment(
+    body: Body, stiffness: float, position: float, *, damping: float = 0.0
+) -> Body:
     values = {"stiffness": stiffness, "damping": damping, "contact_position": position}
     return free_space(body).with_effect(CONTACT, values)

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..arguments import checked, described
+from ..arguments import check_types, describe_value
 from ..errors import ModelError, did_you_mean
 
 MatrixRows = tuple[tuple[float, ...], ...]
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class MatrixImpedance:
     """Z = mass s^2 + damping s + stiffness, square matrices of one size (SI).
@@ -129,7 +129,8 @@ def _refuse_other(matrix: Any, name: str) -> None:
         right = False
     if not right:
         raise ModelError(
-            f"impedance: {name}: found {described(matrix)}, expected a square matrix, or a number "
+            f"impedance: {name}: found {describe_value(matrix)}, "
+            "expected a square matrix, or a number "
             "for its diagonal"
         )
 

@@ -9,7 +9,7 @@ from itertools import combinations, zip_longest
 
 import numpy as np
 
-from ..diagnose.candidates import Candidate, candidates, measured_at
+from ..diagnose.candidates import Candidate, bodies_with_measured_force, candidates
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
@@ -18,7 +18,7 @@ from ..diagnose.prepare import Prepared
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
-from ..quantity import after_number, unit_of
+from ..quantity import unit_after_number, unit_of
 from ..standard_error import with_standard_error
 from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities
@@ -36,10 +36,10 @@ def check_excitation(
     model: Model, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[Finding, ...]:
     """Findings about the motion of each body and what it can show, from the fit records."""
-    base = estimate(model, _unfolded(prepared), effort=EFFORTS.rough)
+    base = estimate(model, _drop_folds(prepared), effort=EFFORTS.rough)
     floor = noise_floor(base.model, prepared, generator, use="fit")
     motions = [s.motion for s in prepared.of("fit")]
-    measured = measured_at(prepared.experiment)
+    measured = bodies_with_measured_force(prepared.experiment)
     every = candidates(base.model, measured=measured)
     judged = candidates(base.model, motions, measured=measured)
     visible_effects = visibilities(base, prepared, judged, floor.value)
@@ -61,7 +61,7 @@ def check_excitation(
     return tuple(findings)
 
 
-def _unfolded(prepared: Prepared) -> Prepared:
+def _drop_folds(prepared: Prepared) -> Prepared:
     """Records with one as check record: errors of held-out blocks are not needed here."""
     if prepared.of("check"):
         return prepared
@@ -92,13 +92,15 @@ def _summary(
         )
     parts = []
     if shown:
-        parts.append("can show\n" + _rows([_least(v, base.model) for v in shown]))
+        parts.append("can show\n" + _rows([_describe_smallest(v, base.model) for v in shown]))
     if large:
-        parts.append("only if large\n" + _rows([_least(v, base.model, v.size) for v in large]))
+        parts.append(
+            "only if large\n" + _rows([_describe_smallest(v, base.model, v.size) for v in large])
+        )
     if reasons:
         text = "; ".join(f"{', '.join(names)} ({why})" for why, names in reasons.items())
         parts.append(f"cannot show {text}.")
-    if waiting := _waiting(base.model, place):
+    if waiting := _list_waiting_effects(base.model, place):
         parts.append(
             "not judged, for the model lacks what they act on: " + ", ".join(waiting) + "."
         )
@@ -128,7 +130,7 @@ def _rows(items: Sequence[str]) -> str:
     return "\n".join(f"  {a:<{width}}{b}".rstrip() for a, b in pairs)
 
 
-def _waiting(model: Model, place: str) -> list[str]:
+def _list_waiting_effects(model: Model, place: str) -> list[str]:
     """Effects that need another effect which the model lacks."""
     body = model.body(place)
     return [
@@ -140,7 +142,7 @@ def _waiting(model: Model, place: str) -> list[str]:
     ]
 
 
-def _least(v: Visibility, model: Model, share: float | None = None) -> str:
+def _describe_smallest(v: Visibility, model: Model, share: float | None = None) -> str:
     """An effect in words, with its smallest visible strength and the force at that strength."""
     effect = v.candidate.effect
     name, value = next(iter(v.strength.items()))
@@ -154,7 +156,7 @@ def _least(v: Visibility, model: Model, share: float | None = None) -> str:
 
 def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
     """Why an effect is invisible: its numbers, and what the motion lacks."""
-    signals = list(needed(v.candidate.effect))
+    signals = list(list_needed_signals(v.candidate.effect))
     if v.silent:
         why = "it makes no force here"
     elif v.unique_share < RARE and v.imitated:
@@ -163,7 +165,7 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
         body = model.body(v.candidate.at)
         for effect in body.effects:
             if any(n.startswith(f"{effect.name}.") for n in imitated):
-                signals += needed(effect)
+                signals += list_needed_signals(effect)
     elif math.isinf(v.size):
         why = "drowned by noise"
     else:
@@ -172,7 +174,7 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
     return ": ".join([why, "; ".join(facts)] if facts else [why])
 
 
-def needed(effect: Effect) -> tuple[str, ...]:
+def list_needed_signals(effect: Effect) -> tuple[str, ...]:
     """Signals that an effect's law and hidden states follow.
 
     Friction always follows the velocity; what stands between command and force shows in a force
@@ -216,7 +218,7 @@ def _model_parameters(base: Fit, place: str) -> list[Finding]:
     if not open_:
         return []
     text = ", ".join(
-        f"{n} ({with_standard_error(v.value, v.stderr)}{after_number(base.model.unit(n))})"
+        f"{n} ({with_standard_error(v.value, v.stderr)}{unit_after_number(base.model.unit(n))})"
         for n, v in open_.items()
     )
     return [

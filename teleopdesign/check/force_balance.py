@@ -28,9 +28,9 @@ from .force_timing import (
     ON_TIME,
     BalanceFit,
     BandTransforms,
-    along_in,
     fit_balance,
     rows_of,
+    transform_in_band,
     with_shifts,
 )
 
@@ -94,7 +94,7 @@ def force_balance(
     """
     names = strengths_of(body)
     bands = {
-        b: [along_in(body, s, names, b) for s in stretches]
+        b: [transform_in_band(body, s, names, b) for s in stretches]
         for b in dict.fromkeys(BANDS if timed else (1.0,))
     }
     parts = bands[1.0]
@@ -122,7 +122,7 @@ def force_balance(
         gain=estimates[len(names)] if both else Estimate(1.0, 0.0),
         strengths=strengths,
         power=_power(parts, fit.rows[5:], strengths),
-        shifts=_named(fit, estimates[len(names) + both :]),
+        shifts=_name_shifts(fit, estimates[len(names) + both :]),
         left=fit.size / measured,
         unshifted=plain.size / measured,
         rows=counted / sum(len(s.keep) for s in stretches),
@@ -142,7 +142,7 @@ def force_balances(
     return balances
 
 
-def _named(fit: BalanceFit, steps: Sequence[Estimate]) -> dict[str, Estimate]:
+def _name_shifts(fit: BalanceFit, steps: Sequence[Estimate]) -> dict[str, Estimate]:
     """The shifts by channel; one that both forces share is the position's, the other way."""
     shifts: dict[str, Estimate] = {}
     for group, step in zip(fit.groups, steps, strict=True):

@@ -46,7 +46,9 @@ class BandTransforms:
     others: Array
 
 
-def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) -> BandTransforms:
+def transform_in_band(
+    body: Body, stretch: Stretch, names: Sequence[str], band: float
+) -> BandTransforms:
     """One stretch below `band` times the comparison's bandwidth.
 
     names: the strengths that have columns

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import explain_force
-from ..measurement.soundness.signal import written
+from ..measurement.soundness.signal import channel_label
 
 #: Hz, rates between which a machine is logged
 SLOWEST, FASTEST = 5.0, 1e6
@@ -59,7 +59,7 @@ def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
         exchanged = explain_force(position + other, force, record.sample_time)
         if as_logged.explained < AS_LOGGED and exchanged.explained > EXCHANGED:
             keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
-            names = [written(experiment, key) for key in keys]
+            names = [channel_label(experiment, key) for key in keys]
             columns = [experiment.channels[key].column for key in keys]
             yield Finding(
                 "swapped columns",

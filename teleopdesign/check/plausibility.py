@@ -13,7 +13,7 @@ from typing import Literal
 from ..diagnose.prepare import Prepared
 from ..diagnose.record_shift import CLOCK
 from ..finding import Finding
-from ..measurement.soundness.signal import written
+from ..measurement.soundness.signal import channel_label
 from ..model import Model
 from ..quantity import unit_of
 from ..standard_error import with_standard_error
@@ -43,12 +43,12 @@ def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
         doubts = [*_signs(prepared, balance), *_gain(model, prepared, balance)]
         if not doubts:
             doubts = [*_units(model, balance), *_shifts(prepared, balance)]
-        findings += doubts or [_agreeing(model, place, balance)]
+        findings += doubts or [_report_agreement(model, place, balance)]
     return tuple(findings)
 
 
 def _name(prepared: Prepared, body: str, quantity: str) -> str:
-    return written(prepared.experiment, f"{body}.{quantity}")
+    return channel_label(prepared.experiment, f"{body}.{quantity}")
 
 
 def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
@@ -173,7 +173,7 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
         return
     parts = [
         f"{_name(prepared, balance.body, n)} "
-        + _late(t, h, "the forces" if n == "position" else "the motion")
+        + _describe_lateness(t, h, "the forces" if n == "position" else "the motion")
         for n, t in late.items()
     ]
     concern: Literal["note", "warning"] = "warning"
@@ -204,13 +204,13 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     )
 
 
-def _late(seconds: float, sample_time: float, behind: str) -> str:
+def _describe_lateness(seconds: float, sample_time: float, behind: str) -> str:
     samples = seconds / sample_time
     word = "lags" if seconds > 0 else "leads"
     return f"{word} {behind} by {1e3 * abs(seconds):.2g} ms ({abs(samples):.1f} samples)"
 
 
-def _agreeing(model: Model, place: str, balance: ForceBalance) -> Finding:
+def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Finding:
     body = model.body(place)
     inertia = balance.strengths["inertia"]
     said = body.parameters["inertia"].value

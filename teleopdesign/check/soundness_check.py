@@ -41,8 +41,8 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
         try:
             model = Model.from_experiment(experiment)
         except ExperimentError as problem:
-            return (*findings, _not_asked(str(problem), "warning"))
-    resting = _resting(experiment)
+            return (*findings, _report_skipped(str(problem), "warning"))
+    resting = _list_resting_bodies(experiment)
     if resting:
         names = " and ".join(resting)
         sentence = f"not asked what the record can show: {names} never moves."
@@ -53,12 +53,12 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     try:
         prepared = prepare(part)
     except ExperimentError as problem:
-        return (*findings, _not_asked(str(problem), "warning"))
+        return (*findings, _report_skipped(str(problem), "warning"))
     mixed = list(check_mixed_columns(part))
     if mixed:
-        return (*findings, *mixed, _not_asked("first make the columns agree", "note"))
+        return (*findings, *mixed, _report_skipped("first make the columns agree", "note"))
     if hidden := list(check_bandwidth(prepared)):
-        return (*findings, *hidden, _not_asked("first choose a bandwidth", "note"))
+        return (*findings, *hidden, _report_skipped("first choose a bandwidth", "note"))
     agreement = check_plausibility(model, prepared)
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]
@@ -69,7 +69,7 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     return tuple(findings)
 
 
-def _not_asked(why: str, concern: Literal["note", "warning"]) -> Finding:
+def _report_skipped(why: str, concern: Literal["note", "warning"]) -> Finding:
     return Finding(
         "what the record can show", concern, f"not asked what the record can show: {why}."
     )
@@ -88,7 +88,7 @@ def _guesses(experiment: Experiment) -> list[Finding]:
     ]
 
 
-def _resting(experiment: Experiment) -> list[str]:
+def _list_resting_bodies(experiment: Experiment) -> list[str]:
     """Bodies whose position is the same throughout every fit record."""
     return [
         body

@@ -29,7 +29,9 @@ def check_swapped(
             a, b = f"{one}.{quantity}", f"{two}.{quantity}"
             if a not in keys or b not in keys:
                 continue
-            other = prepare(_exchanged(prepared.experiment, a, b), bandwidth=prepared.bandwidth)
+            other = prepare(
+                _exchange_columns(prepared.experiment, a, b), bandwidth=prepared.bandwidth
+            )
             after = _worst(force_balances(model, other, timed=False))
             if after < SWAPPED * before:
                 yield Finding(
@@ -45,7 +47,7 @@ def _worst(balances: Mapping[str, ForceBalance]) -> float:
     return max((b.left for b in balances.values()), default=0.0)
 
 
-def _exchanged(experiment: Experiment, a: str, b: str) -> Experiment:
+def _exchange_columns(experiment: Experiment, a: str, b: str) -> Experiment:
     records = tuple(
         replace(r, signals={**r.signals, a: r.signals[b], b: r.signals[a]})
         for r in experiment.records

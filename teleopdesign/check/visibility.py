@@ -18,7 +18,7 @@ import numpy as np
 
 from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.fit import Fit, weighted
+from ..diagnose.fit import Fit, weigh_residuals
 from ..diagnose.prepare import Prepared, Stretch
 from ..diagnose.residual import relative_residuals
 from ..diagnose.scales import scales
@@ -94,7 +94,7 @@ def visibilities(
     floor: noise floor of these records, a relative force error
     """
     stretches = prepared.of("fit")
-    residual = weighted(stretches, [r for r, _ in relative_residuals(base.model, stretches)])
+    residual = weigh_residuals(stretches, [r for r, _ in relative_residuals(base.model, stretches)])
     columns = np.hstack([base.jacobian, base.by_shift])
     columns = columns[:, np.linalg.norm(columns, axis=0) > 0]
     span = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
@@ -119,7 +119,7 @@ def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> 
     if best.unique_share < CRITERIA.least_unique_share:
         best, shaped = _best(candidate, shapes, STRONG, scene)
     if best.unique_share >= CRITERIA.least_unique_share:
-        best = _at_threshold(candidate, best, shaped, scene)
+        best = _strength_at_threshold(candidate, best, shaped, scene)
     shows = best.unique_share >= CRITERIA.least_unique_share and best.part >= scene.threshold
     strength, shape = _values(candidate, best.model)
     return Visibility(
@@ -128,7 +128,7 @@ def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> 
         strength,
         shape,
         best.unique_share,
-        _imitating(best, scene),
+        _list_imitators(best, scene),
         best.rest / max(float(np.linalg.norm(best.rest)), 1e-300),
         best.whole < 1e-9,
     )
@@ -157,10 +157,10 @@ def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[
         grids.append([added.parameters[full].value] if p.optional else scaled)
     every = list(product(*grids))
     some = every[:: max(1, math.ceil(len(every) / SHAPES))]
-    return [_bounded(added, dict(zip(names, values, strict=True))) for values in some]
+    return [_keep_within_bounds(added, dict(zip(names, values, strict=True))) for values in some]
 
 
-def _bounded(model: Model, values: dict[str, float]) -> Model:
+def _keep_within_bounds(model: Model, values: dict[str, float]) -> Model:
     bounds = {n: model.declared(n) for n in values}
     inside = {n: min(max(v, bounds[n].lower), bounds[n].upper) for n, v in values.items()}
     return model.with_values(inside)
@@ -178,9 +178,9 @@ def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) ->
         else:
             step = first - absent if first != absent else 0.1
             values[full] = absent + factor * step
-    model = _bounded(shaped, values)
+    model = _keep_within_bounds(shaped, values)
     parts = relative_residuals(model, scene.stretches)
-    mark = weighted(scene.stretches, [r for r, _ in parts]) - scene.residual
+    mark = weigh_residuals(scene.stretches, [r for r, _ in parts]) - scene.residual
     if not np.isfinite(mark).all():
         mark = np.zeros_like(mark)
     rest = mark - scene.span @ (scene.span.T @ mark)
@@ -188,7 +188,9 @@ def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) ->
     return _Trial(model, factor, whole, part, mark, rest)
 
 
-def _at_threshold(candidate: Candidate, first: _Trial, shaped: Model, scene: _Scene) -> _Trial:
+def _strength_at_threshold(
+    candidate: Candidate, first: _Trial, shaped: Model, scene: _Scene
+) -> _Trial:
     """The least strength at which what shows reaches the threshold; `first` if none does.
 
     Secants of the logarithms, and halves of the factor between a strength that shows and one that
@@ -229,7 +231,7 @@ def _values(candidate: Candidate, model: Model) -> tuple[dict[str, float], dict[
     return strength, {n: v for n, v in values.items() if n not in effect.absent}
 
 
-def _imitating(trial: _Trial, scene: _Scene) -> tuple[str, ...]:
+def _list_imitators(trial: _Trial, scene: _Scene) -> tuple[str, ...]:
     """The model's free parameters that take up most of a mark, those with a third of it or more."""
     columns, names = scene.base.jacobian, scene.base.free
     size = np.linalg.norm(columns, axis=0)

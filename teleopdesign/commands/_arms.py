@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..errors import ExperimentError, did_you_mean, quote
 from ._values import value_from
 
 if TYPE_CHECKING:
@@ -41,13 +41,15 @@ def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
         )
     if chosen not in joints:
         raise ExperimentError(
-            f"--body: no joint {quoted(chosen)}, has {', '.join(joints)}"
+            f"--body: no joint {quote(chosen)}, has {', '.join(joints)}"
             f"{did_you_mean(chosen, joints)}"
         )
     return str(chosen)
 
 
-def posed(model: Model, experiment: Experiment, joint: str, options: argparse.Namespace) -> Model:
+def place_at_pose(
+    model: Model, experiment: Experiment, joint: str, options: argparse.Namespace
+) -> Model:
     """The model of one joint with the inertia that the links have about it at the stated pose.
 
     experiment: that of the whole arm;  raises ExperimentError: no such joint or unit, or links that
@@ -82,7 +84,7 @@ def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
         joint, _, value = text.partition("=")
         if joint not in joints:
             raise ExperimentError(
-                f"--pose {text}: no joint {quoted(joint)}, has {', '.join(joints)}"
+                f"--pose {text}: no joint {quote(joint)}, has {', '.join(joints)}"
                 f"{did_you_mean(joint, joints)}"
             )
         pose[joint] = value_from(

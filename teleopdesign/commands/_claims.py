@@ -18,20 +18,20 @@ def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
     lines = []
     for one in claims:
         lines += ["", f"{one.heading:<9} {one.topic}"]
-        lines += _folded(one.claim.statement) + _folded(str(one.claim.verdict))
+        lines += _wrap_text(one.claim.statement) + _wrap_text(str(one.claim.verdict))
         if one.motion is not None:
-            lines += _folded(f"replayed in simulation: gives out {one.replayed:.6g} J")
+            lines += _wrap_text(f"replayed in simulation: gives out {one.replayed:.6g} J")
     return lines
 
 
-def _folded(text: str) -> list[str]:
+def _wrap_text(text: str) -> list[str]:
     space = " " * 10
     return textwrap.wrap(
         text, WIDTH, initial_indent=space, subsequent_indent=space, break_on_hyphens=False
     )
 
 
-def plain(entry: TopicClaim) -> dict[str, Any]:
+def claim_data(entry: TopicClaim) -> dict[str, Any]:
     """A claim as plain data: verdict, certificates, and the motions that refute it."""
     claim = entry.claim
     return {

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from ..errors import ExperimentError, ModelError, did_you_mean
-from ._arms import inertia_line, joint_of, posed
+from ._arms import inertia_line, joint_of, place_at_pose
 from ._options import add_effect_files, add_folder
 from ._progress import Reporter
 from ._terminal import print_styled
@@ -78,7 +78,7 @@ def add_candidate_options(parser: argparse.ArgumentParser) -> None:
         )
 
 
-def known_of(options: argparse.Namespace) -> Mapping[str, Effect]:
+def effects_by_name(options: argparse.Namespace) -> Mapping[str, Effect]:
     """The effects by name, those of the user among them."""
     from ..effects import catalogue
 
@@ -146,7 +146,7 @@ def stated_model(experiment: Experiment, options: argparse.Namespace) -> Model:
     """The model that the experiment describes."""
     from ..model import Model
 
-    return Model.from_experiment(experiment, known_of(options))
+    return Model.from_experiment(experiment, effects_by_name(options))
 
 
 def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
@@ -158,38 +158,40 @@ def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnos
         joint = joint_of(experiment, options)
         return arm_diagnosis_of(experiment, options).joints[joint]
     if options.answer is not None:
-        from ..diagnose.answers import load_answer, restored
+        from ..diagnose.answers import load_answer, restore_diagnosis
 
-        return restored(load_answer(options.answer), experiment, known_of(options))
-    return diagnosed(experiment, options)
+        return restore_diagnosis(load_answer(options.answer), experiment, effects_by_name(options))
+    return diagnose_experiment(experiment, options)
 
 
-def diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
+def diagnose_experiment(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
     """The diagnosis of an experiment, made now, with progress said."""
     from ..diagnose import find_missing
 
-    return searched(find_missing, experiment, options)
+    return search_missing(find_missing, experiment, options)
 
 
 def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> ArmDiagnosis:
     """The diagnosis of an arm: as the answer tells, or made now, with progress said."""
     from ..diagnose.answers import load_answer
     from ..diagnose.arms import find_missing_in_arm
-    from ..diagnose.arms.restored import restored_arm
+    from ..diagnose.arms.restored import restore_arm_diagnosis
 
     if options.answer is not None:
-        return restored_arm(load_answer(options.answer), experiment, known_of(options))
-    return searched(find_missing_in_arm, experiment, options)
+        return restore_arm_diagnosis(
+            load_answer(options.answer), experiment, effects_by_name(options)
+        )
+    return search_missing(find_missing_in_arm, experiment, options)
 
 
-def searched(
+def search_missing(
     find: Callable[..., Diagnosed], experiment: Experiment, options: argparse.Namespace
 ) -> Diagnosed:
     """What a search finds (`find_missing`, or that of an arm) as the options ask for it."""
     from ..diagnose.search_plan import PLAN, QUICK
 
     among = candidate_effects(
-        known_of(options), getattr(options, "only", ()), getattr(options, "exclude", ())
+        effects_by_name(options), getattr(options, "only", ()), getattr(options, "exclude", ())
     )
     model = stated_model(experiment, options)
     plan = QUICK if getattr(options, "quick", False) else PLAN
@@ -230,16 +232,16 @@ def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
     alone = _answer_in(options.folder)
     if alone is not None and options.answer is None:
         model = _model_of_answer(alone, options)
-        return (model if options.body is None else _only(model, options.body, alone)), alone
+        return (model if options.body is None else _select_body(model, options.body, alone)), alone
     experiment = experiment_and_answer(options)
     if options.answer is not None:
-        model = load_answer(options.answer).model(known_of(options), experiment)
+        model = load_answer(options.answer).model(effects_by_name(options), experiment)
     else:
         model = diagnosis_of(experiment, options).model
     source = options.folder if options.answer is None else options.answer
     if experiment.arm is not None:
-        return posed(model, experiment, joint_of(experiment, options), options), source
-    return (model if options.body is None else _only(model, options.body, source)), source
+        return place_at_pose(model, experiment, joint_of(experiment, options), options), source
+    return (model if options.body is None else _select_body(model, options.body, source)), source
 
 
 def _model_of_answer(file: Path, options: argparse.Namespace) -> Model:
@@ -247,16 +249,16 @@ def _model_of_answer(file: Path, options: argparse.Namespace) -> Model:
     from ..diagnose.answers import load_answer
 
     saved = load_answer(file)
-    model = saved.model(known_of(options))
+    model = saved.model(effects_by_name(options))
     if "joints" not in saved.content:
         return model
     joint = _place(model, file, options.body)
     if not options.pose:
-        return _only(model, joint, file)
-    return posed(model, experiment_of(saved.folder), joint, options)
+        return _select_body(model, joint, file)
+    return place_at_pose(model, experiment_of(saved.folder), joint, options)
 
 
-def _only(model: Model, body: str, source: Path) -> Model:
+def _select_body(model: Model, body: str, source: Path) -> Model:
     """The model of one body of several."""
     from ..model import Model
 
@@ -282,18 +284,18 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     if options.answer is not None:
         from ..diagnose.answers import load_answer
 
-        model = load_answer(options.answer).model(known_of(options), experiment)
+        model = load_answer(options.answer).model(effects_by_name(options), experiment)
     else:
         diagnosis = diagnosis_of(experiment, options)
         print_diagnosis(diagnosis)
         print()
         model = diagnosis.model
     if experiment.arm is not None:
-        from ..diagnose.arms.prepared import alone
+        from ..diagnose.arms.prepared import isolate_joint
 
-        model = posed(model, experiment, place, options)
+        model = place_at_pose(model, experiment, place, options)
         print(inertia_line(model, place, options))
-        experiment = alone(experiment, place)
+        experiment = isolate_joint(experiment, place)
     return model.bodies[place], reach_of(experiment, place)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..plain_data import write_json
-from ._claims import claim_lines, plain
+from ._claims import claim_data, claim_lines
 from .derive import diagram_of
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
             "diagram": repr(claims.diagram),
             "ports": [str(port) for port in claims.ports],
             "nonlinear": list(claims.nonlinear),
-            "claims": [plain(s) for s in claims.claims],
+            "claims": [claim_data(s) for s in claims.claims],
         }
         write_json(options.json, content)
     return 0

@@ -30,7 +30,7 @@ def failure(error: BaseException, options: argparse.Namespace | None) -> tuple[s
     if isinstance(error, TeleopDesignError):
         return str(error), BAD_INPUT
     if (place := _place_in(error, tuple(python_files(options)))) is not None:
-        return _short(f"{place}: {_named(error)}"), BAD_INPUT
+        return _short(f"{place}: {_error_text(error)}"), BAD_INPUT
     read = ", ".join(map(str, inputs(options))) or "the command"
     if isinstance(error, MemoryError):
         return f"{read}: needs more memory than there is: use shorter records", BAD_INPUT
@@ -39,9 +39,9 @@ def failure(error: BaseException, options: argparse.Namespace | None) -> tuple[s
     if isinstance(error, UnicodeError):
         return _short(f"{read}: expected UTF-8 text: {error}"), BAD_INPUT
     if isinstance(error, OSError):
-        return _short(_of_system(error, read)), BAD_INPUT
+        return _short(_describe_system_error(error, read)), BAD_INPUT
     return _short(
-        f"internal error in {_origin(error)}: {_named(error)}: please report it"
+        f"internal error in {_origin(error)}: {_error_text(error)}: please report it"
     ), INTERNAL
 
 
@@ -55,9 +55,9 @@ def _place_in(error: BaseException, files: tuple[Path, ...]) -> str | None:
     return None
 
 
-def _of_system(error: OSError, read: str) -> str:
+def _describe_system_error(error: OSError, read: str) -> str:
     if error.errno is None:
-        return f"{read}: {_named(error)}"
+        return f"{read}: {_error_text(error)}"
     reason = error.strerror or os.strerror(error.errno)
     if error.filename is not None:
         return f"{os.fsdecode(error.filename)}: {reason}"
@@ -66,7 +66,7 @@ def _of_system(error: OSError, read: str) -> str:
     return f"{read}: {reason}"
 
 
-def _named(error: BaseException) -> str:
+def _error_text(error: BaseException) -> str:
     if isinstance(error, SystemExit):
         return "ends Python (sys.exit), expected an effect or a study alone"
     text = str(error)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ..errors import ExperimentError
 from ..plain_data import harmless_cell, write_text
 from . import STOPPED
-from ._diagnosis import candidate_effects, known_of
+from ._diagnosis import candidate_effects, effects_by_name
 from ._failures import BAD_INPUT
 from ._options import make_folder
 from ._progress import PointReporter
@@ -69,7 +69,7 @@ def diagnose_all(options: argparse.Namespace) -> int:
 def _search(options: argparse.Namespace) -> FolderSearch:
     from ..studies.folders import FolderSearch
 
-    known = known_of(options)
+    known = effects_by_name(options)
     among = candidate_effects(known, options.only, options.exclude)
     return FolderSearch(dict(known), among, options.quick)
 

@@ -112,13 +112,13 @@ def text_of(findings: Sequence[Finding]) -> str:
     order = ("warning", "note", "fine")
     terminal = shutil.get_terminal_size((WIDTH, 24)).columns  # of a pipe: WIDTH
     width = min(WIDTH, max(NARROWEST, terminal))
-    lines = [_wrapped(f, width) for f in sorted(findings, key=lambda f: order.index(f.concern))]
+    lines = [_wrap_lines(f, width) for f in sorted(findings, key=lambda f: order.index(f.concern))]
     count = sum(f.concern == "warning" for f in findings)
     lines.append(f"\n{count or 'no'} warning{'s' if count != 1 else ''}.")
     return "\n".join(lines)
 
 
-def _wrapped(finding: Finding, width: int) -> str:
+def _wrap_lines(finding: Finding, width: int) -> str:
     """Every line of a finding wrapped by itself; rows keep their columns where these fit."""
     first, *more = str(finding).split("\n")
     indent = " " * INDENT

@@ -66,11 +66,11 @@ def diagram_of(name: str, effects: Sequence[Path] = ()) -> Diagram:
     effects: the user's effect files
     raises ModelError, ExperimentError: neither, or a file that cannot be read
     """
-    from ..diagrams import SHIPPED, read_diagram, shipped
+    from ..diagrams import SHIPPED, load_shipped, read_diagram
     from ..effects import catalogue
 
     if name in SHIPPED:
-        return shipped(name)
+        return load_shipped(name)
     path = Path(name)
     if path.suffix == ".toml" or path.exists():
         return read_diagram(path, effects=catalogue(effects))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError
-from ..plain_data import replacing, write_json
+from ..plain_data import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, stated_model
 from ._options import check_output
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json is not None:
         write_json(options.json, {"model": said, **description.as_data()})
     if options.figure is not None:
-        with replacing(options.figure) as part:
+        with write_beside(options.figure) as part:
             description.plot().savefig(part)
     if options.effect_file is not None:
         _write(description, options.effect_file, options.folder)

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_json, write_text
-from ._arms import add_body, inertia_line, joint_of, posed
+from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import (
     add_experiment,
     diagnosis_of,
+    effects_by_name,
     experiment_and_answer,
-    known_of,
     print_diagnosis,
 )
 from ._options import check_output, make_folder, say
@@ -115,7 +115,7 @@ def _read_or_diagnose(experiment: Experiment, options: argparse.Namespace) -> Di
 
     joint = None if experiment.arm is None else joint_of(experiment, options)
     if options.answer is not None:
-        identified = read_answer(options.answer, experiment, known_of(options), joint=joint)
+        identified = read_answer(options.answer, experiment, effects_by_name(options), joint=joint)
     else:
         diagnosis = diagnosis_of(experiment, options)
         print_diagnosis(diagnosis)
@@ -123,7 +123,7 @@ def _read_or_diagnose(experiment: Experiment, options: argparse.Namespace) -> Di
         identified = diagnosed_model(diagnosis)
     if joint is None:
         return identified
-    model = posed(identified.model, experiment, joint, options)
+    model = place_at_pose(identified.model, experiment, joint, options)
     print(f"{inertia_line(model, joint, options)}\n")
     return replace(identified, model=model)
 

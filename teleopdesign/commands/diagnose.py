@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, ModelError
-from ..plain_data import replacing
+from ..plain_data import write_beside
 from ._diagnosis import (
     add_search,
-    diagnosed,
+    diagnose_experiment,
     experiment_of,
     print_diagnosis,
-    searched,
+    search_missing,
 )
 from ._folders import diagnose_all
 from ._options import add_effect_files, check_output, count_argument, say
@@ -108,7 +108,7 @@ def run(options: argparse.Namespace) -> int:
     print()
     if experiment.arm is not None:
         return _run_arm(experiment, options)
-    diagnosis = diagnosed(experiment, options)
+    diagnosis = diagnose_experiment(experiment, options)
     print_diagnosis(diagnosis)
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
@@ -116,11 +116,11 @@ def run(options: argparse.Namespace) -> int:
     if options.predictions is not None:
         write_predictions(diagnosis, options.predictions)
     if options.figure is not None:
-        with replacing(options.figure) as part:
+        with write_beside(options.figure) as part:
             diagnosis.plot().savefig(part)
     if options.report is not None:
         write_page(diagnosis, options.report)
-    for line in _next_commands(diagnosis, folder):
+    for line in _suggest_commands(diagnosis, folder):
         print(line)
     return 0
 
@@ -135,24 +135,24 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
 
-    diagnosis = searched(find_missing_in_arm, experiment, options)
+    diagnosis = search_missing(find_missing_in_arm, experiment, options)
     print_diagnosis(diagnosis)
     if options.json is not None:
         write_arm_answer(diagnosis, options.json)
     if options.predictions is not None:
         write_arm_predictions(diagnosis, options.predictions)
     if options.figure is not None:
-        with replacing(options.figure) as part:
+        with write_beside(options.figure) as part:
             diagnosis.plot().savefig(part)
     if options.report is not None:
         write_arm_page(diagnosis, options.report)
     source = shell_word(options.folder[0] if options.json is None else options.json)
-    for line in _next_on_joints(diagnosis, source):
+    for line in _suggest_for_joints(diagnosis, source):
         print(line)
     return 0
 
 
-def _next_on_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
+def _suggest_for_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
     """What helps on at each joint; source: the answer if one was written, else the folder."""
     lines = []
     for joint, one in diagnosis.joints.items():
@@ -178,7 +178,7 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
     return comparison
 
 
-def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
+def _suggest_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
     """What helps on from here: nothing where all is explained."""
     lines = []
     if diagnosis.groups:

@@ -75,14 +75,14 @@ def run(options: argparse.Namespace) -> int:
     """Look at the logs, ask, write the folder and a picture of what was understood."""
     from ..measurement import load_experiment
     from ..measurement.new_folder import make_folder
-    from ..measurement.survey import same_columns, survey_log
+    from ..measurement.survey import require_same_columns, survey_log
     from ..measurement.tables import open_log
 
     for path in options.logs:
         if not path.exists():
             raise ExperimentError(f"{path}: no such file")
     logs = [open_log(path, path.name) for path in options.logs]
-    same_columns(logs, [path.name for path in options.logs])
+    require_same_columns(logs, [path.name for path in options.logs])
     choices = _choices(options)
     survey = survey_log(logs[0], options.logs[0].name, choices)
     ask = not options.yes and sys.stdin.isatty()
@@ -105,13 +105,13 @@ def run(options: argparse.Namespace) -> int:
     experiment = load_experiment(folder)
     print()
     print(experiment)
-    from ..plot.letters import about_boxes
+    from ..plot.letters import explain_boxes
     from ..plot.log import draw_survey, save_survey
 
     picture = folder / "understood.png"
     save_survey(draw_survey(survey, experiment), picture)
     print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
-    if boxes := about_boxes(survey.columns):
+    if boxes := explain_boxes(survey.columns):
         print(boxes)
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")

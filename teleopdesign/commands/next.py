@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
-from ..plain_data import replacing, write_json
+from ..plain_data import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import (
     add_experiment,
@@ -117,7 +117,7 @@ def run(options: argparse.Namespace) -> int:
         content = _content(proposal, shown)
         write_json(options.json, content)
     if options.figure is not None:
-        with replacing(options.figure) as part:
+        with write_beside(options.figure) as part:
             proposal.plot().savefig(part)
     return 0
 

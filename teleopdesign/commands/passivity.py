@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ..errors import ExperimentError
 from ..plain_data import write_json
 from ._arms import add_body
-from ._claims import WIDTH, claim_lines, plain
+from ._claims import WIDTH, claim_data, claim_lines
 from ._diagnosis import add_answer, body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
 from ._options import add_effect_files, check_output
@@ -93,9 +93,9 @@ def run(options: argparse.Namespace) -> int:
     if is_diagram(options.source):
         return settle_diagram(options, _computer(options))
     from ..passivity.device_claims import margins
-    from ..passivity.identified import identified
+    from ..passivity.identified import identify_device
 
-    device = identified(*body_of_source(options.source, options))
+    device = identify_device(*body_of_source(options.source, options))
     compensator = _compensator(options)
     claims = _all_claims(options, device, compensator)
     limits = margins(device, compensator)
@@ -103,7 +103,7 @@ def run(options: argparse.Namespace) -> int:
     if options.period is not None and device.damping.low > 0:
         print("\n" + _z_width(device, options.period, options.delay))
     if options.json is not None:
-        content = {"claims": [plain(s) for s in claims], "margins": [vars(m) for m in limits]}
+        content = {"claims": [claim_data(s) for s in claims], "margins": [vars(m) for m in limits]}
         write_json(options.json, content)
     return 0
 

@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
         )
     except KeyboardInterrupt:
         say("")
-        print(f"teleopdesign: stopped{_kept(options.out, reporter)}", file=sys.stderr)
+        print(f"teleopdesign: stopped{_describe_kept(options.out, reporter)}", file=sys.stderr)
         return STOPPED
     say("")
     print(result)
@@ -137,7 +137,7 @@ def _run_file(path: Path) -> dict[str, Any]:
     return arguments
 
 
-def _kept(out: Path | None, reporter: PointReporter) -> str:
+def _describe_kept(out: Path | None, reporter: PointReporter) -> str:
     if out is None:
         return "; nothing is kept: give --out F to keep what is finished"
     return f"; {reporter.kept()} kept in {out}.part, the same command goes on from there"

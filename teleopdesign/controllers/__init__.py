@@ -25,8 +25,8 @@ from ._controller import (
     parameter_symbol,
 )
 from ._declarations import broken_declarations
-from ._exact import as_written, in_exact_numbers, resolvent
-from ._from_control import from_control, inverted, matrices_of, unit_state
+from ._exact import exact_decimal, make_exact, resolvent
+from ._from_control import from_control, invert_plant, matrices_of, unit_state
 from ._from_file import load_controller
 from ._measured import measured_frequencies, measured_plant
 from ._opaque import calls_in, is_call, opaque_laws
@@ -40,13 +40,13 @@ __all__ = [
     "ControllerEquation",
     "ControllerState",
     "Stage",
-    "as_written",
+    "exact_decimal",
     "broken_declarations",
     "calls_in",
     "controller",
     "from_control",
-    "in_exact_numbers",
-    "inverted",
+    "make_exact",
+    "invert_plant",
     "is_call",
     "laws_that_declare",
     "load_controller",

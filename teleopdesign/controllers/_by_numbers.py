@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ._exact import as_written
+from ._exact import exact_decimal
 
 if TYPE_CHECKING:
     from ._controller import Stage
@@ -25,14 +25,14 @@ def is_by_numbers(stage: Stage) -> bool:
     return any(x is not None for x in (law.transfer, law.shift, law.response))
 
 
-def by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
+def insert_values(stage: Stage, s: sp.Symbol) -> sp.Expr:
     """Transfer function of a law that states it, with its values in place."""
     if stage.law.transfer is not None:
         return stage.law.transfer(stage.values, s)
     if stage.law.response is not None:
-        return as_written(stage.values["scale"]) * stage.law.response(s)
+        return exact_decimal(stage.values["scale"]) * stage.law.response(s)
     assert stage.law.shift is not None
-    period, z = as_written(stage.values["period"]), sp.Symbol("z")
+    period, z = exact_decimal(stage.values["period"]), sp.Symbol("z")
     late = sp.exp(-s * period)
     above, below = (
         sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.shift(stage.values, z)))

@@ -8,12 +8,12 @@ from types import SimpleNamespace
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from ..notebook import html_table
-from ._by_numbers import by_numbers, has_numbers, is_by_numbers
-from ._law import SIGNALS, Ability, ControlLaw, ControllerState, Stage, only_sampled
+from ._by_numbers import has_numbers, insert_values, is_by_numbers
+from ._law import SIGNALS, Ability, ControlLaw, ControllerState, Stage, mark_sampled_rate
 
 #: what the file of a law may need: those of `_law` as well
 __all__ = [
@@ -24,7 +24,7 @@ __all__ = [
     "ControllerEquation",
     "ControllerState",
     "Stage",
-    "only_sampled",
+    "mark_sampled_rate",
     "parameter_symbol",
     "state_symbol",
 ]
@@ -46,7 +46,7 @@ class ControllerEquation:
     before: frozenset[sp.Symbol]
 
 
-@checked
+@check_types
 @dataclass(frozen=True, repr=False)
 class Controller:
     """One or more control laws in series, the first one next to the input.
@@ -65,7 +65,7 @@ class Controller:
             numbered[name] = stage if name == stage.name else replace(stage, name=name)
         object.__setattr__(self, "stages", tuple(numbered.values()))
 
-    @checked
+    @check_types
     def then(self, other: Controller) -> Controller:
         """This controller with another one behind it."""
         return Controller((*self.stages, *other.stages))
@@ -81,7 +81,7 @@ class Controller:
         """Every parameter as "law.parameter" -> value (SI)."""
         return {f"{g.name}.{n}": float(v) for g in self.stages for n, v in g.values.items()}
 
-    @checked
+    @check_types
     def with_values(self, values: Mapping[str, float]) -> Controller:
         """The controller with other parameter values, by "law.parameter"."""
         known = self.names()
@@ -136,7 +136,7 @@ class Controller:
                     f"{prefix}: {law.name} is a nonlinear python-control system, known as code "
                     "only: it takes part in `simulate` and `to_iosystem`, and nowhere else"
                 )
-            now, p = _placed(stage, prefix, {**signals, "input": value})
+            now, p = _make_symbols(stage, prefix, {**signals, "input": value})
             now.others = others
             probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})
             for name, state in law.states.items():
@@ -145,7 +145,7 @@ class Controller:
                     change, changes = state.step, steps
                 else:
                     change, changes = state.rate, rates
-                if change is only_sampled:
+                if change is mark_sampled_rate:
                     raise ModelError(
                         f"{prefix}: {law.name} has no form in continuous time: it needs a computer "
                         "that samples it"
@@ -182,13 +182,13 @@ class Controller:
         if not all(stage.law.linear or (held and has_numbers(stage)) for stage in self.stages):
             return None
         if all(is_by_numbers(stage) for stage in self.stages):
-            return sp.Mul(*(by_numbers(stage, s) for stage in self.stages)), sp.S(0)
+            return sp.Mul(*(insert_values(stage, s) for stage in self.stages)), sp.S(0)
         drive, moved = sp.Symbol("drive"), sp.Symbol("moved")
         motion = {"velocity": s * moved, "speed": speed, "travel_rate": s * moved}
         value: sp.Expr = drive
         for stage in self.stages:
             if is_by_numbers(stage):
-                value *= by_numbers(stage, s)
+                value *= insert_values(stage, s)
                 continue
             signals = {**motion, "input": value, "period": sp.S(0)}
             equation = Controller((stage,)).equation(prefix, signals)
@@ -226,7 +226,7 @@ class Controller:
         return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
 
 
-def _placed(
+def _make_symbols(
     stage: Stage, prefix: str, signals: Mapping[str, sp.Expr]
 ) -> tuple[SimpleNamespace, SimpleNamespace]:
     """The signals and states that the law reads, and its parameters, as symbols of that block."""

@@ -30,7 +30,7 @@ def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
     symbols = {n: parameter_symbol("law", f"{stage.name}.{n}") for n in law.parameters}
     checks = {
         "dead_time, for its output is not its input of that time earlier": (
-            bool(law.dead_time) and made.output != _late(law, symbols)
+            bool(law.dead_time) and made.output != _delay_factor(law, symbols)
         ),
         "linear = True, for it is not linear in its input, velocity and states": (
             law.linear and not _keeps_linear(made)
@@ -51,7 +51,7 @@ def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
     return tuple(words for words, is_broken in checks.items() if is_broken)
 
 
-def _late(law: ControlLaw, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
+def _delay_factor(law: ControlLaw, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
     return delayed(SIGNALS["input"], symbols[law.dead_time])
 
 

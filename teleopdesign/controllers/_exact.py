@@ -12,20 +12,22 @@ from fractions import Fraction
 import sympy as sp
 
 
-def as_written(value: float) -> sp.Rational:
+def exact_decimal(value: float) -> sp.Rational:
     """The decimal number that Python prints for a finite float: 0.1 gives 1/10."""
     return sp.Rational(repr(float(value)))
 
 
-def in_exact_numbers(expression: sp.Expr) -> sp.Expr:
+def make_exact(expression: sp.Expr) -> sp.Expr:
     """The expression with every number as a fraction; pi and roots keep the digits of a float."""
 
     def is_inexact(part: sp.Basic) -> bool:
         return bool(part.is_number) and not part.is_rational and bool(part.is_extended_real)
 
     expression = sp.sympify(expression, strict=True)
-    exact = {x: as_written(x) for x in expression.atoms(sp.Float, sp.NumberSymbol) if x.is_finite}
-    return expression.xreplace(exact).replace(is_inexact, lambda e: as_written(sp.N(e)))
+    exact = {
+        x: exact_decimal(x) for x in expression.atoms(sp.Float, sp.NumberSymbol) if x.is_finite
+    }
+    return expression.xreplace(exact).replace(is_inexact, lambda e: exact_decimal(sp.N(e)))
 
 
 def resolvent(

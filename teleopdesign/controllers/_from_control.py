@@ -11,10 +11,10 @@ from ..errors import ModelError
 from ..names import check_name
 from ..recipes import remember
 from . import _state_space
-from ._controller import ControlLaw, Controller, ControllerState, Stage, only_sampled
-from ._measured import measured
-from ._memory import last
-from ._opaque import opaque
+from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sampled_rate
+from ._measured import wrap_response
+from ._memory import store_input
+from ._opaque import wrap_code
 from ._state_space import Array
 
 if TYPE_CHECKING:
@@ -52,9 +52,9 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
             f"{system.noutputs}: a controller acts on one axis"
         )
     if isinstance(system, control.FrequencyResponseData):
-        return measured(name, system)
+        return wrap_response(name, system)
     if not isinstance(system, control.StateSpace | control.TransferFunction):
-        return opaque(name, system)
+        return wrap_code(name, system)
     dt = system.dt
     period = None if not system.isdtime(strict=True) else 0.0 if dt is True else float(dt)
     if isinstance(system, control.TransferFunction):
@@ -76,7 +76,7 @@ def unit_state(*, discrete: bool) -> Controller:
 
 @lru_cache(maxsize=2)  # laws compare by identity
 def _state_law(discrete: bool) -> ControlLaw:
-    rate, step = (only_sampled, last) if discrete else (last, None)
+    rate, step = (mark_sampled_rate, store_input) if discrete else (store_input, None)
     law = ControlLaw(
         law=lambda now, p: now.x,
         parameters={},
@@ -99,7 +99,7 @@ def matrices_of(law: object) -> tuple[Array, Array, Array, float, float | None] 
     return (*_state_space.as_they_came(values), values.get("period"))
 
 
-def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:
+def invert_plant(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:
     """The inverse of a transfer function with a low-pass of just enough roll-off to be proper.
 
     w(s) / T(s),   w(s) = (2 pi f_c / (s + 2 pi f_c))^r,   r: relative degree of T

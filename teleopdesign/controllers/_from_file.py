@@ -24,19 +24,19 @@ def load_controller(path: str | Path) -> ControlLaw:
         not do what it declares
     """
     path = checked_path(path, "control law", "my_law.py")
-    return _of_file(path.resolve(), path)
+    return _load_law(path.resolve(), path)
 
 
-def _of_file(path: Path, written: Path, expected: str = "") -> ControlLaw:
+def _load_law(path: Path, written: Path, expected: str = "") -> ControlLaw:
     """The law of a file;  written: its path in messages;  expected: digest that it must have."""
 
     def read(content: bytes) -> ControlLaw:
-        return _checked(run(content, written, str(__package__)), written)
+        return _check_law(run(content, written, str(__package__)), written)
 
-    return load_once(_LOADED, _of_file, read, path, written, expected)
+    return load_once(_LOADED, _load_law, read, path, written, expected)
 
 
-def _checked(module: ModuleType, path: Path) -> ControlLaw:
+def _check_law(module: ModuleType, path: Path) -> ControlLaw:
     law = getattr(module, "CONTROLLER", None)
     if not isinstance(law, ControlLaw):
         raise ModelError(f"{path}: found no CONTROLLER = ControlLaw(...)")

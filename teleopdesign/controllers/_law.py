@@ -17,7 +17,7 @@ from typing import Any, Literal, get_args
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..effects import Parameter
 from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
@@ -33,17 +33,17 @@ SIGNALS = {
 }
 
 
-def only_sampled(now: Any, p: Any) -> sp.Expr:
+def mark_sampled_rate(now: Any, p: Any) -> sp.Expr:
     """Stands for the rate of a state that exists in a computer only."""
     return sp.nan
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class ControllerState:
     """A hidden state of a control law, whose `now` also carries the states of the law.
 
-    rate(now, p): rate of change, or `only_sampled`
+    rate(now, p): rate of change, or `mark_sampled_rate`
     step(now, p): value at the next sample, `now.period` later;  None: the step that is exact for
     the rate, which is affine in the state, with all else held
     """
@@ -53,7 +53,7 @@ class ControllerState:
     step: Callable[[Any, Any], sp.Expr] | None = None
 
 
-@checked
+@check_types
 @dataclass(frozen=True, repr=False)
 class ControlLaw:
     """A control law: law(now, p) is its output; see the package's folder for examples.
@@ -137,7 +137,7 @@ class ControlLaw:
         return replace(self, name=name, text=text)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Stage:
     """A control law with a value (SI) for every parameter.

@@ -24,7 +24,7 @@ _ROUNDING = 1e-9
 _OF_MASS = 10
 
 
-def measured(name: str, system: control.FrequencyResponseData) -> Controller:
+def wrap_response(name: str, system: control.FrequencyResponseData) -> Controller:
     """The response as a controller that frequency responses take, and nothing else."""
     return _controller(name, *_points(name, system))
 

@@ -3,11 +3,11 @@
 from sympy import S
 
 
-def last(now, p):
+def store_input(now, p):
     """The input, for the next sample."""
     return now.input
 
 
-def nothing(now, p):
+def zero_rate(now, p):
     """In continuous time there is no last sample."""
     return S.Zero

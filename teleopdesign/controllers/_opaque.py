@@ -17,7 +17,7 @@ from sympy.utilities.lambdify import implemented_function
 from ..effects import SIGNALS as EFFECT_SIGNALS
 from ..effects import Parameter
 from ..errors import ModelError
-from ._controller import ControlLaw, Controller, ControllerState, Stage, only_sampled
+from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sampled_rate
 from ._state_space import check_period
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ _Read = tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]
 _Reading = Callable[[Any], _Read]
 
 
-def opaque(name: str, system: control.InputOutputSystem) -> Controller:
+def wrap_code(name: str, system: control.InputOutputSystem) -> Controller:
     """The system as a controller, which simulations call and `to_iosystem` takes as it is.
 
     raises ModelError: the system has dynamics, and does not say how many states
@@ -129,7 +129,7 @@ class _Laws:
             return held(EFFECT_SIGNALS["time"], now.period, *inputs, *states)
 
         if self.discrete:
-            return ControllerState("dimensionless", only_sampled, changed)
+            return ControllerState("dimensionless", mark_sampled_rate, changed)
         return ControllerState("dimensionless", changed, carried)
 
     def controller(

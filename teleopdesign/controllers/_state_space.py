@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from ..effects import Parameter
 from ..errors import ModelError
 from ..recipes import remember
-from ._controller import ControlLaw, ControllerState, Stage, only_sampled
-from ._exact import as_written, resolvent
+from ._controller import ControlLaw, ControllerState, Stage, mark_sampled_rate
+from ._exact import exact_decimal, resolvent
 
 Array = NDArray[np.float64]
 #: whether a system came as matrices or as numerator and denominator
@@ -123,13 +123,13 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
         entries = [f"a_{i}_{j}" for i in range(n) for j in range(n)]
         entries += [f"{x}_{i}" for x in "bc" for i in range(n)] + ["d"]
         meanings = {e: _meaning(e) for e in entries}
-        output, change = _by_matrices(n)
+        output, change = _matrix_law(n)
     else:
         sides, variable = ("numerator", "denominator"), "z" if discrete else "s"
         meanings = {
             f"{side}_{k}": f"coefficient of {variable}^{k}" for side in sides for k in range(n + 1)
         }
-        output, change = _by_coefficients(n)
+        output, change = _coefficient_law(n)
     parameters = {
         e: Parameter("dimensionless", text, lower=-float("inf")) for e, text in meanings.items()
     }
@@ -142,7 +142,7 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
     states = {
         f"x_{i}": ControllerState(
             "dimensionless",
-            only_sampled if discrete else change(i),
+            mark_sampled_rate if discrete else change(i),
             change(i) if discrete else None,
         )
         for i in range(n)
@@ -154,14 +154,16 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
         linear=not discrete,
         transfer=None if discrete else _transfer,
         shift=_transfer if discrete else None,
-        sampled=_same_period(name) if discrete else lambda v, period: _held(name, v, n, period),
+        sampled=_make_discretiser(name)
+        if discrete
+        else lambda v, period: _discretise_held(name, v, n, period),
         source="python-control",
     )
     made = made.named(name, f"A linear system of order {n} from python-control.")
     return remember(made, _law, name, form, n, discrete)
 
 
-def _by_matrices(n: int) -> tuple[_Law, Callable[[int], _Law]]:
+def _matrix_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:
     """Output, and change of each state."""
 
     def output(now: Any, p: Any) -> sp.Expr:
@@ -178,7 +180,7 @@ def _by_matrices(n: int) -> tuple[_Law, Callable[[int], _Law]]:
     return output, change
 
 
-def _by_coefficients(n: int) -> tuple[_Law, Callable[[int], _Law]]:
+def _coefficient_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:
     """Output, and change of each state, in the controllable form."""
 
     def output(now: Any, p: Any) -> sp.Expr:
@@ -224,7 +226,7 @@ def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
     n = _order(values)
     if "denominator_0" in values:
         above, below = (
-            [as_written(values[f"{side}_{k}"]) for k in range(n, -1, -1)]
+            [exact_decimal(values[f"{side}_{k}"]) for k in range(n, -1, -1)]
             for side in ("numerator", "denominator")
         )
     else:
@@ -244,7 +246,7 @@ def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
     return p.quo(common).as_expr() / q.quo(common).as_expr()
 
 
-def _held(name: str, values: Mapping[str, float], n: int, period: float) -> Stage:
+def _discretise_held(name: str, values: Mapping[str, float], n: int, period: float) -> Stage:
     """The system for an input held over each sample: exact, by one matrix exponential."""
     from scipy.linalg import expm
 
@@ -264,7 +266,7 @@ def check_period(name: str, stated: float, period: float) -> None:
         )
 
 
-def _same_period(name: str) -> Callable[[Mapping[str, float], float], Stage]:
+def _make_discretiser(name: str) -> Callable[[Mapping[str, float], float], Stage]:
     def sampled(values: Mapping[str, float], period: float) -> Stage:
         check_period(name, values["period"], period)
         form: Form = "coefficients" if "denominator_0" in values else "matrices"

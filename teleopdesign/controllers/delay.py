@@ -11,7 +11,7 @@ from sympy import exp
 
 from ..effects import Parameter, delayed
 from ._controller import ControlLaw
-from ._exact import as_written
+from ._exact import exact_decimal
 
 
 def law(now, p):
@@ -19,7 +19,7 @@ def law(now, p):
 
 
 def transfer(values, s):
-    return exp(-as_written(values["time"]) * s)
+    return exp(-exact_decimal(values["time"]) * s)
 
 
 CONTROLLER = ControlLaw(

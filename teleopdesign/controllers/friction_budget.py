@@ -17,7 +17,7 @@ from sympy import Abs
 from ..effects import Parameter
 from . import passivity_controller
 from ._controller import ControlLaw, ControllerState
-from ._memory import nothing
+from ._memory import zero_rate
 
 
 def _power(force, velocity, p):
@@ -31,12 +31,12 @@ def law(now, p):
 
 
 def energy(now, p):
-    return passivity_controller.kept(now, p, _power(law(now, p), now.velocity, p))
+    return passivity_controller.recovery_rate(now, p, _power(law(now, p), now.velocity, p))
 
 
 def energy_after(now, p):
     power = _power(now.held, now.travel_rate, p)
-    return now.energy + now.period * passivity_controller.kept(now, p, power)
+    return now.energy + now.period * passivity_controller.recovery_rate(now, p, power)
 
 
 CONTROLLER = ControlLaw(
@@ -44,7 +44,7 @@ CONTROLLER = ControlLaw(
     takes="force",
     states={
         "energy": ControllerState("energy", energy, energy_after),
-        "held": ControllerState("force", nothing, law),
+        "held": ControllerState("force", zero_rate, law),
     },
     parameters={
         "counted_level": Parameter("force", "F_C: friction that is counted on"),

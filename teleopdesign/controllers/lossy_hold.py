@@ -11,7 +11,7 @@ from sympy import Piecewise, pi, sin
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
-from ._memory import nothing
+from ._memory import zero_rate
 
 
 def law(now, p):
@@ -29,8 +29,8 @@ def chance(now, p):
 CONTROLLER = ControlLaw(
     law=law,
     states={
-        "held": ControllerState("force", nothing, law),
-        "chance": ControllerState("dimensionless", nothing, chance),
+        "held": ControllerState("force", zero_rate, law),
+        "chance": ControllerState("dimensionless", zero_rate, chance),
     },
     parameters={
         "share": Parameter("dimensionless", "of the samples that are lost", upper=1.0),

@@ -18,12 +18,12 @@ from sympy import Max, Min, exp
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
-from ._memory import last, nothing
+from ._memory import store_input, zero_rate
 
 _STANDSTILL = 1e-30  # (m/s)^2: alpha stays finite there, and acts on no velocity
 
 
-def _recovered(now, p):
+def _recovery_share(now, p):
     """Share of an energy deficit that is recovered within a sample, per second."""
     if now.period == 0:
         return p.recovery_rate
@@ -33,13 +33,13 @@ def _recovered(now, p):
 def damping(now, p, power):
     """Damping alpha for the energy `now.energy`, to which the port adds this power, W."""
     ahead = now.energy + now.period * power
-    needed = Max(-ahead, 0) * _recovered(now, p) / Max(now.velocity**2, _STANDSTILL)
+    needed = Max(-ahead, 0) * _recovery_share(now, p) / Max(now.velocity**2, _STANDSTILL)
     return Min(needed, p.largest_damping)
 
 
-def kept(now, p, power):
+def recovery_rate(now, p, power):
     """Rate of an energy that returns to its budget no faster than a deficit is recovered, W."""
-    return Min(power, _recovered(now, p) * (p.budget - now.energy))
+    return Min(power, _recovery_share(now, p) * (p.budget - now.energy))
 
 
 def law(now, p):
@@ -47,12 +47,12 @@ def law(now, p):
 
 
 def energy(now, p):
-    return kept(now, p, -now.input * now.velocity)
+    return recovery_rate(now, p, -now.input * now.velocity)
 
 
 def energy_after(now, p):
     power = -(now.input + now.last) / 2 * now.travel_rate
-    return now.energy + now.period * kept(now, p, power)
+    return now.energy + now.period * recovery_rate(now, p, power)
 
 
 PARAMETERS = {
@@ -65,7 +65,7 @@ CONTROLLER = ControlLaw(
     takes="force",
     states={
         "energy": ControllerState("energy", energy, energy_after),
-        "last": ControllerState("force", nothing, last),
+        "last": ControllerState("force", zero_rate, store_input),
     },
     parameters=PARAMETERS,
     source="Hannaford, Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1 (P52)",

@@ -14,7 +14,7 @@ from sympy import Max
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
-from ._memory import last, nothing
+from ._memory import store_input, zero_rate
 
 
 def law(now, p):
@@ -34,7 +34,7 @@ CONTROLLER = ControlLaw(
     takes="force",
     states={
         "energy": ControllerState("energy", energy, energy_after),
-        "last": ControllerState("force", nothing, last),
+        "last": ControllerState("force", zero_rate, store_input),
     },
     parameters={
         "sign": Parameter("dimensionless", "1: given to the body; -1: taken", lower=-1.0, upper=1.0)

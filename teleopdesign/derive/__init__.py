@@ -2,9 +2,9 @@
 
 from ..arguments import check_arguments
 from .all_transfers import Transfer, Transfers, all_transfers
-from .conventions import hybrid_from_impedance, impedance_from_hybrid, in_convention
+from .conventions import convert_convention, hybrid_from_impedance, impedance_from_hybrid
 from .elimination import has_actuation, transfer
-from .noncommutative import counterexample, on_matrices, proved_equal
+from .noncommutative import counterexample, insert_matrices, proved_equal
 from .printing import as_latex, as_text, block_symbol
 from .transfer_functions import (
     TransferFunctions,
@@ -26,8 +26,8 @@ __all__ = [
     "has_actuation",
     "hybrid_from_impedance",
     "impedance_from_hybrid",
-    "in_convention",
-    "on_matrices",
+    "convert_convention",
+    "insert_matrices",
     "proved_equal",
     "return_difference",
     "symbol_values",

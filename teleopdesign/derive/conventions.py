@@ -56,7 +56,7 @@ def check_convention(convention: str) -> None:
         raise ModelError(f'convention: no "{convention}", has {", ".join(known)}{near}')
 
 
-def in_convention(name: str, expression: sp.Expr, convention: Convention) -> sp.Expr:
+def convert_convention(name: str, expression: sp.Expr, convention: Convention) -> sp.Expr:
     """A function of a two-port from the other convention into `convention`, in exact terms.
 
     name: "Z_mm", "h_11", ..., "Z_t";  expression: in `s`, of blocks or numbers

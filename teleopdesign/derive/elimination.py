@@ -16,7 +16,7 @@ from ..diagrams.second_input import acts_along_another
 from ..errors import ModelError
 from .loops import loop_of
 from .noncommutative import counterexample
-from .printing import along_symbol, block_symbol, late
+from .printing import block_symbol, delay_symbol, motion_controller_symbol
 
 #: signal -> coefficient, acting from the left; the sum over all is zero
 Row = dict[str, sp.Expr]
@@ -38,7 +38,7 @@ def rows(diagram: Diagram) -> list[Row]:
         elif isinstance(part, Attached):
             terms = [(part.force, sp.S(1)), (part.motion, -part.sign * block_symbol(part.name))]
         elif isinstance(part, Linked):
-            equations += _linked(part)
+            equations += _rows_of_link(part)
             continue
         elif isinstance(part, Control):
             terms = [(part.output, sp.S(1)), *((s, -law) for s, law in paths(diagram, part))]
@@ -75,10 +75,10 @@ def paths(diagram: Diagram, part: Control) -> list[tuple[str, sp.Expr]]:
 
     raises ModelError: a block has the name of what another one makes of that motion
     """
-    law = block_symbol(part.name) if part.dead_time is None else late(part.name)
+    law = block_symbol(part.name) if part.dead_time is None else delay_symbol(part.name)
     if not acts_along_another(diagram, part):
         return [(part.input, law)]
-    along = along_symbol(part.name)
+    along = motion_controller_symbol(part.name)
     if diagram.has(along.name):
         raise ModelError(
             f"{diagram.name}: {along.name} is what {part.name} makes of the velocity of "
@@ -87,7 +87,7 @@ def paths(diagram: Diagram, part: Control) -> list[tuple[str, sp.Expr]]:
     return [(part.input, law), (part.motion, along)]
 
 
-def _linked(part: Linked) -> list[Row]:
+def _rows_of_link(part: Linked) -> list[Row]:
     equations: list[Row] = [{force: sp.S(1)} for force in part.forces]
     for i, j in part.entries:
         equations[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
@@ -171,7 +171,7 @@ def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
     having = [r for r in system if signal in r]
     able = [r for r in having if _OUTPUT not in r and not _vanishes(r[signal])]
     if not able:
-        raise ModelError(_undetermined(diagram, signal))
+        raise ModelError(_explain_undetermined(diagram, signal))
     plain = [r for r in able if r[signal] in (sp.S(1), sp.S(-1))]
     defining = [r for r in plain if next(iter(r)) == signal]  # the equation that makes the signal
     pivot = (defining or plain or able)[0]
@@ -196,7 +196,7 @@ def _vanishes(coefficient: sp.Expr) -> bool:
     return counterexample(coefficient, sp.S(0), tries=1) is None
 
 
-def _undetermined(diagram: Diagram, signal: str) -> str:
+def _explain_undetermined(diagram: Diagram, signal: str) -> str:
     loop = loop_of(diagram, signal)
     if not loop:
         return f'{diagram.name}: the wiring does not determine "{signal}"'

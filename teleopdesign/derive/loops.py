@@ -18,7 +18,7 @@ def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
             part = makers.get(at)
             for source in () if part is None else _inputs_of(diagram, part):
                 if source == signal:
-                    return _back(before, at, signal)
+                    return _path_back(before, at, signal)
                 if source not in before:
                     before[source] = at
                     reached.append(source)
@@ -31,7 +31,7 @@ def _inputs_of(diagram: Diagram, part: Part) -> tuple[str, ...]:
     return part.inputs
 
 
-def _back(before: Mapping[str, str], at: str, signal: str) -> tuple[str, ...]:
+def _path_back(before: Mapping[str, str], at: str, signal: str) -> tuple[str, ...]:
     """From the signal along the search, which ran against the wires, so in their order."""
     way = [at]
     while way[-1] != signal:

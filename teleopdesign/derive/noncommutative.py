@@ -161,7 +161,7 @@ def proved_equal(left: sp.Expr, right: sp.Expr) -> bool:
     return algebra.vanishes(_sum([a, {w: -c for w, c in b.items()}]))
 
 
-def on_matrices(
+def insert_matrices(
     expression: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix], *, size: int | None = None
 ) -> sp.Matrix:
     """The expression with matrices in place of its symbols, exact where they are rational.
@@ -184,8 +184,8 @@ def on_matrices(
     if isinstance(expression, sp.exp):
         return _scalar(expression, blocks) * sp.eye(size)
     if expression.is_Pow:
-        return on_matrices(expression.base, blocks, size=size) ** int(expression.exp)
-    parts = [on_matrices(a, blocks, size=size) for a in expression.args]
+        return insert_matrices(expression.base, blocks, size=size) ** int(expression.exp)
+    parts = [insert_matrices(a, blocks, size=size) for a in expression.args]
     if expression.is_Add:
         return sum(parts[1:], parts[0])
     product = sp.eye(size)
@@ -216,6 +216,6 @@ def counterexample(
             for s in symbols
             if s != S
         }
-        if on_matrices(left, blocks, size=size) != on_matrices(right, blocks, size=size):
+        if insert_matrices(left, blocks, size=size) != insert_matrices(right, blocks, size=size):
             return blocks
     return None

@@ -18,7 +18,7 @@ def block_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(name, commutative=False)
 
 
-def along_symbol(name: str) -> sp.Symbol:
+def motion_controller_symbol(name: str) -> sp.Symbol:
     """What the controller of that name makes of the motion along whose velocity it acts.
 
     Where that motion is not its input: output = K input + V_K motion
@@ -26,7 +26,7 @@ def along_symbol(name: str) -> sp.Symbol:
     return block_symbol(f"V_{name}")
 
 
-def late(name: str) -> sp.Expr:
+def delay_symbol(name: str) -> sp.Expr:
     """A delay block of that name, e^(-s T) with its name for T: it commutes with every block."""
     return sp.exp(-S * dead_time_symbol(name))
 
@@ -51,14 +51,14 @@ def with_gamma(expression: sp.Expr) -> sp.Expr:
     return expression
 
 
-def _ordered(expression: sp.Add) -> list[tuple[bool, sp.Expr]]:
+def _sort_terms(expression: sp.Add) -> list[tuple[bool, sp.Expr]]:
     """(is subtracted, term), blocks before their products, what is subtracted last."""
     terms = [(bool(t.as_coeff_Mul()[0] < 0), t) for t in expression.args]
     rank = sorted(terms, key=lambda x: (x[0], len(sp.Mul.make_args(x[1])), str(x[1])))
     return [(negative, -t if negative else t) for negative, t in rank]
 
 
-def _begun(terms: str) -> str:
+def _strip_plus(terms: str) -> str:
     """The sum without the plus that it begins with; a minus stands at its term."""
     return f"-{terms[3:]}" if terms.startswith(" - ") else terms.removeprefix(" + ")
 
@@ -66,10 +66,10 @@ def _begun(terms: str) -> str:
 class _Text(StrPrinter):
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
         out = ""
-        for negative, term in _ordered(expr):
+        for negative, term in _sort_terms(expr):
             one = "I" if term == 1 else self.parenthesize(term, PRECEDENCE["Add"])
             out += (" - " if negative else " + ") + one
-        return _begun(out)
+        return _strip_plus(out)
 
     def _print_Mul(self, expr: sp.Mul) -> str:
         number = expr.as_coeff_Mul()[0]
@@ -85,9 +85,9 @@ class _Text(StrPrinter):
 class _Latex(LatexPrinter):
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
         out = ""
-        for negative, term in _ordered(expr):
+        for negative, term in _sort_terms(expr):
             out += (" - " if negative else " + ") + ("I" if term == 1 else self._print(term))
-        return _begun(out)
+        return _strip_plus(out)
 
 
 def as_text(expression: sp.Expr) -> str:
@@ -102,10 +102,10 @@ def as_latex(expression: sp.Expr) -> str:
 
 def name_as_latex(name: str) -> str:
     """The name of a transfer function: That_M and R_M/R_D with their indices in braces."""
-    return "/".join(_named(part) for part in name.split("/"))
+    return "/".join(_symbol_text(part) for part in name.split("/"))
 
 
-def _named(name: str) -> str:
+def _symbol_text(name: str) -> str:
     head, _, index = name.partition("_")
     head = rf"\hat {head.removesuffix('hat')}" if head.endswith("hat") else head
     if not index:

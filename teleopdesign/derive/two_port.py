@@ -11,11 +11,11 @@ the place of velocities and the force on the slave in the place of its reaction.
 
 from __future__ import annotations
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..frozen import Frozen
-from .conventions import VELOCITY_TEXTS, Convention, check_convention, in_convention
+from .conventions import VELOCITY_TEXTS, Convention, check_convention, convert_convention
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions
 
@@ -61,7 +61,7 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     return cases
 
 
-@checked
+@check_types
 def two_port_functions(
     diagram: Diagram, *, convention: Convention = "position"
 ) -> TransferFunctions:
@@ -76,6 +76,6 @@ def two_port_functions(
         expressions["Z_t - Z_E"] = expressions["Z_t"] - block_symbol("Z_E")
     texts = {name: _TEXTS[name] for name in expressions}
     if convention == "velocity":
-        expressions = {n: in_convention(n, e, convention) for n, e in expressions.items()}
+        expressions = {n: convert_convention(n, e, convention) for n, e in expressions.items()}
         texts = {name: VELOCITY_TEXTS[name] for name in expressions}
     return TransferFunctions(diagram, Frozen(expressions), Frozen(texts))

@@ -10,7 +10,7 @@ from ..diagrams import Diagram
 from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
 from ..realise.parted import linear_parted
 from .elimination import transfer
-from .printing import along_symbol, block_symbol, dead_time_symbol
+from .printing import block_symbol, dead_time_symbol, motion_controller_symbol
 
 if TYPE_CHECKING:
     import control
@@ -46,7 +46,7 @@ def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
     """
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
-    values |= {along_symbol(n): e for n, e in linear.along.items()}
+    values |= {motion_controller_symbol(n): e for n, e in linear.along.items()}
     return values | {dead_time_symbol(n): t for n, t in linear.dead_times.items()}
 
 

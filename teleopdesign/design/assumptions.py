@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..blocks import NINETY_FIVE
 from ..errors import ModelError
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Assumptions:
     """Assumptions of a design, SI. None: derived from the record, as `design` says.

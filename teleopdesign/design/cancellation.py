@@ -19,7 +19,7 @@ from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
-from .rounding import rounded_down, rounded_up
+from .rounding import round_down, round_up
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
 STIFFNESS_FRACTION = 0.9
@@ -52,7 +52,7 @@ def cancelled_level(
         return None
     unit = unit_of("force", body.axis)
     sure = friction.lowest.low
-    value = rounded_down(assumptions.fraction * sure / gain)
+    value = round_down(assumptions.fraction * sure / gain)
     least = f"the least level within {assumptions.errors:g} standard errors, {sure:.4g}"
     why = f"{assumptions.fraction:g} of {least} {unit} (at {friction.where_lowest}"
     known = body.parameters.get("coulomb.level")
@@ -105,12 +105,12 @@ def dahl_cancellation(
                 f"{1e3 * late:.3g} ms (P49)"
             ] = needed
     why = min(limits, key=limits.__getitem__)
-    stiffness = rounded_down(limits[why] / gain)
+    stiffness = round_down(limits[why] / gain)
     law = laws_that_declare("bristle_stiffness")[0]
     made = controller(law.name, {law.bound: level.value, law.bristle_stiffness: stiffness})
     named = f"{law.name}.{law.bristle_stiffness}"
     reason = Reason(named, stiffness, unit_of("stiffness", axis), why)
-    return ProposedController(made, (_named(law.name, level), reason))
+    return ProposedController(made, (_name_reason(law.name, level), reason))
 
 
 def smoothed_cancellation(
@@ -131,7 +131,7 @@ def smoothed_cancellation(
     unit = unit_of("velocity", axis)
     count = reach.step / period * velocity_smoothing(filter_bandwidth, period)
     share = assumptions.count_force
-    value = rounded_up(count * (1 / share - 1), digits=2)
+    value = round_up(count * (1 / share - 1), digits=2)
     why = (
         f"one encoder step of {reach.step:.3g} {unit_of('position', axis)} in a sample of "
         f"{1e3 * period:g} ms, through the {filter_bandwidth:.3g} Hz velocity filter, is "
@@ -140,7 +140,7 @@ def smoothed_cancellation(
     law = laws_that_declare("smoothing")[0]
     made = controller(law.name, {law.bound: level.value, law.smoothing: value})
     reason = Reason(f"{law.name}.{law.smoothing}", value, unit, why)
-    return ProposedController(made, (_named(law.name, level), reason))
+    return ProposedController(made, (_name_reason(law.name, level), reason))
 
 
 def smoothing_name(names: Iterable[str], *, block: str = "") -> str | None:
@@ -152,5 +152,5 @@ def smoothing_name(names: Iterable[str], *, block: str = "") -> str | None:
     return next((name for name in names if name in declared), None)
 
 
-def _named(law: str, level: Reason) -> Reason:
+def _name_reason(law: str, level: Reason) -> Reason:
     return Reason(f"{law}.{level.parameter}", level.value, level.unit, level.why)

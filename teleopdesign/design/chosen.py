@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..controllers import Controller
-from ..quantity import after_number
+from ..quantity import unit_after_number
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Reason:
     why: str
 
     def __str__(self) -> str:
-        unit = after_number(self.unit)
+        unit = unit_after_number(self.unit)
         return f"{self.parameter} = {self.value:.4g}{unit}: {self.why}"
 
 

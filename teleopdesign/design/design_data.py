@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from ..passivity import Claim
-from ..plain_data import plain
+from ..plain_data import make_plain
 from ..quantity import unit_of
 from .chosen import ProposedController
 from .felt_impedance import FeltImpedance
@@ -50,7 +50,7 @@ def design_data(design: Design) -> dict[str, Any]:
         "notes": list(design.notes),
         "diagram_toml": design.to_toml(),
     }
-    data: dict[str, Any] = plain(content)
+    data: dict[str, Any] = make_plain(content)
     return data
 
 

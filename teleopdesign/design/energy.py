@@ -17,7 +17,7 @@ from ..errors import ModelError
 from ..passivity import Claim, Evidence
 from ..quantity import unit_of
 from ..realise.reach import Reach
-from ..realise.tips import led
+from ..realise.tips import led_motion
 from ..simulate import Sampling
 from .prediction import steady_cycle
 from .stated_motion import StatedMotion
@@ -51,7 +51,7 @@ def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
         cycle = steady_cycle(diagram, motion, sampling)
     except ModelError:
         return CycleEnergy(motion, float("-inf"))
-    power = cycle["E"].values * cycle[f"{led(diagram, 'L')}_velocity"].values
+    power = cycle["E"].values * cycle[f"{led_motion(diagram, 'L')}_velocity"].values
     return CycleEnergy(motion, float(np.mean(power) / motion.frequency))
 
 
@@ -62,7 +62,7 @@ def energy_claim(
     trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
     supplying = [t for t in trials if t.energy < 0]
     # where it releases energy, the slowest such motion says from where on
-    shown = min(supplying, key=lambda t: t.motion.frequency) if supplying else _least(trials)
+    shown = min(supplying, key=lambda t: t.motion.frequency) if supplying else _least_energy(trials)
     size, unit = shown.motion.amplitude, unit_of("position", axis)
     frequencies = [t.motion.frequency for t in trials]
     words = "gives energy out along" if supplying else "takes least along"
@@ -77,5 +77,5 @@ def energy_claim(
     return Claim(statement, Evidence(not supplying, searched, shown.energy, "J a cycle"))
 
 
-def _least(trials: list[CycleEnergy]) -> CycleEnergy:
+def _least_energy(trials: list[CycleEnergy]) -> CycleEnergy:
     return min(trials, key=lambda t: t.energy / t.motion.amplitude)

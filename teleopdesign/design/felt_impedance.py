@@ -14,7 +14,7 @@ import numpy as np
 from ..diagrams import Diagram, four_cases
 from ..errors import ModelError
 from ..frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
-from ..realise.tips import led
+from ..realise.tips import led_motion
 from ..simulate import Sampling
 from .stated_motion import StatedMotion
 
@@ -72,7 +72,7 @@ def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) ->
         return np.asarray(motion.amplitude * motion.frequency / f)
 
     simulated = predicted = None
-    if led(hybrid, "L") != "L":
+    if led_motion(hybrid, "L") != "L":
         # friction that deflects by 1e-5 of the motion, behind a spring: millions of steps
         return FeltImpedance(None, None, ("through a transmission it takes too many steps",))
     try:

@@ -22,7 +22,7 @@ from ..realise.lti import S
 from ..realise.reach import Reach
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
-from .rounding import rounded_down, rounded_up
+from .rounding import round_down, round_up
 
 #: largest gain proposed: beyond it what is left of friction is a few percent already
 MOST_GAIN = 20.0
@@ -111,10 +111,10 @@ def force_feedback(
     factor = assumptions.delay_factor
     free = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
     held = largest_gain(share=1.0, bandwidth=bandwidth, delay=delay, factor=HELD_FACTOR)
-    gain = rounded_down(min(free, held), digits=2)
+    gain = round_down(min(free, held), digits=2)
     loop = FeedbackLoop(gain * share, bandwidth, delay)
     least = smoothing_velocity * gain / (1 + gain)
-    scheduling = rounded_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
+    scheduling = round_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
     law = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
     kilo, speed = unit_of("inertia", body.axis), unit_of("velocity", body.axis)
     with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} bears {factor:g} times"

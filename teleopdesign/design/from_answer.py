@@ -9,7 +9,7 @@ from pathlib import Path
 from ..by_value import ByValue
 from ..diagnose import Diagnosis
 from ..diagnose.answers import load_answer
-from ..diagnose.arms.prepared import alone
+from ..diagnose.arms.prepared import isolate_joint
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
 from ..model import Model
@@ -56,4 +56,4 @@ def read_answer(
     if joint is None:
         return DiagnosedModel(experiment, model, saved.verdict, saved.left)
     mine = saved.of_joint(joint)
-    return DiagnosedModel(alone(experiment, joint), model, mine.verdict, mine.left)
+    return DiagnosedModel(isolate_joint(experiment, joint), model, mine.verdict, mine.left)

@@ -19,7 +19,12 @@ CLOSE = 0.1
 
 def notes_on(design: Design, answer: DiagnosedModel) -> tuple[str, ...]:
     """The notes of a design, those on its model first."""
-    makers: tuple[Callable[[Design], list[str]], ...] = (_friction, _sensors, _left_out, _apart)
+    makers: tuple[Callable[[Design], list[str]], ...] = (
+        _friction,
+        _sensors,
+        _list_left_out,
+        _compare_predictions,
+    )
     return (*_model(design, answer), *(line for make in makers for line in make(design)))
 
 
@@ -44,7 +49,7 @@ def _friction(design: Design) -> list[str]:
     if friction is None:
         return ["The model has no friction level: there is nothing to cancel."]
     if design.cancellation is None:
-        return [_none_proposed(friction, design.reach.travel, unit)]
+        return [_explain_no_proposal(friction, design.reach.travel, unit)]
     lines = []
     if not design.reach.both_ways:
         lines.append(
@@ -87,7 +92,7 @@ def _friction(design: Design) -> list[str]:
     return lines
 
 
-def _none_proposed(friction: FrictionInterval, travel: float, unit: str) -> str:
+def _explain_no_proposal(friction: FrictionInterval, travel: float, unit: str) -> str:
     if not friction.slides_within(travel):
         why = (
             f"friction does not come near its level within the recorded travel, half of which is "
@@ -117,7 +122,7 @@ def _sensors(design: Design) -> list[str]:
     ]
 
 
-def _left_out(design: Design) -> list[str]:
+def _list_left_out(design: Design) -> list[str]:
     gone = design.prediction.left_out
     slow = {e.name for e in slow_body(design.body).effects}
     more = [e.name for e in design.body.effects if e.name not in slow]
@@ -137,7 +142,7 @@ def _left_out(design: Design) -> list[str]:
     return lines
 
 
-def _apart(design: Design) -> list[str]:
+def _compare_predictions(design: Design) -> list[str]:
     """Where the quasi-static prediction and the simulation differ."""
     unit, lines = unit_of("force", design.body.axis), list[str]()
     said: list[CasePrediction] = []

@@ -12,7 +12,7 @@ from ..blocks import Body
 from ..by_value import ByValue
 from ..diagrams import Diagram, four_cases
 from ..errors import ModelError
-from ..realise.tips import led
+from ..realise.tips import led_motion
 from ..simulate import ForceVelocity, Sampling, Simulation, force_velocity, simulate
 from .linear import linear_error
 from .quasi_static import quasi_static_error
@@ -74,7 +74,7 @@ def steady_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
 
     raises ModelError: it cannot be simulated
     """
-    data = _simulated(diagram, motion, sampling, step=sampling.period / 10).data
+    data = _simulate_case(diagram, motion, sampling, step=sampling.period / 10).data
     return data.isel(time=data["time"].values >= (CYCLES - 1) / motion.frequency)
 
 
@@ -94,8 +94,8 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
     """
     linear, left_out = linear_error(hybrid, motion)
     simulated, rigid = _simulable(hybrid, motion, sampling)
-    runs, failed = _all_simulated(simulated, motion, sampling)
-    speed = f"{led(simulated, 'L')}_velocity"
+    runs, failed = _simulate_cases(simulated, motion, sampling)
+    speed = f"{led_motion(simulated, 'L')}_velocity"
     curves = force_velocity(runs, velocity=speed, after=(CYCLES - 1) / motion.frequency)
     cases = {
         case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
@@ -104,7 +104,7 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
     return Prediction(motion, cases, curves, left_out, simulated, rigid)
 
 
-def _all_simulated(
+def _simulate_cases(
     hybrid: Diagram, motion: StatedMotion, sampling: Sampling
 ) -> tuple[dict[str, Simulation], dict[str, str]]:
     """The cases on one grid of time, and why others could not be simulated."""
@@ -114,7 +114,7 @@ def _all_simulated(
         failed: dict[str, str] = {}
         for case, diagram in four_cases(hybrid).items():
             try:
-                runs[case] = _simulated(diagram, motion, sampling, step=step)
+                runs[case] = _simulate_case(diagram, motion, sampling, step=step)
             except ModelError as error:
                 if case == "none":
                     raise
@@ -132,20 +132,20 @@ def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tup
     structure = next((e.name for e in body.effects if e.role == "structure"), "")
     if structure:
         try:
-            _simulated(four_cases(hybrid)["none"], motion, sampling, step=sampling.period / 10)
+            _simulate_case(four_cases(hybrid)["none"], motion, sampling, step=sampling.period / 10)
         except ModelError:
             # its inertia counts both sides
             return hybrid.with_block("Z_M", body.without_effect(structure)), structure
     return hybrid, ""
 
 
-def _simulated(
+def _simulate_case(
     diagram: Diagram, motion: StatedMotion, sampling: Sampling, *, step: float
 ) -> Simulation:
     return simulate(
         diagram,
         duration=CYCLES / motion.frequency,
-        motion={led(diagram, "L"): motion.motion},
+        motion={led_motion(diagram, "L"): motion.motion},
         computer=sampling,
         step=step,
         give=BRISTLE_SHARE * motion.amplitude,

@@ -39,7 +39,7 @@ from .verdict import (
     cancellation_claims,
     compliant_claim,
     feedback_claim,
-    in_units_of,
+    use_units_of,
 )
 
 #: of the load that stands for a hand over the device's inertia, where none is stated
@@ -141,7 +141,7 @@ def cancellations(
     if level is None:
         return []
     damping = small_motion_damping(body, errors=assumptions.errors)
-    late = _late(body, assumptions)
+    late = _total_delay(body, assumptions)
     dahl = dahl_cancellation(
         level, friction, reach, gain, assumptions, axis=body.axis, late=late, damping=damping
     )
@@ -181,7 +181,7 @@ def _trial(
         assumptions,
         load=assumptions.load,
         # the command is held for a sample, and so is the error that the low-pass takes in
-        delay=_late(body, assumptions) + assumptions.sample_period,
+        delay=_total_delay(body, assumptions) + assumptions.sample_period,
         smoothing_velocity=0.0 if smoothing is None else names[smoothing],
     )
     diagram = haptic_interface(
@@ -193,7 +193,7 @@ def _trial(
     return Trial(option, h, loop, diagram, predict(diagram, motion, sampling))
 
 
-def _late(body: Body, assumptions: Assumptions) -> float:
+def _total_delay(body: Body, assumptions: Assumptions) -> float:
     """Computing delay and what the identified actuation adds, s."""
     assert assumptions.delay is not None
     return assumptions.delay + identified_delay(body)
@@ -228,7 +228,7 @@ def _claims(
             friction,
             reach,
             gain=gain,
-            late=_late(body, assumptions),
+            late=_total_delay(body, assumptions),
             errors=assumptions.errors,
         )
         compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
@@ -245,7 +245,7 @@ def _claims(
             )
         )
     return {
-        case: tuple(in_units_of(body.axis, c) for c in claims) for case, claims in by_case.items()
+        case: tuple(use_units_of(body.axis, c) for c in claims) for case, claims in by_case.items()
     }
 
 

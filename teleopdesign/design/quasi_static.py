@@ -18,7 +18,7 @@ from ..diagrams import Diagram
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..realise.simulated import without_absent
-from ..realise.tips import of_a_body
+from ..realise.tips import move_to_tip_body
 from .stated_motion import StatedMotion
 
 #: what needs states that slow motion does not have: taken away, or at their steady value
@@ -33,7 +33,7 @@ def slow_body(body: Body) -> Body:
     body = without_absent(body)
     for effect in [e for e in body.effects if e.role == "tip_level"]:
         values = {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters}
-        body = body.without_effect(effect.name).with_effect(of_a_body(effect), values)
+        body = body.without_effect(effect.name).with_effect(move_to_tip_body(effect), values)
     for effect in [e for e in body.effects if e.role in _ROLES]:
         if body.has(effect.name):
             body = body.without_effect(effect.name)
@@ -57,10 +57,10 @@ def force_needed(body: Body, motion: StatedMotion, *, rows: int = 2000) -> tuple
     # a force that grows with the load is met at the load that the motion itself needs
     carried = other + friction.subs(SIGNALS["acting_force"], other)
     friction = friction.subs(SIGNALS["acting_force"], carried)
-    return _along(other, body, values) + (f := _along(friction, body, values)), f
+    return _force_along(other, body, values) + (f := _force_along(friction, body, values)), f
 
 
-def _along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Array:
+def _force_along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Array:
     call = sp.lambdify(list(values), sp.sympify(law, strict=True).subs(body.numbers()), "numpy")
     rows = next(iter(values.values())).shape
     return np.broadcast_to(np.asarray(call(*values.values()), dtype=float), rows)
@@ -90,10 +90,10 @@ def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 20
     (body,) = (b.body for b in diagram.bodies if b.name == "Z_M")
     assert isinstance(body, Body)
     force, _ = force_needed(body, motion, rows=rows)
-    return left_over(diagram, force, velocity)
+    return remaining_force(diagram, force, velocity)
 
 
-def left_over(diagram: Diagram, force: Array, velocity: Array) -> Array:
+def remaining_force(diagram: Diagram, force: Array, velocity: Array) -> Array:
     """The part, (n,), of a resisting force that C and H leave to the hand in slow motion."""
     gain = np.zeros_like(force)
     for block in diagram.controls:

@@ -69,7 +69,7 @@ def refine(design: Design, *, simulations: int = 60) -> TunedControllers:
 
     def error(point: np.ndarray) -> float:
         values = dict(zip(names, np.exp(np.clip(point, low, high)).tolist(), strict=True))
-        values = _falling(values)
+        values = _raise_corner(values)
         key = tuple(values.values())
         if key not in cost:
             try:
@@ -94,7 +94,8 @@ def refine(design: Design, *, simulations: int = 60) -> TunedControllers:
         bounds=list(zip(low, high, strict=True)),
         options={"maxfev": simulations, "initial_simplex": simplex, "xatol": 0.01, "fatol": 1e-6},
     )
-    best = _falling(dict(zip(names, np.exp(np.clip(minimum.x, low, high)).tolist(), strict=True)))
+    values = np.exp(np.clip(minimum.x, low, high)).tolist()
+    best = _raise_corner(dict(zip(names, values, strict=True)))
     best_diagram = diagram.with_values(best)
     held = [
         n.partition(".")[2]
@@ -137,7 +138,7 @@ def _range(design: Design) -> tuple[dict[str, float], dict[str, tuple[float, flo
     return start, bounds
 
 
-def _falling(values: dict[str, float]) -> dict[str, float]:
+def _raise_corner(values: dict[str, float]) -> dict[str, float]:
     """The values with b no smaller than P13 asks for: b (1 + k) >= a k."""
     smoothing = smoothing_name(values, block="C.")
     a = 0.0 if smoothing is None else values[smoothing]

@@ -15,7 +15,7 @@ from ..diagrams import four_cases, haptic_interface
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..realise.law_along import law_along
-from .quasi_static import left_over, slow_body
+from .quasi_static import remaining_force, slow_body
 
 #: speeds over the recorded peak speed
 SHARES = np.geomspace(0.01, 1.0, 41)
@@ -54,5 +54,7 @@ def residual_friction(
     }
     level, _ = law_along(body, body.level(), signals)
     device = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)
-    rows = {case: left_over(d, np.array(level), speeds) for case, d in four_cases(device).items()}
+    rows = {
+        case: remaining_force(d, np.array(level), speeds) for case, d in four_cases(device).items()
+    }
     return ResidualFriction(speeds, rows)

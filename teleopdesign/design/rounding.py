@@ -9,14 +9,14 @@ def _scale(value: float, digits: int) -> float:
     return 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
 
 
-def rounded_down(value: float, *, digits: int = 3) -> float:
+def round_down(value: float, *, digits: int = 3) -> float:
     """The largest number of so many digits that is not above a positive value."""
     step = _scale(value, digits)
     # a part in 1e9: a number that has few digits already stays what it is
     return float(f"{math.floor(value / step * (1 + 1e-9)) * step:.{digits}g}")
 
 
-def rounded_up(value: float, *, digits: int = 3) -> float:
+def round_up(value: float, *, digits: int = 3) -> float:
     """The smallest number of so many digits that is not below a positive value."""
     step = _scale(value, digits)
     return float(f"{math.ceil(value / step * (1 - 1e-9)) * step:.{digits}g}")

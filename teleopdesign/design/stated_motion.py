@@ -13,7 +13,7 @@ from ..quantity import unit_of
 from ..realise.reach import Reach
 from ..simulate import Trajectory, sine
 from .assumptions import Assumptions
-from .rounding import rounded_down
+from .rounding import round_down
 
 #: Hz, slowest motion chosen: slower ones cost time and say nothing else
 SLOWEST = 0.2
@@ -65,9 +65,9 @@ def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMo
     if amplitude is None:
         amplitude = reach.travel / 4
         slow = frequency or SLOWEST
-        amplitude = rounded_down(min(amplitude, speed / (2 * math.pi * slow)), digits=2)
+        amplitude = round_down(min(amplitude, speed / (2 * math.pi * slow)), digits=2)
     if frequency is None:
-        frequency = rounded_down(speed / (2 * math.pi * amplitude), digits=2)
+        frequency = round_down(speed / (2 * math.pi * amplitude), digits=2)
     motion = StatedMotion((reach.low + reach.high) / 2, amplitude, frequency)
     if 2 * amplitude > reach.travel:
         raise ModelError(

@@ -20,14 +20,14 @@ from ..passivity import (
     hand_port,
     positive_real,
 )
-from ..passivity.identified import effects_left_open, of_whole_device
-from ..passivity.theorems.lugre import beside_bristle_damping
+from ..passivity.identified import effects_left_open, extend_to_device
+from ..passivity.theorems.lugre import add_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.reach import Reach
 from .chosen import ProposedController
 from .linear import without_friction
-from .rounding import rounded_down, rounded_up
+from .rounding import round_down, round_up
 
 
 def compliant_claim(
@@ -50,12 +50,12 @@ def compliant_claim(
         numbers[f"{law.name}.{law.bristle_stiffness}"],
     )
     return any_environment(
-        motor_level=_decimal(rounded_down(friction.lowest.low, digits=4)),
+        motor_level=_decimal(round_down(friction.lowest.low, digits=4)),
         link_level=0,
         transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
         transmission_damping=_decimal(values["transmission_compliance.damping"]),
-        compensator_level=_decimal(rounded_up(level * gain, digits=6)),
-        compensator_stiffness=_decimal(rounded_up(stiffness * gain, digits=6)),
+        compensator_level=_decimal(round_up(level * gain, digits=6)),
+        compensator_stiffness=_decimal(round_up(stiffness * gain, digits=6)),
         motor_inertia=_decimal(motor),
         link_inertia=_decimal(tip),
     )
@@ -80,7 +80,7 @@ def cancellation_claims(
     open_ones = effects_left_open(body, reach, errors=errors)
     left = [name for name in open_ones if name not in actuation]
     claims = _friction_claims(body, chosen, friction, reach, gain=gain, late=late, errors=errors)
-    return [of_whole_device(c, over=friction.over, left=left) for c in claims]
+    return [extend_to_device(c, over=friction.over, left=left) for c in claims]
 
 
 def _friction_claims(
@@ -95,13 +95,13 @@ def _friction_claims(
 ) -> list[Claim]:
     """Claims on friction and its cancellation alone."""
     law, numbers = chosen.controller.stages[0].law, chosen.controller.names()
-    level = rounded_up(numbers[f"{law.name}.{law.bound}"] * gain, digits=6)
-    least = rounded_down(friction.lowest.low, digits=4)
+    level = round_up(numbers[f"{law.name}.{law.bound}"] * gain, digits=6)
+    least = round_down(friction.lowest.low, digits=4)
     if not law.bristle_stiffness or friction.presliding is None:
         return [bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(level))]
-    stiffness = rounded_up(numbers[f"{law.name}.{law.bristle_stiffness}"] * gain, digits=6)
-    presliding = _decimal(rounded_down(friction.presliding.low, digits=4))
-    most = _decimal(rounded_up(friction.highest.high, digits=4))
+    stiffness = round_up(numbers[f"{law.name}.{law.bristle_stiffness}"] * gain, digits=6)
+    presliding = _decimal(round_down(friction.presliding.low, digits=4))
+    most = _decimal(round_up(friction.highest.high, digits=4))
     pair = dahl_compensation(
         coulomb_level=_decimal(least),
         highest_level=most,
@@ -112,7 +112,7 @@ def _friction_claims(
     damped = body.parameters.get("presliding.bristle_damping", Value(0.0, fixed=True))
     bristle = value_interval(damped, errors=errors)
     claims = [
-        beside_bristle_damping(
+        add_bristle_damping(
             pair,
             coulomb_level=_decimal(least),
             highest_level=most,
@@ -147,7 +147,7 @@ def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
 _REVOLUTE = {"N s/m": "N*m*s/rad", "N/m": "N*m/rad", "N": "N*m"}
 
 
-def in_units_of(axis: str, claim: Claim) -> Claim:
+def use_units_of(axis: str, claim: Claim) -> Claim:
     """The claim with the units of that axis; claims are stated for a prismatic one."""
     if axis == "prismatic":
         return claim

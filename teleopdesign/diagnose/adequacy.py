@@ -33,7 +33,7 @@ class Floors:
     allowed: NoiseFloor
 
 
-def bounded_by_what_is_left(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
+def limit_noise_floor(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
     """The noise floor, at most the error of the model or of any identifiable candidate.
 
     Without what is missing a parameter may be led where sensor noise would ask for any force: what

@@ -16,7 +16,7 @@ import numpy as np
 from ..measurement.experiment import Experiment
 from ..measurement.reading import reading_data
 from ..model import Model
-from ..plain_data import harmless_cell, plain, replacing, write_json
+from ..plain_data import harmless_cell, make_plain, write_beside, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
@@ -28,7 +28,7 @@ from .learnable import learnable_data
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
-from .record_offsets import along_with_offsets
+from .record_offsets import apply_record_offsets
 from .record_shift import shift_data
 from .rung import Rung
 
@@ -45,7 +45,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
                 "instead_of": None if r.instead_of is None else r.instead_of.effect.name,
                 "fit_error": r.fit.fit_error,
                 "check_error": r.fit.check_error,
-                "check_error_at_command": plain(r.fit.at_command.error),
+                "check_error_at_command": make_plain(r.fit.at_command.error),
                 "blind": r.fit.at_command.blind,
                 "could_be": None if r.could_be is None else [place_data(c.key) for c in r.could_be],
             }
@@ -62,8 +62,8 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "set_aside": set_aside_rows(diagnosis),
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
-        "model_parameters": parameter_rows(diagnosis.after, _added(diagnosis)),
-        "left_over_noise_floors": plain(diagnosis.left),
+        "model_parameters": parameter_rows(diagnosis.after, _added_places(diagnosis)),
+        "left_over_noise_floors": make_plain(diagnosis.left),
         **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
@@ -122,15 +122,15 @@ def _missing_place(rung: Rung) -> dict[str, str]:
     return place if instead is None else place | {"instead_of": instead.effect.name}
 
 
-def _added(diagnosis: Diagnosis) -> set[str]:
+def _added_places(diagnosis: Diagnosis) -> set[str]:
     return {f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None}
 
 
 def _parameter(model: Model, name: str) -> dict[str, Any]:
     value = model.parameters[name]
     return {
-        "value": plain(value.value),
-        "stderr": plain(value.stderr),
+        "value": make_plain(value.value),
+        "stderr": make_plain(value.stderr),
         "unit": model.unit(name),
     }
 
@@ -176,7 +176,7 @@ def _evidence(one: CandidateEvidence) -> dict[str, Any]:
     return place_data(one.ranked.candidate.key) | {
         "accepted": one.accepted,
         "as_good": one.as_good,
-        "score": plain(one.ranked.score),
+        "score": make_plain(one.ranked.score),
         "share": one.share,
         "explained": one.explained,
     }
@@ -195,7 +195,7 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
         "at": at,
         "probability": one.probability(),
         "check_error": fit.check_error,
-        "check_error_at_command": plain(fit.at_command.error),
+        "check_error_at_command": make_plain(fit.at_command.error),
         "blind": fit.at_command.blind,
         "refused": one.barred or None,
         "parameters": {
@@ -241,11 +241,11 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
     for body in bodies:
         head += [f"{body}.{q}" for q in ("measured", "model_before", "model_after")]
         head += [f"{body}.residual_before", f"{body}.residual_after"]
-    with replacing(path) as part, opened(part, path) as file:
+    with write_beside(path) as part, open_for_writing(part, path) as file:
         out = csv.writer(file)
         out.writerow(head)
         for record in diagnosis.experiment.records:
-            columns = _predicted(diagnosis, record.file)
+            columns = _predicted_forces(diagnosis, record.file)
             for k in range(len(record.time)):
                 out.writerow(
                     [
@@ -257,7 +257,7 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
 
 
 @contextmanager
-def opened(part: Path, path: Path) -> Iterator[TextIO]:
+def open_for_writing(part: Path, path: Path) -> Iterator[TextIO]:
     """A text file to write to, packed where the name says so; the name within is the path's."""
     with part.open("wb") as raw:
         if path.suffix != ".gz":
@@ -269,12 +269,12 @@ def opened(part: Path, path: Path) -> Iterator[TextIO]:
                 yield file
 
 
-def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
+def _predicted_forces(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
     record = next(r for r in diagnosis.experiment.records if r.file == file)
     columns: list[np.ndarray] = []
     stretches = [s for s in diagnosis.prepared.stretches if s.motion.file == file]
     models = (diagnosis.before.model, diagnosis.model)
-    along = [along_with_offsets(model, stretches) for model in models]
+    along = [apply_record_offsets(model, stretches) for model in models]
     for body in diagnosis.experiment.bodies:
         interaction = record.signals.get(f"{body}.interaction_force")
         measured = record.signals[f"{body}.actuator_force"] + (

@@ -41,21 +41,21 @@ class Apart:
         return residual, slopes
 
 
-def apart(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
+def separate_bodies(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
     """The stretches of each body; all in one where what the links of an arm can do joins them."""
     names = list(dict.fromkeys(s.motion.body for s in stretches))
     if any(s.shared is not None for s in stretches):
-        return (_of(stretches, names),)
-    return tuple(_of(stretches, [name]) for name in names)
+        return (_select_stretches(stretches, names),)
+    return tuple(_select_stretches(stretches, [name]) for name in names)
 
 
-def of_bodies(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
+def select_bodies(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
     """The stretches of these bodies, with those that they are joined to."""
-    joined = (part.bodies for part in apart(stretches) if part.bodies & set(bodies))
-    return _of(stretches, frozenset().union(*joined))
+    joined = (part.bodies for part in separate_bodies(stretches) if part.bodies & set(bodies))
+    return _select_stretches(stretches, frozenset().union(*joined))
 
 
-def _of(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
+def _select_stretches(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
     mine = np.concatenate([np.full(len(s.keep), s.motion.body in bodies) for s in stretches])
     here = tuple(s for s in stretches if s.motion.body in bodies)
     return Apart(here, np.flatnonzero(mine), frozenset(bodies))
@@ -84,7 +84,7 @@ def body_by_body(
     names: the p parameters and shifts;  tolerance: relative change of squares that a fit resolves
     The function takes the model, its parameters as they are searched, and their units there.
     """
-    parts = apart(stretches)
+    parts = separate_bodies(stretches)
     places = [model.locate(name)[0] for name in names]
     columns = [np.flatnonzero([p in part.bodies for p in places]) for part in parts]
     count = sum(len(part.rows) for part in parts)

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..errors import ModelError
 from ..measurement.experiment import Experiment
@@ -27,13 +27,13 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
 from ..notebook import html_table
-from ..plain_data import plain
+from ..plain_data import make_plain
 from ..quantity import unit_of
 from .error import force_error
 from .prepare import Prepared, prepare
-from .record_offsets import along_with_offsets
+from .record_offsets import apply_record_offsets
 from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
-from .threads import in_threads
+from .threads import map_in_threads
 
 #: s, horizons after which the model is set back onto the measured motion; then the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
@@ -42,7 +42,7 @@ HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
 BRISTLE_SHARE = 2e-5
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class RecordedLoop:
     """The controller of the device during the recording, as a spring and a damper.
@@ -200,11 +200,17 @@ def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
             {
                 "use": e.use,
                 "at": e.at,
-                "horizon": {"value": plain(e.horizon), "unit": "s"},
-                "position": {"value": plain(e.position), "unit": unit_of("position", axes[e.at])},
-                "velocity": {"value": plain(e.velocity), "unit": unit_of("velocity", axes[e.at])},
-                "of_travel": plain(e.of_travel),
-                "of_speed": plain(e.of_speed),
+                "horizon": {"value": make_plain(e.horizon), "unit": "s"},
+                "position": {
+                    "value": make_plain(e.position),
+                    "unit": unit_of("position", axes[e.at]),
+                },
+                "velocity": {
+                    "value": make_plain(e.velocity),
+                    "unit": unit_of("velocity", axes[e.at]),
+                },
+                "of_travel": make_plain(e.of_travel),
+                "of_speed": make_plain(e.of_speed),
             }
             for e in comparison.errors
         ],
@@ -219,7 +225,7 @@ def _driven_stretches(
     loop = loop or RecordedLoop(0.0)
     driven = []
     for stretch, (body, motion) in zip(
-        stretches, along_with_offsets(model, stretches), strict=True
+        stretches, apply_record_offsets(model, stretches), strict=True
     ):
         if motion.body != place:
             continue
@@ -235,7 +241,7 @@ def _driven_stretches(
 
 def _error(driven: Sequence[_Driven], use: str, place: str, horizon: float) -> HorizonError:
     """Errors over one horizon (s), all stretches together."""
-    parts = in_threads(lambda d: _deviations(d, horizon), driven)
+    parts = map_in_threads(lambda d: _deviations(d, horizon), driven)
     x, v = (np.concatenate([part[i] for part in parts]) for i in range(2))
     position = np.concatenate([d.motion.position[d.first : d.end] for d in driven])
     velocity = np.concatenate([d.motion.velocity[d.first : d.end] for d in driven])

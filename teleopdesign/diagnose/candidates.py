@@ -93,7 +93,7 @@ def candidates(
     return tuple(possible)
 
 
-def measured_at(experiment: Experiment) -> set[str]:
+def bodies_with_measured_force(experiment: Experiment) -> set[str]:
     """Bodies whose actuator's force was measured, as their channels say."""
     return {c.body for c in experiment.channels.values() if c.measured and c.body is not None}
 
@@ -173,7 +173,7 @@ def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, f
     return among, float(weight @ (time - (weight @ time) / weight.sum()) ** 2)
 
 
-def started(model: Model, scale: dict[str, float]) -> list[Model]:
+def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
     """The model with its absent effects at each combination of their starting values.
 
     scale: quantity -> the record's size of it (SI)

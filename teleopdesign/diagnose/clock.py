@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from ..blocks import Value
 from ..model import Model
-from .candidates import measured_at, started
+from .candidates import bodies_with_measured_force, make_starts
 from .criteria import CRITERIA
 from .evidence import check_score
 from .fit import Fit, estimate, fit_squares, rough_fit
@@ -33,7 +33,7 @@ def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
     for shift in shifts_of(fit.model, prepared.stretches):
         if shift.latest <= CLOCK.early * shift.row:
             continue
-        start = started(stated, prepared.scales)[0]
+        start = make_starts(stated, prepared.scales)[0]
         for part in PLAN.late_starts:
             shifts = {**fit.model.record_shift, shift.at: Value(part * shift.latest)}
             rough = rough_fit(start.with_record_shift(shifts), prepared)
@@ -73,7 +73,7 @@ def _stands_for_a_delay(fit: Fit, place: str, prepared: Prepared) -> bool:
 def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | None:
     """The model with the shift as a dead time of the actuator; None where none could be missing."""
     body = model.body(place)
-    if dead_times(body) or place in measured_at(prepared.experiment):
+    if dead_times(body) or place in bodies_with_measured_force(prepared.experiment):
         return None
     for effect in model.known.values():
         if effect.role != "actuation" or body.lacks(effect) or body.axis in effect.elsewhere:

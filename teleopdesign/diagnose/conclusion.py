@@ -12,21 +12,21 @@ from dataclasses import replace
 from ..measurement.motion import Motion
 from .adequacy import moment_above_noise
 from .candidates import Candidate
-from .corrected_fit import corrected
+from .corrected_fit import correct_fit
 from .decision import verdict
 from .diagnosis import Diagnosis, SetAside
 from .error import force_error
-from .error_at_command import at_command
+from .error_at_command import refer_to_command
 from .fit import Fit
 from .identifiability import doubt
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
-from .order import others_that_help
+from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .prepare import Prepared
 from .probability import probable
 from .rung import Rung
-from .rungs import estimate_without, first_rise, refitted, without_rise
+from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
 from .untold import untold
 
 
@@ -48,7 +48,7 @@ def conclude(
     moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
     if prepared is not search.whole:
         search.progress("errors on the whole records")
-        rungs = tuple(replace(r, fit=_on_all(r.fit, search.whole)) for r in rungs)
+        rungs = tuple(replace(r, fit=_evaluate_on_all(r.fit, search.whole)) for r in rungs)
         if len(steady := without_rise(rungs)) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
     model = rungs[-1].fit.model
@@ -70,13 +70,13 @@ def conclude(
         set_aside=state.set_aside,
     )
     named = probable(diagnosis, criteria=criteria)
-    diagnosis = replace(diagnosis, rungs=tuple(_unexplained(r, named) for r in rungs))
+    diagnosis = replace(diagnosis, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
     if diagnosis.verdict == "effects_missing" and not named:
         return replace(diagnosis, verdict="undecided")
     return replace(diagnosis, named=named)
 
 
-def _unexplained(rung: Rung, named: Collection[Candidate]) -> Rung:
+def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
     """A rung that is not named, with all else that explains a good part of what it does.
 
     One that stands for a group says already what it cannot be distinguished from.
@@ -89,10 +89,10 @@ def _unexplained(rung: Rung, named: Collection[Candidate]) -> Rung:
     best = next((r for r in ranking.ranked if r.candidate == rung.added), None) if ranking else None
     if ranking is None or best is None:
         return rung
-    return replace(rung, could_be=others_that_help(best, ranking))
+    return replace(rung, could_be=select_other_helpers(best, ranking))
 
 
-def doubtful(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | None:
+def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | None:
     """The last rung whose effect is not there, or not what its name says, at the end; and why."""
     last = rungs[-1].fit
     stands_for = implausible_effects(last.model, prepared) if len(rungs) > 1 else {}
@@ -106,14 +106,14 @@ def doubtful(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | No
     return None
 
 
-def without_doubtful(
+def remove_doubtful_rung(
     search: LadderSearch, state: LadderState, rungs: Sequence[Rung]
 ) -> LadderState | None:
     """The ladder without the last effect that is doubtful at its end; None: none is, or was before.
 
     rungs: of the state, with the errors that the answer would state
     """
-    doubted = doubtful(rungs, search.prepared)
+    doubted = find_doubtful_rung(rungs, search.prepared)
     if doubted is None:
         return None
     rung, why = doubted
@@ -123,7 +123,7 @@ def without_doubtful(
     without = estimate_without(state.fit.model, rung, search.prepared)
     if rung.added.key in gone or without is None:
         return None
-    order = refitted(fewer, without, search.prepared)
+    order = reorder_and_refit(fewer, without, search.prepared)
     if order is None:
         return None
     aside = SetAside(rung.added, rung.fit.check_error, why)
@@ -134,18 +134,18 @@ def without_doubtful(
 def with_last_corrected(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
     """The rungs with the reading error removed from the last fit, unless its error grows."""
     search.progress("reading the model's own motion")
-    last = corrected(search, state.fit, state.floor)
+    last = correct_fit(search, state.fit, state.floor)
     rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=last))
     return rungs if first_rise(rungs) is None else state.rungs
 
 
-def _on_all(fit: Fit, whole: Prepared) -> Fit:
+def _evaluate_on_all(fit: Fit, whole: Prepared) -> Fit:
     """A fit made on windows, with its errors on the whole records."""
     fit_error = force_error(fit.model, whole.of("fit"))
     check = whole.of("check")
     if not check:
         return replace(fit, fit_error=fit_error)
-    error, command_error = force_error(fit.model, check), at_command(fit.model, check)
+    error, command_error = force_error(fit.model, check), refer_to_command(fit.model, check)
     on_whole = replace(
         fit.at_command,
         error=command_error.error,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .adequacy import bounded_by_what_is_left, is_adequate
+from .adequacy import is_adequate, limit_noise_floor
 from .clock import with_paying_shift
 from .fit import Fit
 from .ladder_state import LadderSearch
@@ -17,10 +17,10 @@ def corrected_fit(search: LadderSearch) -> Fit:
     fit = estimate_from_starts(search.stated, search.prepared)
     fit = with_paying_shift(fit, search.prepared)
     drawn = noise_floor(fit.model, search.prepared, search.generator())
-    return corrected(search, fit, bounded_by_what_is_left(drawn, fit, Ranking(fit, ())))
+    return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ())))
 
 
-def corrected(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
+def correct_fit(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
     """A fit without its reading error if it leaves only noise; else with wider standard errors."""
     return with_reading_error(
         fit,

@@ -25,19 +25,19 @@ from .ranking import REFUSALS, Ranked
 from .rung import Rung
 
 
-def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
+def explained_share(before: Fit, after: Fit, floor: NoiseFloor) -> float:
     """Share of the squares above the noise floor that the effects added between two fits explain.
 
     Of the force or seen at the command, the smaller part.
     """
-    of_force = _taken_away(before.check_error, after.check_error, floor.value)
+    of_force = _removed_share(before.check_error, after.check_error, floor.value)
     return min(
         of_force,
-        _taken_away(before.at_command.error, after.at_command.error, floor.value_at_command),
+        _removed_share(before.at_command.error, after.at_command.error, floor.value_at_command),
     )
 
 
-def _taken_away(before: float, after: float, floor: float) -> float:
+def _removed_share(before: float, after: float, floor: float) -> float:
     return (before**2 - after**2) / max(before**2 - floor**2, 1e-300)
 
 
@@ -113,7 +113,7 @@ def objection(
         return (
             "leaves less than the jitter of the clock makes without it: it weakens what that makes"
         )
-    if gone := displaced(base, ranked.fit, least=criteria.close):
+    if gone := list_displaced_parameters(base, ranked.fit, least=criteria.close):
         return f"drives {', '.join(gone)} to a bound, which the model needs without it"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
@@ -137,7 +137,7 @@ def helps_but_is_barred(
     return objection(base, ranked, floor, criteria=criteria)
 
 
-def displaced(base: Fit, fit: Fit, *, least: float = 1.0) -> list[str]:
+def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> list[str]:
     """Parameters driven to a bound whose effect the records tell from its absence in the base.
 
     least: standard errors from absence. Of one that hardly differs from it nothing is known that a
@@ -163,7 +163,7 @@ def _is_there(base: Fit, name: str, least: float) -> bool:
     )
 
 
-def superfluous_beside(
+def find_superfluous_effect(
     base: Fit, fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA
 ) -> Candidate | None:
     """The one effect of the base that a candidate at its place makes superfluous; None or several.
@@ -171,14 +171,14 @@ def superfluous_beside(
     Its strength surely differed from zero, and beside the candidate it ends where it is absent; or,
     where no effect does so, it surely differed from zero before and no longer does.
     """
-    gone, ended, open_now = set(displaced(base, fit)), [], []
+    gone, ended, open_now = set(list_displaced_parameters(base, fit)), [], []
     for effect in base.model.body(candidate.at).effects:
         strengths = [f"{candidate.at}.{effect.name}.{n}" for n in effect.absent]
         values = [base.model.parameters.get(n) for n in strengths]
         if not values or any(v is None or v.fixed for v in values):
             continue
         if all(
-            n in gone and _near_absence(fit, n, effect.absent[n.rpartition(".")[2]])
+            n in gone and _is_near_absence(fit, n, effect.absent[n.rpartition(".")[2]])
             for n in strengths
         ):
             ended.append(effect)
@@ -192,12 +192,12 @@ def superfluous_beside(
     if len(superfluous) != 1:
         return None
     start = f"{candidate.at}.{superfluous[0].name}."
-    sure = displaced(base, fit, least=criteria.close)
+    sure = list_displaced_parameters(base, fit, least=criteria.close)
     left = [n for n in sure if not n.startswith(start)]
     return None if left else Candidate(superfluous[0], candidate.at)
 
 
-def _near_absence(fit: Fit, name: str, absent: float) -> bool:
+def _is_near_absence(fit: Fit, name: str, absent: float) -> bool:
     """Whether a parameter that was driven to a bound lies at the one where its effect is absent."""
     declared = fit.model.declared(name)
     value = fit.model.parameters[name].value
@@ -232,7 +232,7 @@ def verdict(
     if not added:
         adequate = is_adequate(rungs[-1].fit, floor, criteria=criteria) or moment is not None
         return "model_adequate" if adequate else "undecided"
-    part = explained(rungs[0].fit, rungs[-1].fit, floor)
+    part = explained_share(rungs[0].fit, rungs[-1].fit, floor)
     if part < criteria.mostly or all(r.alternatives for r in added):
         return "undecided"
     return "effects_missing"

@@ -20,7 +20,7 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.seen_at_command import SeenAtCommand, blind_share, is_between, seen_at_command
 from .prepare import Stretch, measured_force
-from .record_offsets import along_offsets, offset_groups
+from .record_offsets import apply_offset_groups, offset_groups
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,14 @@ class AtCommand:
     weak: bool
 
 
-def at_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
+def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     """Residual of the model as an error of the recorded forces: see `seen_at_command`.
 
     Equal to `residuals` where nothing stands between the recorded forces and the body. What a model
     keeps of the interaction force from a body is made up for by the scale of the rest.
     """
     groups = offset_groups(model, stretches)
-    along = along_offsets(model, stretches, groups)
+    along = apply_offset_groups(model, stretches, groups)
     command_errors = [_map_back(body, motion) for body, motion in along]
     values = [
         m.lowpassed(one.residual)[s.keep]
@@ -59,7 +59,7 @@ def at_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
         bare = [(values[i], nothing.reshape(0, len(values[i]))) for i in group]
         for i, (residual, _) in zip(group, offsets.cleared(bare), strict=True):
             values[i] = residual
-    values = _made_up_for(stretches, values, command_errors)
+    values = _scale_to_command(stretches, values, command_errors)
     sighted = [~one.blind[s.keep] for s, one in zip(stretches, command_errors, strict=True)]
     left = whole = 0.0
     for s, r, sighted_rows in zip(stretches, values, sighted, strict=True):
@@ -87,7 +87,7 @@ def _map_back(body: Body, motion: Motion) -> SeenAtCommand:
     )
 
 
-def _made_up_for(
+def _scale_to_command(
     stretches: Sequence[Stretch], values: list[Array], command_errors: Sequence[SeenAtCommand]
 ) -> list[Array]:
     """Residuals scaled as if all of the interaction force reached the body."""

@@ -30,7 +30,7 @@ def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
     return replace(experiment, records=records)
 
 
-def on_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
+def cut_to_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
     """The windows of prepared records that are searched; the records themselves if not long."""
     if sum(len(r.time) for r in whole.experiment.records) <= plan.long:
         return whole

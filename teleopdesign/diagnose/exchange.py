@@ -22,7 +22,7 @@ from .noise_floor import NoiseFloor
 from .order import alternatives_of
 from .ranking import Ranked, Ranking
 from .rung import Replaced, Rung
-from .rungs import estimate_without, refitted
+from .rungs import estimate_without, reorder_and_refit
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
     alternatives = alternatives_of(replacement, best.ranking, without, floor, criteria=criteria)
     rung = Rung(replacement.candidate, replacement.fit, best.ranking, alternatives)
     kept = [r for r in state.rungs if r.added is not best.dropped]
-    order = refitted([*kept, rung], replacement.fit, prepared)
+    order = reorder_and_refit([*kept, rung], replacement.fit, prepared)
     if order is None:
         return None
     moved = replace(state.with_rungs(order), exchanges=state.exchanges + 1)

@@ -12,10 +12,10 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
-from .bodies_apart import of_bodies
+from .bodies_apart import select_bodies
 from .effort import EFFORTS, Effort
 from .error import error_of, force_error
-from .error_at_command import AtCommand, at_command
+from .error_at_command import AtCommand, refer_to_command
 from .prepare import Prepared, Stretch, folds
 from .residual import both_residuals, relative_residuals
 from .solve import BLOCK, Solution, solve
@@ -92,7 +92,7 @@ def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
     return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
-def weighted(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
+def weigh_residuals(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
     """Residuals of all stretches in one, each row times the root of the rows it stands for."""
     parts = [np.sqrt(s.weight) * r for s, r in zip(stretches, values, strict=True)]
     return np.concatenate(parts) if parts else np.zeros(0)
@@ -119,7 +119,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         check_error = error_of(check, absolute)
         command_error = command_error_of(fitted, check)
     else:
-        check, parts, check_error, command_error = _held_out(fitted, free, prepared)
+        check, parts, check_error, command_error = _fit_held_out(fitted, free, prepared)
     return Fit(
         model=fitted,
         free=free,
@@ -127,7 +127,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         check_error=check_error,
         at_bound=tuple(n for n, b in zip(free, solution.at_bound, strict=True) if b),
         fit_residual=solution.residual,
-        check_residual=weighted(check, parts),
+        check_residual=weigh_residuals(check, parts),
         at_command=command_error,
         fit_blocks=blocks,
         check_blocks=block_numbers(check),
@@ -145,7 +145,7 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
     shifts = solution.shifts
     if not shifts.held.any():
         return solution
-    here = of_bodies(stretches, shifts.bodies)
+    here = select_bodies(stretches, shifts.bodies)
     columns = np.zeros_like(solution.by_shift)
     columns[here.rows] = here.relative(solution.model, shifts.names)[1] * shifts.row
     return replace(solution, by_shift=columns)
@@ -179,17 +179,17 @@ def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.in
 
 def command_error_of(model: Model, stretches: Sequence[Stretch]) -> CommandError:
     """Residual of the model on these stretches, as an error at the command."""
-    error = at_command(model, stretches)
-    return _in_one(stretches, error)
+    error = refer_to_command(model, stretches)
+    return _join_command_errors(stretches, error)
 
 
-def _in_one(stretches: Sequence[Stretch], error: AtCommand) -> CommandError:
+def _join_command_errors(stretches: Sequence[Stretch], error: AtCommand) -> CommandError:
     sighted = np.concatenate(error.sighted) if error.sighted else np.zeros(0, dtype=bool)
-    residual = weighted(stretches, error.residual)
+    residual = weigh_residuals(stretches, error.residual)
     return CommandError(residual, sighted, error.error, error.blind, error.weak)
 
 
-def _held_out(
+def _fit_held_out(
     fitted: Model, free: tuple[str, ...], prepared: Prepared
 ) -> tuple[tuple[Stretch, ...], list[Array], float, CommandError]:
     """Residuals and errors of blocks of the fit records, each from a fit without that block."""
@@ -202,7 +202,7 @@ def _held_out(
         model = solution.model
         held += unseen
         parts += [v for v, _ in relative_residuals(model, unseen)]
-        command_errors.append(at_command(model, unseen))
+        command_errors.append(refer_to_command(model, unseen))
         measured = sum(s.measured for s in unseen)
         squares += force_error(model, unseen) ** 2 * measured
         at_commands += command_errors[-1].error ** 2 * measured
@@ -214,7 +214,7 @@ def _held_out(
         float(np.mean([one.blind for one in command_errors])),
         any(one.weak for one in command_errors),
     )
-    return tuple(held), parts, float(np.sqrt(squares / whole)), _in_one(held, together)
+    return tuple(held), parts, float(np.sqrt(squares / whole)), _join_command_errors(held, together)
 
 
 def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) -> Array:

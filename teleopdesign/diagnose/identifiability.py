@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..quantity import after_number
+from ..quantity import unit_after_number
 from ..standard_error import with_standard_error
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
@@ -21,7 +21,7 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
     """
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
     effects = {fit.free[i].rpartition(".")[0] for i in new}
-    together = {n for one in effects for n in known_in_a_product(fit, one, criteria=criteria)}
+    together = {n for one in effects for n in list_known_in_product(fit, one, criteria=criteria)}
     for i in new:
         name = fit.free[i]
         value, declared = fit.model.parameters[name], fit.model.declared(name)
@@ -45,7 +45,9 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
     return False
 
 
-def known_in_a_product(fit: Fit, effect: str, *, criteria: Criteria = CRITERIA) -> frozenset[str]:
+def list_known_in_product(
+    fit: Fit, effect: str, *, criteria: Criteria = CRITERIA
+) -> frozenset[str]:
     """Parameters of an effect that differ surely from zero, the others of a product held.
 
     The effect is there, though along such a valley the records leave open by which of them.
@@ -64,7 +66,7 @@ def doubt(fit: Fit, candidate: Candidate) -> str:
     By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
     of its parameters may be open, and so may those of which a product is known. "": none
     """
-    together = known_in_a_product(fit, f"{candidate.at}.{candidate.effect.name}")
+    together = list_known_in_product(fit, f"{candidate.at}.{candidate.effect.name}")
     for name, declared in candidate.effect.parameters.items():
         full = f"{candidate.at}.{candidate.effect.name}.{name}"
         absent = candidate.effect.absent.get(name)
@@ -75,7 +77,7 @@ def doubt(fit: Fit, candidate: Candidate) -> str:
             continue
         value = fit.model.parameters[full]
         if not value.stderr < fit.model.from_absence(full):
-            unit = after_number(fit.model.unit(full))
+            unit = unit_after_number(fit.model.unit(full))
             best = with_standard_error(value.value, value.stderr)
             return f"{name} = {best}{unit} is not told from absence by the errors of the readings"
     return ""

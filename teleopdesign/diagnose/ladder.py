@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import is_a_tone
-from .conclusion import conclude, with_last_corrected, without_doubtful
+from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
@@ -67,17 +67,17 @@ def climb(
     while True:
         while (
             len(state.set_aside) <= search.plan.searched_on
-            and (moved := next_move(search, state)) is not None
+            and (moved := make_next_move(search, state)) is not None
         ):
             state = look(search, moved.rungs, moved)
         rungs = ended(search, state)
-        less = without_doubtful(search, state, rungs)
+        less = remove_doubtful_rung(search, state, rungs)
         if less is None:
             return state, rungs
         state = look(search, less.rungs, less)
 
 
-def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
+def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
     Where no effect is supported alone, a straight line is fitted in place of bends; then, where

@@ -10,13 +10,13 @@ import numpy as np
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .adequacy import Floors, allowed_floor, bounded_by_what_is_left
+from .adequacy import Floors, allowed_floor, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .diagnosis import SetAside
-from .excerpt import on_windows
+from .excerpt import cut_to_windows
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, best_tone
@@ -133,7 +133,7 @@ def search_for(
     return LadderSearch(
         experiment=experiment,
         whole=whole,
-        prepared=on_windows(whole, plan),
+        prepared=cut_to_windows(whole, plan),
         stated=model or Model.from_experiment(experiment),
         seed=seed,
         plan=plan,
@@ -166,7 +166,7 @@ def look(
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn, criteria=criteria)
     ranking = search.rank(here, step=len(rungs), worth=worth)
-    bounded = bounded_by_what_is_left(drawn, here, ranking)
+    bounded = limit_noise_floor(drawn, here, ranking)
     first = bounded if before is None else before.first
     floors = Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria))
     tone = best_tone(here, prepared)

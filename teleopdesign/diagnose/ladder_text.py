@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..blocks import Value
 from ..notebook import html_table
-from ..quantity import after_number, unit_of
+from ..quantity import unit_after_number, unit_of
 from ..standard_error import with_standard_error
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
@@ -55,7 +55,7 @@ def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 def _estimate_text(value: Value, unit: str) -> str:
     """A value with its error; one that was estimated without an error is not determined."""
-    text = f"{with_standard_error(value.value, value.stderr)}{after_number(unit)}"
+    text = f"{with_standard_error(value.value, value.stderr)}{unit_after_number(unit)}"
     if value.fixed or math.isfinite(value.stderr):
         return text
     return f"{text}, not determined by these records"
@@ -112,7 +112,7 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
     return f"unexplained: less likely than not what its name says; {also}"
 
 
-def said_of_added(diagnosis: Diagnosis, rung: Rung) -> list[str]:
+def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
     """What is said of the effect that a rung added: its parameters, and what else it could be."""
     assert rung.added is not None
     model, lines = diagnosis.model, []
@@ -147,7 +147,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         )
         if rung.added is None:
             continue
-        lines += said_of_added(diagnosis, rung)
+        lines += describe_addition(diagnosis, rung)
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
         for o in offset_rows(diagnosis)

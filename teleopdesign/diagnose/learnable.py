@@ -23,14 +23,14 @@ from threadpoolctl import threadpool_limits
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from ..measurement.reversals import near_reversals
+from ..measurement.reversals import mark_reversals
 from ..model import Model
 from ..quantity import unit_of
 from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate
 from .prepare import FOLDS, Prepared, Stretch, folds, measured_force
-from .record_offsets import along_with_offsets
+from .record_offsets import apply_record_offsets
 from .residual import residuals
 from .tree_inputs import inputs_along
 
@@ -104,7 +104,7 @@ def error_near_reversals(model: Model, prepared: Prepared) -> NearReversals | No
     left = force = 0.0
     rows = whole = 0
     for s, (residual, _) in zip(stretches, residuals(model, stretches), strict=True):
-        near = _near(s.motion)[s.keep]
+        near = _mark_near(s.motion)[s.keep]
         left += s.weight * float(np.sum(residual[near] ** 2))
         force += s.weight * float(np.sum(measured_force(s)[near] ** 2))
         rows, whole = rows + int(near.sum()), whole + len(near)
@@ -130,10 +130,10 @@ def learnable(
 
     # threads of the trees and of other callers would wait for each other by spinning
     with threadpool_limits(limits=1, user_api="openmp"):
-        return _learned(model, prepared, beside, seed)
+        return _measure_learnable(model, prepared, beside, seed)
 
 
-def _learned(
+def _measure_learnable(
     model: Model, prepared: Prepared, beside: Sequence[Sequence[Motion]], seed: int
 ) -> Learnable:
     stretches = prepared.stretches  # without check records all are fit records
@@ -143,12 +143,12 @@ def _learned(
     after: list[Array] = []
     alone: list[Array] = []
     for held, there in _turns(model, prepared, stretches):
-        motions = [motion for _, motion in along_with_offsets(there, stretches)]
+        motions = [motion for _, motion in apply_record_offsets(there, stretches)]
         inputs = inputs_along(motions, beside)
         left = [r for r, _ in residuals(there, stretches)]
-        of_rest = _predicted(stretches, inputs, left, held, seed)
-        of_force = _predicted(stretches, inputs, measured, held, seed)
-        unseen += [_of_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
+        of_rest = _predict_held_out(stretches, inputs, left, held, seed)
+        of_force = _predict_held_out(stretches, inputs, measured, held, seed)
+        unseen += [_select_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
         before += [r[rows] for r, rows in zip(left, held, strict=True)]
         after += [r[rows] - p for r, rows, p in zip(left, held, of_rest, strict=True)]
         alone += [f[rows] - p for f, rows, p in zip(measured, held, of_force, strict=True)]
@@ -186,7 +186,7 @@ def learnable_from(content: Mapping[str, Any]) -> Learnable | None:
     return Learnable(float(box["left"]), float(error), float(box["alone"]), str(box["where"]))
 
 
-def near_reversals_from(content: Mapping[str, Any]) -> NearReversals | None:
+def read_near_reversals(content: Mapping[str, Any]) -> NearReversals | None:
     """What `learnable_data` wrote of the error near reversals."""
     near = content.get("near_reversals")
     return None if near is None else NearReversals(float(near["check_error"]), float(near["share"]))
@@ -212,14 +212,14 @@ def _turns(
         yield held, there
 
 
-def _of_rows(stretch: Stretch, rows: NDArray[np.bool_]) -> Stretch:
+def _select_rows(stretch: Stretch, rows: NDArray[np.bool_]) -> Stretch:
     """The stretch with some of its rows."""
     force = measured_force(stretch)[rows]
     squares = stretch.weight * float(force @ force)
     return replace(stretch, keep=stretch.keep[rows], measured=squares)
 
 
-def _predicted(
+def _predict_held_out(
     stretches: Sequence[Stretch],
     inputs: Sequence[Array],
     targets: Sequence[Array],
@@ -258,8 +258,8 @@ def _trees(inputs: Array, target: Array, seed: int) -> Any:
     return trees.fit(inputs, target)
 
 
-def _near(motion: Motion) -> NDArray[np.bool_]:
-    return near_reversals(motion.direction, within=round(NEAR / motion.sample_time))
+def _mark_near(motion: Motion) -> NDArray[np.bool_]:
+    return mark_reversals(motion.direction, within=round(NEAR / motion.sample_time))
 
 
 def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) -> str:
@@ -269,7 +269,7 @@ def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) ->
     if not each.sum() > 0.0:
         return ""
     speed = np.concatenate([np.abs(s.motion.velocity[s.keep]) for s in stretches])
-    near = np.concatenate([_near(s.motion)[s.keep] for s in stretches])
+    near = np.concatenate([_mark_near(s.motion)[s.keep] for s in stretches])
 
     def excess(rows: NDArray[np.bool_]) -> float:
         """By how much the rows' part of the gain exceeds their part of all rows."""

@@ -19,7 +19,7 @@ from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.traced import Probe
-from .bodies_apart import of_bodies
+from .bodies_apart import select_bodies
 from .fit import Fit
 from .prepare import Prepared
 
@@ -59,7 +59,7 @@ def linear_starts(
     phases = (0.0, math.pi / 2) if effect.phase else (0.0,)
     symbols = effect.symbols()
     probes = [
-        Probe(at, symbols[effect.strength], _others(model, effect, at, symbols, phase))
+        Probe(at, symbols[effect.strength], _other_values(model, effect, at, symbols, phase))
         for model in models
         for phase in phases
     ]
@@ -82,7 +82,7 @@ def linear_starts(
     return sorted(starts, key=lambda s: s.promised)
 
 
-def _others(
+def _other_values(
     model: Model, effect: Effect, at: str, symbols: dict[str, sp.Symbol], phase: float
 ) -> dict[sp.Symbol, float]:
     known = model.parameters
@@ -100,7 +100,7 @@ def _size(columns: Array) -> Array:
 def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
     """Derivatives (probes, rows) of the residual; each lies in one piece of memory."""
     stretches = prepared.of("fit")
-    moved = of_bodies(stretches, {model.holder(probe.at) for probe in probes})
+    moved = select_bodies(stretches, {model.holder(probe.at) for probe in probes})
     _, slopes = moved.relative(model, probes)
     whole = np.zeros((len(probes), sum(len(s.keep) for s in stretches)))
     whole[:, moved.rows] = slopes.T

@@ -13,10 +13,10 @@ from .decision import is_better
 from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
 from .noise_floor import noise_floor
-from .order import alternatives_of, others_that_help, preferred
+from .order import alternatives_of, select_other_helpers, select_simplest
 from .ranking import Ranked
-from .rung import Rung, replaced_by
-from .rungs import estimate_without, refitted
+from .rung import Rung, make_replaced
+from .rungs import estimate_without, reorder_and_refit
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -27,8 +27,8 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
     criteria = search.criteria
     supported = [r for r in state.supported if not _takes_back(r, state)]
     while supported:
-        best = preferred(supported, criteria=criteria)
-        moved = _added(search, state, best)
+        best = select_simplest(supported, criteria=criteria)
+        moved = _add_candidate(search, state, best)
         if moved is not None:
             return moved
         supported.remove(best)
@@ -40,7 +40,7 @@ def _takes_back(ranked: Ranked, state: LadderState) -> bool:
     return ranked.instead_of is not None and ranked.instead_of.key in state.came_back
 
 
-def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderState | None:
+def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> LadderState | None:
     criteria, prepared = search.criteria, search.prepared
     alternatives = alternatives_of(best, state.ranking, state.fit, state.floor, criteria=criteria)
     noise = is_adequate(state.fit, state.floor, criteria=criteria)
@@ -49,14 +49,14 @@ def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderStat
         best.fit,
         state.ranking,
         alternatives,
-        replaced=replaced_by(best, state.fit.model),
-        could_be=others_that_help(best, state.ranking) if noise else None,
+        replaced=make_replaced(best, state.fit.model),
+        could_be=select_other_helpers(best, state.ranking) if noise else None,
     )
     for earlier in state.rungs[1:]:
         assert earlier.added is not None
         if earlier.instead_of == best.candidate:  # both are there: nothing was replaced
             rungs = [replace(r, replaced=None) if r is earlier else r for r in state.rungs]
-            order = refitted(rungs, best.fit, prepared)
+            order = reorder_and_refit(rungs, best.fit, prepared)
             if order is None:
                 return None
             back = state.came_back | {best.candidate.key}
@@ -64,7 +64,7 @@ def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderStat
         if best.instead_of == earlier.added:  # that one only stood in for this
             kept = [r for r in state.rungs if r is not earlier]
             rung = replace(rung, replaced=earlier.replaced)
-            order = refitted([*kept, rung], best.fit, prepared)
+            order = reorder_and_refit([*kept, rung], best.fit, prepared)
             if order is None:
                 return None
             return replace(state.with_rungs(order), came_back=state.came_back | {earlier.added.key})
@@ -79,7 +79,7 @@ def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
         if without is None or not _is_enough(search, without, state):
             continue
         fewer = [r for r in state.rungs if r is not rung]
-        order = refitted(fewer, without, search.prepared)
+        order = reorder_and_refit(fewer, without, search.prepared)
         return state.with_rungs(order) if order is not None else None
     return None
 

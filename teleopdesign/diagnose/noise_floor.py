@@ -20,7 +20,7 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
 from ..model import Model
 from .error import error_of
-from .error_at_command import at_command
+from .error_at_command import refer_to_command
 from .prepare import Prepared, Stretch
 from .residual import residuals
 from .sensors import sensor_of
@@ -72,12 +72,12 @@ def noise_floor(
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
-    command_errors, command_before = [], at_command(model, stretches).residual
+    command_errors, command_before = [], refer_to_command(model, stretches).residual
     for k in range(DRAWS):
-        drawn = [_drawn(s, prepared, generator, k) for s in stretches]
+        drawn = [_draw_reading(s, prepared, generator, k) for s in stretches]
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
-        again = zip(at_command(model, drawn).residual, command_before, strict=True)
+        again = zip(refer_to_command(model, drawn).residual, command_before, strict=True)
         command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
@@ -88,7 +88,7 @@ def noise_floor(
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
 
 
-def _drawn(
+def _draw_reading(
     stretch: Stretch, prepared: Prepared, generator: np.random.Generator, draw: int
 ) -> Stretch:
     """The stretch read once more, with the directions that were determined."""

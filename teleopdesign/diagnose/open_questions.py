@@ -16,7 +16,9 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
     """
     if diagnosis.open is not None:
         return diagnosis.open
-    questions = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
+    questions = [
+        _question_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None
+    ]
     if diagnosis.verdict == "undecided":
         supported = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
         others = tuple((r.candidate, r.fit) for r in supported[: PLAN.rivals - 1])
@@ -24,7 +26,7 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
     return tuple(q for q in questions if q.others)
 
 
-def _of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
+def _question_of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
     """The accepted effect of a rung and what may stand in its place."""
     assert rung.added is not None and rung.ranking is not None
     alternatives = {c.key for c in rung.alternatives}

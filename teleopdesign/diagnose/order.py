@@ -2,7 +2,7 @@
 
 Candidates that count come first, then those that leave fewer squares on the check records
 (`rank_key`). Among those that the records do not tell from the best, the simplest is taken
-(`preferred`).
+(`select_simplest`).
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ def rank_key(ranked: Ranked) -> tuple[bool, float]:
     return not ranked.counts, check_squares(ranked.fit)
 
 
-def alike(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
+def select_equals(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
     """The supported candidates, in order, that explain the records as well as the best one."""
     best = supported[:1]
-    return [r for r in supported if r is best[0] or _equal(r, best[0], criteria)]
+    return [r for r in supported if r is best[0] or _is_equal(r, best[0], criteria)]
 
 
-def _equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
+def _is_equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
     """Whether the records cannot distinguish a candidate from the best one."""
     near = abs(one.fit.check_error - best.fit.check_error) < criteria.near * best.fit.check_error
     return near and whole_score(one.fit, best.fit) < criteria.close
 
 
-def preferred(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
+def select_simplest(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
     """Of the supported candidates, in order, the simplest that explains as well as the best.
 
     What the user's model has is believed: an effect in the place of another only where it is
     better.
     """
-    equal = alike(supported, criteria=criteria)
+    equal = select_equals(supported, criteria=criteria)
     return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r)))
 
 
@@ -60,12 +60,12 @@ def alternatives_of(
     supported = [r for r in ranking.ranked if is_supported(base, r, floor, criteria=criteria)]
     return tuple(
         r.candidate
-        for r in alike(supported, criteria=criteria)
+        for r in select_equals(supported, criteria=criteria)
         if r is not best and simplicity(r)[0] == simplicity(best)[0]
     )
 
 
-def others_that_help(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
+def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
     """What else takes away at least half of what the best does, whether or not by more than chance.
 
     To be said where the model before left only noise: there a gain is small, and what brings it

@@ -73,12 +73,12 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
         most = CRITERIA.hum_in_motion if is_of_mains(frequency) else CRITERIA.tone_in_motion
         if frequency > 0 and all(_share(s, frequency) < most for s, _ in fit_parts + check_parts):
             left = [
-                _without(s, r, frequency) if s.motion.body == body else r
+                _remove_tone(s, r, frequency) if s.motion.body == body else r
                 for s, r in zip(check, after, strict=True)
             ]
             tones = [least, Tone(np.concatenate(left))]
             if tones[-1].squares < (1 - CRITERIA.tone_heard) * whole:
-                tones.append(Tone(_beside_a_force(fitted, prepared, body, frequency)))
+                tones.append(Tone(_fit_beside_tone(fitted, prepared, body, frequency)))
             least = min(tones, key=lambda tone: tone.squares)
     return least
 
@@ -89,18 +89,19 @@ def is_of_mains(frequency: float) -> bool:
     return any(abs(frequency - tone) <= CRITERIA.mains_within * tone for tone in tones)
 
 
-def _beside_a_force(fit: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
+def _fit_beside_tone(fit: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
     """Check residual of the model, estimated again, where a tone acts on the body as a force."""
     stretches = prepared.stretches
     for _ in range(PLAN.tone_estimates):
         stretches = tuple(
-            _driven(fit.model, s, frequency) if s.motion.body == body else s for s in stretches
+            _drive_by_tone(fit.model, s, frequency) if s.motion.body == body else s
+            for s in stretches
         )
         fit = estimate(fit.model, replace(prepared, stretches=stretches))
     return fit.check_residual
 
 
-def _driven(model: Model, stretch: Stretch, frequency: float) -> Stretch:
+def _drive_by_tone(model: Model, stretch: Stretch, frequency: float) -> Stretch:
     """The stretch with the tone, of any amplitude and phase, among the forces that act.
 
     What sticks hides a part of it from each turn; the residual shows it low-passed.
@@ -155,11 +156,11 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
 
 def _tone_squares(stretch: Stretch, residual: Array, frequency: float) -> float:
     """Squares that a tone of any amplitude and phase takes from one residual."""
-    left = _without(stretch, residual, frequency)
+    left = _remove_tone(stretch, residual, frequency)
     return float(residual @ residual - left @ left)
 
 
-def _without(stretch: Stretch, residual: Array, frequency: float) -> Array:
+def _remove_tone(stretch: Stretch, residual: Array, frequency: float) -> Array:
     """A residual less the tone, of any amplitude and phase, that takes most from it."""
     if len(residual) < 3:
         return residual

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from .adequacy import is_adequate
 from .candidates import Candidate
-from .decision import explained, is_better, is_supported
+from .decision import explained_share, is_better, is_supported
 from .evidence import check_squares
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
@@ -15,8 +15,8 @@ from .noise_floor import NoiseFloor
 from .order import alternatives_of
 from .outside_tone import best_tone
 from .ranking import Ranking
-from .rung import Rung, replaced_by
-from .rungs import estimate_without, falling
+from .rung import Rung, make_replaced
+from .rungs import estimate_without, order_by_falling_error
 
 
 def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -83,17 +83,17 @@ def _best_pair(
             continue
         alternatives = alternatives_of(second, beside, first.fit, floor, criteria=criteria)
         rungs = (
-            Rung(first.candidate, first.fit, ranking, replaced=replaced_by(first, here.model)),
+            Rung(first.candidate, first.fit, ranking, replaced=make_replaced(first, here.model)),
             Rung(
                 second.candidate,
                 second.fit,
                 beside,
                 alternatives,
-                replaced=replaced_by(second, first.fit.model),
+                replaced=make_replaced(second, first.fit.model),
             ),
         )
         if _needs_both(search, here, rungs, floor):
-            order = falling((base, *rungs), search.prepared)
+            order = order_by_falling_error((base, *rungs), search.prepared)
             pairs += [order[1:]] if order is not None else []
     return min(pairs, key=lambda rungs: check_squares(rungs[-1].fit), default=None)
 
@@ -105,7 +105,7 @@ def _needs_both(
     both, first, criteria = rungs[-1].fit, rungs[0], search.criteria
     if not is_better(base, both, floor, criteria=criteria):
         return False
-    if explained(base, both, floor) < criteria.mostly:
+    if explained_share(base, both, floor) < criteria.mostly:
         return False
     if not best_tone(base, search.prepared).is_beaten_by(both):
         return False

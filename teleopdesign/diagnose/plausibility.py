@@ -39,11 +39,11 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
         alongs = [(measured_along(body, s.motion), s) for s in stretches]
-        most = _all_that_acts(stretches, facts)
+        most = _largest_acting_force(stretches, facts)
         for effect in effects:
-            said = _said(effect, "plausible", facts)
+            said = _ask_effect(effect, "plausible", facts)
             if said is None and effect.role == "force":
-                said = _taken_away_again(effect, alongs, most, facts)
+                said = _explain_cancelled(effect, alongs, most, facts)
             if said is not None:
                 meanings[effect.name, place] = said
     return meanings
@@ -55,10 +55,10 @@ def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str 
     raises ModelError: as `implausible_effects`
     """
     place = model.holder(at)
-    return _said(effect, "untold", record_facts(model, place, prepared))
+    return _ask_effect(effect, "untold", record_facts(model, place, prepared))
 
 
-def _taken_away_again(
+def _explain_cancelled(
     effect: Effect, alongs: Sequence[tuple[Along, Stretch]], most: float, facts: RecordFacts
 ) -> str | None:
     """Whether a force varies along the motion by more than all that act together.
@@ -79,7 +79,7 @@ def _taken_away_again(
     )
 
 
-def _all_that_acts(stretches: Sequence[Stretch], facts: RecordFacts) -> float:
+def _largest_acting_force(stretches: Sequence[Stretch], facts: RecordFacts) -> float:
     """Largest measured force and largest force of inertia and of the links of an arm, together."""
     inertia, needed = abs(facts.body["inertia"]), 0.0
     for s in stretches:
@@ -88,7 +88,7 @@ def _all_that_acts(stretches: Sequence[Stretch], facts: RecordFacts) -> float:
     return facts.force + float(needed)
 
 
-def _said(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
+def _ask_effect(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
     """What the effect's `plausible` or `untold` says; None where it has none."""
     check: Callable[[Any, RecordFacts], str | None] | None = getattr(effect, hook)
     if check is None:

@@ -155,11 +155,11 @@ def _thin(stretch: Stretch) -> Stretch:
     if len(kept) < FEWEST:
         return stretch
     rows = len(keep) * stretch.weight
-    thin = replace(stretch, motion=_every(motion, every), keep=kept, weight=rows / len(kept))
+    thin = replace(stretch, motion=_thin_motion(motion, every), keep=kept, weight=rows / len(kept))
     return replace(thin, measured=_squares(thin.motion, kept, thin.weight))
 
 
-def _every(motion: Motion, count: int) -> Motion:
+def _thin_motion(motion: Motion, count: int) -> Motion:
     """A motion at every so many samples; its held command is the same at those samples."""
     at = slice(None, None, count)
     fine = motion.spectrum

@@ -20,7 +20,7 @@ import numpy as np
 
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import displaced, helps_but_is_barred
+from .decision import helps_but_is_barred, list_displaced_parameters
 from .diagnosis import Diagnosis
 from .evidence import chance
 from .fit import Fit
@@ -69,21 +69,21 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
     """The evidence for every candidate on every step."""
     evidence = _evidence_alone(diagnosis)
     accepted = {one.ranked.candidate.key: one.probability() for one in evidence if one.accepted}
-    most = _no_likelier_than_needed(diagnosis, accepted)
+    most = _limit_by_requirements(diagnosis, accepted)
     return [
         replace(one, at_most=most.get(one.ranked.candidate.key, 1.0)) if one.accepted else one
         for one in evidence
     ]
 
 
-def _no_likelier_than_needed(
+def _limit_by_requirements(
     diagnosis: Diagnosis, accepted: Mapping[tuple[str, str], float]
 ) -> dict[tuple[str, str], float]:
     """Largest probability of each accepted effect at which all that it needs is as likely."""
     most: dict[tuple[str, str], float] = {}
     for level in sorted(set(accepted.values()), reverse=True):
         likely = {key for key, probability in accepted.items() if probability >= level}
-        for candidate in standing(diagnosis, likely):
+        for candidate in select_independent(diagnosis, likely):
             most.setdefault(candidate.key, level)
     return most
 
@@ -109,7 +109,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                     accepted=accepted,
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
-                    explained=_explained(diagnosis, ranking, ranked),
+                    explained=_explained_share(diagnosis, ranking, ranked),
                     left=diagnosis.left,
                     barred=barred,
                     outweighs=_outweighs(diagnosis, ranking.base, ranked.fit),
@@ -125,10 +125,12 @@ def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Ca
         for one in evidence_of(diagnosis)
         if one.accepted and one.probability(criteria=criteria) >= criteria.named
     }
-    return standing(diagnosis, likely)
+    return select_independent(diagnosis, likely)
 
 
-def standing(diagnosis: Diagnosis, named: Collection[tuple[str, str]]) -> tuple[Candidate, ...]:
+def select_independent(
+    diagnosis: Diagnosis, named: Collection[tuple[str, str]]
+) -> tuple[Candidate, ...]:
     """Accepted effects with these keys, in order, that need no accepted one without such a key."""
     model, there = diagnosis.before.model, []
     for rung in diagnosis.rungs:
@@ -159,7 +161,11 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
         # what was accepted may have a parameter at a bound: it was supported so
-        gone = displaced(ranking.base, r.fit, least=CRITERIA.close) if accepted else driven
+        gone = (
+            list_displaced_parameters(ranking.base, r.fit, least=CRITERIA.close)
+            if accepted
+            else driven
+        )
         serious = r.counts and r.candidate.key in alike and not gone
         weights[r.candidate.key] = (
             math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
@@ -190,18 +196,18 @@ def _outweighs(diagnosis: Diagnosis, base: Fit, fit: Fit) -> float:
     errors = (f.check_error for f in (base, fit, last))
     at_command = (f.at_command.error for f in (base, fit, last))
     return min(
-        _over_both(*errors, floor=floor.value, part=part),
-        _over_both(*at_command, floor=floor.value_at_command, part=part),
+        _share_of_gain(*errors, floor=floor.value, part=part),
+        _share_of_gain(*at_command, floor=floor.value_at_command, part=part),
     )
 
 
-def _over_both(before: float, after: float, last: float, *, floor: float, part: float) -> float:
+def _share_of_gain(before: float, after: float, last: float, *, floor: float, part: float) -> float:
     gain = before**2 - after**2
     left = part * max(last**2 - floor**2, 0.0)  # NaN at the command (blind everywhere): no belief
     return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 
 
-def _explained(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:
+def _explained_share(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:
     before, after = ranking.base.check_error, ranked.fit.check_error
     excess = before**2 - min(diagnosis.floor.value, after) ** 2
     return min(max((before**2 - after**2) / excess, 0.0), 1.0) if excess > 0 else 0.0

@@ -57,7 +57,7 @@ def product_of(fit: Fit, effect: str) -> Product | None:
         return None
     values = np.array([abs(model.parameters[n].value) for n in names])
     errors = np.array([model.parameters[n].stderr for n in names]) / values
-    powers, known = best_product(_by_relative_change(fit, names, values), errors)
+    powers, known = best_product(_relative_columns(fit, names, values), errors)
     counting = [i for i, p in enumerate(powers) if abs(p) >= POWER]
     if len(counting) < 2:
         return None
@@ -84,7 +84,7 @@ def best_product(columns: Array, errors: Array) -> tuple[Array, float]:
     return powers, float(np.sqrt(max(powers @ covariance @ powers, 0.0)))
 
 
-def _by_relative_change(fit: Fit, names: Sequence[str], values: Array) -> Array:
+def _relative_columns(fit: Fit, names: Sequence[str], values: Array) -> Array:
     """Residual by relative changes of parameters (rows, k), without what the others make up for."""
     ours = [fit.free.index(n) for n in names]
     rest = [i for i in range(len(fit.free)) if i not in ours]

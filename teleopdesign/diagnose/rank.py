@@ -8,9 +8,9 @@ from itertools import count
 
 from ..errors import ModelError
 from ..model import Model
-from .candidates import Candidate, candidates, measured_at
+from .candidates import Candidate, bodies_with_measured_force, candidates
 from .criteria import CRITERIA, Criteria
-from .decision import refusal, superfluous_beside
+from .decision import find_superfluous_effect, refusal
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
@@ -21,7 +21,7 @@ from .progress import ProgressLine
 from .ranking import Ranked, Ranking
 from .search import base_of, estimate_from_starts, from_stated
 from .search_plan import PLAN
-from .threads import in_threads
+from .threads import map_in_threads
 
 
 def _is_part_of(small: Candidate, large: Candidate) -> bool:
@@ -52,7 +52,7 @@ def _from_kin(
     return candidate, min((rough, again), key=fit_squares)
 
 
-def _refined(
+def _refine_candidate(
     attempt: tuple[Candidate, Fit], worthless: float, prepared: Prepared, stated: Model | None
 ) -> tuple[Candidate, Fit]:
     """A fine fit, for a candidate that is there with less than `worthless` squares."""
@@ -81,20 +81,22 @@ def _contenders_refined(
     """
     attempts, refined = list(attempts), set[int]()
     for contending in (PLAN.leading, PLAN.contending):
-        most = (1.0 + contending) * _least_counted(attempts, base, prepared, criteria)
+        most = (1.0 + contending) * _least_squares_that_count(attempts, base, prepared, criteria)
         chosen = [
             i
             for i, (_, fit) in enumerate(attempts)
             if i not in refined and fit_squares(fit) <= most
         ]
-        finer = in_threads(lambda i: _refined(attempts[i], worthless, prepared, stated), chosen)
+        finer = map_in_threads(
+            lambda i: _refine_candidate(attempts[i], worthless, prepared, stated), chosen
+        )
         for i, attempt in zip(chosen, finer, strict=True):
             attempts[i] = attempt
         refined.update(chosen)
     return attempts
 
 
-def _least_counted(
+def _least_squares_that_count(
     attempts: Collection[tuple[Candidate, Fit]], base: Fit, prepared: Prepared, criteria: Criteria
 ) -> float:
     """Least squares of an attempt that counts; all do where none counts.
@@ -147,18 +149,18 @@ def rank_candidates(
         base.model,
         [s.motion for s in prepared.stretches],
         separate_zeros={s.motion.file for s in prepared.stretches if s.has_zero_offset},
-        measured=measured_at(prepared.experiment),
+        measured=bodies_with_measured_force(prepared.experiment),
     )
     if among is not None:
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
     # those with hidden states take longest: begun last, they would be waited for
-    fits = in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
+    fits = map_in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))
-    fits = in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
+    fits = map_in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
     worthless = (1.0 - worth) * fit_squares(base)
     fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, criteria=criteria)
-    results = in_threads(lambda cf: _ranked_best(base, cf, prepared, criteria), fits)
+    results = map_in_threads(lambda cf: _ranked_best(base, cf, prepared, criteria), fits)
     ordered = sorted(results, key=rank_key)
     entries = [
         replace(r, behind=whole_score(r.fit, ordered[0].fit) if i else 0.0)
@@ -167,7 +169,7 @@ def rank_candidates(
     return Ranking(base, tuple(entries))
 
 
-def ranked(
+def make_ranked(
     base: Fit,
     candidate: Candidate,
     fit: Fit,
@@ -212,11 +214,11 @@ def _ranked_best(
 ) -> Ranked:
     """The candidate beside the base, or in the place of an effect that it makes superfluous."""
     candidate, fit = fitted
-    beside = ranked(base, candidate, fit, prepared=prepared, criteria=criteria)
+    beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria)
     gains = check_squares(fit) < (1.0 - criteria.relevant) * check_squares(base)
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
-    superfluous = superfluous_beside(base, fit, candidate, criteria=criteria)
+    superfluous = find_superfluous_effect(base, fit, candidate, criteria=criteria)
     if superfluous is None:
         return beside
     name, at = superfluous.key
@@ -227,6 +229,6 @@ def _ranked_best(
     alone = estimate(less, prepared)
     if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(fit):
         return beside
-    return ranked(
+    return make_ranked(
         base, candidate, alone, prepared=prepared, instead_of=superfluous, criteria=criteria
     )

@@ -27,10 +27,10 @@ from .effort import EFFORTS
 from .fit import Fit, estimate
 from .noise_floor import read_again
 from .prepare import Prepared, Stretch, stretch_of
-from .record_offsets import along_with_offsets
+from .record_offsets import apply_record_offsets
 from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
-from .solve import over_decades, solve
-from .threads import in_threads
+from .solve import solve, spans_decades
+from .threads import map_in_threads
 
 #: bristle lengths of an ideal friction, in encoder steps, and their damping ratios: none can be
 #: read, nor which it is, so that each pair has its turn (with the longest bristle, turns look as if
@@ -56,7 +56,7 @@ class ReadingError:
 
 
 def _decades(model: Model, names: tuple[str, ...]) -> Array:
-    return np.array([over_decades(model, n) for n in names], dtype=bool)
+    return np.array([spans_decades(model, n) for n in names], dtype=bool)
 
 
 def coordinates(model: Model, names: tuple[str, ...]) -> Array:
@@ -77,7 +77,7 @@ def reading_error(
     # what is simulated is logged in time
     truth = _with_whole_dead_times(fit.model.with_record_shift({}), prepared)
     true = coordinates(truth, fit.free)
-    made = [_simulated(truth, prepared, g, d) for g, d in product(BRISTLE_STEPS, DAMPED)]
+    made = [_simulate_records(truth, prepared, g, d) for g, d in product(BRISTLE_STEPS, DAMPED)]
     exact = [stretches for stretches in made if stretches is not None]
     if len(exact) < len(made):
         return None
@@ -92,7 +92,7 @@ def reading_error(
                 by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi
         return by
 
-    steps = np.array(in_threads(missed, exact, generator.spawn(len(exact))))
+    steps = np.array(map_in_threads(missed, exact, generator.spawn(len(exact))))
     if not np.isfinite(steps).all():
         return None
     return ReadingError(np.median(steps, axis=0), steps.std(axis=0, ddof=1))
@@ -108,14 +108,14 @@ def _with_whole_dead_times(model: Model, prepared: Prepared) -> Model:
     return model
 
 
-def _simulated(
+def _simulate_records(
     model: Model, prepared: Prepared, deflection: float, damping_ratio: float
 ) -> list[Stretch] | None:
     """The fit records with the model's exact courses in place of theirs; None if it has none."""
     stretches = list(prepared.of("fit"))
     made = []
     for stretch, (body, motion) in zip(
-        stretches, along_with_offsets(model, stretches), strict=True
+        stretches, apply_record_offsets(model, stretches), strict=True
     ):
         try:
             course = simulated_course(
@@ -135,7 +135,7 @@ def as_read(stretch: Stretch, prepared: Prepared, generator: np.random.Generator
     return stretch_of(motion, stretch.use, prepared.bandwidth, stretch.offset_names)
 
 
-def _taken_off(fit: Fit, shift: Array) -> tuple[Model, Array]:
+def _subtract_shift(fit: Fit, shift: Array) -> tuple[Model, Array]:
     """The model of a fit with the shift taken off its estimates, and which of them moved.
 
     What is at a bound stays there, and what the shift would lead to another magnitude.
@@ -169,7 +169,7 @@ def _converge(
         errors / np.where(_decades(fit.model, fit.free), values, 1.0), nan=np.inf
     )
     before = np.zeros(len(values))
-    model, moved = _taken_off(fit, error.shift)
+    model, moved = _subtract_shift(fit, error.shift)
     for _ in range(ROUNDS - 1):
         if np.all(
             np.abs(error.shift - before)[moved] <= np.hypot(relative_errors, error.spread)[moved]
@@ -180,7 +180,7 @@ def _converge(
         if again is None:
             break
         before, error = error.shift, again
-        model, moved = _taken_off(fit, error.shift)
+        model, moved = _subtract_shift(fit, error.shift)
     return error, model, moved
 
 

@@ -74,11 +74,11 @@ def find_offsets(
     values = dict.fromkeys(steps, 0.0)
     slopes: list[Array] = []
     for turn in range(TURNS + 1):
-        corrected_body, corrected_motions = _with(body, motions, values)
+        corrected_body, corrected_motions = _set_offsets(body, motions, values)
         here = [residual(corrected_body, m, k) for k, m in enumerate(corrected_motions)]
         slopes = [np.zeros((len(steps), len(r))) for r in here]
         for i, (name, step) in enumerate(steps.items()):
-            moved_body, moved = _with(body, motions, {**values, name: values[name] + step})
+            moved_body, moved = _set_offsets(body, motions, {**values, name: values[name] + step})
             for k, motion in enumerate(moved):
                 slopes[k][i] = (residual(moved_body, motion, k) - here[k]) / step
         if turn == TURNS or not steps:
@@ -106,7 +106,7 @@ def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dic
     return {name: step for name, step in steps.items() if step > 0}
 
 
-def _with(
+def _set_offsets(
     body: Body, motions: Sequence[Motion], values: dict[str, float]
 ) -> tuple[Body, tuple[Motion, ...]]:
     level = values.get("friction_level", 0.0)
@@ -150,12 +150,12 @@ def as_logged(model: Model, motion: Motion) -> Motion:
     return motion if late == motion.command_late else replace(motion, command_late=late)
 
 
-def along_with_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
+def apply_record_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
     """Body and motion of each stretch, with the offsets of its record."""
-    return along_offsets(model, stretches, offset_groups(model, stretches))
+    return apply_offset_groups(model, stretches, offset_groups(model, stretches))
 
 
-def along_offsets(
+def apply_offset_groups(
     model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
 ) -> list[tuple[Body, Motion]]:
     """Body and motion of each stretch, with the offsets of these groups (`offset_groups`)."""

@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 from ..blocks import Value
 from ..measurement.filtering import Array
 from ..model import Model
-from ..plain_data import plain
+from ..plain_data import make_plain
 from ..realise.stages_along import RECORD_SHIFT
 from ..standard_error import with_standard_error
 from .prepare import Stretch
@@ -235,10 +235,10 @@ def shift_data(model: Model, stretches: Sequence[Stretch]) -> dict[str, Any]:
     """The shifts as an answer writes them, by body: seconds, and rows of the record."""
     return {
         shift.at: {
-            "value": plain(shift.late),
-            "stderr": plain(shift.stderr),
+            "value": make_plain(shift.late),
+            "stderr": make_plain(shift.stderr),
             "unit": "s",
-            "rows": plain(shift.late / shift.row),
+            "rows": make_plain(shift.late / shift.row),
             "at_bound": shift.at_bound,
             "like_a_delay": shift.is_like_a_delay,
         }

@@ -15,9 +15,9 @@ from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.along_motion import residual_along
-from ..realise.traced import Probe, Traced, constant, through
+from ..realise.traced import Probe, Traced, constant, filter_traced
 from .prepare import Stretch
-from .record_offsets import along_offsets, offset_groups
+from .record_offsets import apply_offset_groups, offset_groups
 from .shared_links import clear
 
 
@@ -28,7 +28,7 @@ def residuals(
 
     wrt: full parameter names ("device.coulomb.level"), "device.record_shift", or probes
     """
-    return [(r.value, r.tangent) for r, _ in _along(model, stretches, wrt)]
+    return [(r.value, r.tangent) for r, _ in _residual_along(model, stretches, wrt)]
 
 
 def relative_residuals(
@@ -41,13 +41,13 @@ def relative_residuals(
     gained. Equal to `residuals` where nothing stands between command and force. What the links of
     an arm, which all its joints share, can make of a joint's is taken out (`shared_links.clear`).
     """
-    parts = _along(model, stretches, wrt, _taking(model))
+    parts = _residual_along(model, stretches, wrt, _bodies_that_lose_force(model))
     return _relative(model, stretches, parts, len(wrt))
 
 
 def both_residuals(model: Model, stretches: Sequence[Stretch]) -> tuple[list[Array], list[Array]]:
     """`residuals` and `relative_residuals` per stretch, without tangents."""
-    parts = _along(model, stretches, (), _taking(model))
+    parts = _residual_along(model, stretches, (), _bodies_that_lose_force(model))
     relative = _relative(model, stretches, parts, 0)
     return [r.value for r, _ in parts], [r for r, _ in relative]
 
@@ -60,7 +60,7 @@ def _relative(
 ) -> list[tuple[Array, Array]]:
     """Residuals and tangents at the scale of the measured force, from those of `_along`."""
     scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
-    for place in _taking(model):
+    for place in _bodies_that_lose_force(model):
         moving = {
             i: signal
             for i, (s, (_, signal)) in enumerate(zip(stretches, parts, strict=True))
@@ -82,7 +82,7 @@ def _relative(
     return scaled
 
 
-def _taking(model: Model) -> set[str]:
+def _bodies_that_lose_force(model: Model) -> set[str]:
     """Bodies that an actuator's stage, or friction under load, takes from what moves them."""
     return {place for place, body in model.bodies.items() if _takes_from_what_acts(body)}
 
@@ -93,7 +93,7 @@ def _takes_from_what_acts(body: Body) -> bool:
     return stages or body.level().has(SIGNALS["acting_force"])
 
 
-def _along(
+def _residual_along(
     model: Model,
     stretches: Sequence[Stretch],
     wrt: Sequence[str | Probe],
@@ -103,17 +103,17 @@ def _along(
 
     taking: bodies of which the acting plus interaction force is wanted too, low-passed likewise
     """
-    located = [_located(model, name) for name in wrt]
+    located = [_place_of_probe(model, name) for name in wrt]
     groups = offset_groups(model, stretches)
     signals: list[tuple[Traced, Traced | None]] = []
     for stretch, (body, motion) in zip(
-        stretches, along_offsets(model, stretches, groups), strict=True
+        stretches, apply_offset_groups(model, stretches, groups), strict=True
     ):
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
         along = residual_along(body, motion, [located[i][1] for i in mine])
 
         def shown(traced: Traced, s: Stretch = stretch, places: list[int] = mine) -> Traced:
-            here = through(lambda y: s.motion.lowpassed(y, s.keep), traced)
+            here = filter_traced(lambda y: s.motion.lowpassed(y, s.keep), traced)
             if len(places) == len(wrt):
                 return here
             tangent = np.zeros((len(wrt), len(s.keep)))
@@ -129,5 +129,5 @@ def _along(
     return signals
 
 
-def _located(model: Model, name: str | Probe) -> tuple[str, str | Probe]:
+def _place_of_probe(model: Model, name: str | Probe) -> tuple[str, str | Probe]:
     return (model.holder(name.at), name) if isinstance(name, Probe) else model.locate(name)

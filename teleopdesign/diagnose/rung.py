@@ -28,12 +28,12 @@ class Replaced:
         return whole.with_values(dict(self.values))
 
 
-def replaced_by(ranked: Ranked, before: Model) -> Replaced | None:
+def make_replaced(ranked: Ranked, before: Model) -> Replaced | None:
     """What a candidate takes the place of; before: the model that still has it."""
-    return None if ranked.instead_of is None else replaced_from(ranked.instead_of, before)
+    return None if ranked.instead_of is None else restore_replaced(ranked.instead_of, before)
 
 
-def replaced_from(effect: Candidate, before: Model) -> Replaced:
+def restore_replaced(effect: Candidate, before: Model) -> Replaced:
     """An effect that is replaced, as it was in the model before."""
     start = f"{effect.at}.{effect.effect.name}."
     values = tuple((n, v) for n, v in before.parameters.items() if n.startswith(start))

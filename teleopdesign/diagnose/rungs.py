@@ -11,7 +11,7 @@ from ..model import Model
 from .candidates import Candidate
 from .fit import Fit, estimate
 from .prepare import Prepared
-from .rank import ranked
+from .rank import make_ranked
 from .ranking import Ranking
 from .rung import Rung
 
@@ -35,7 +35,7 @@ def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None
         return None
 
 
-def falling(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | None:
+def order_by_falling_error(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | None:
     """The rungs in an order in which the check error falls with each; None where there is none.
 
     A rung that leaves more than the one before it was masked by what follows it: the two change
@@ -79,11 +79,13 @@ def ranking_alone(
     instead_of: Candidate | None = None,
 ) -> Ranking:
     """The ranking of one candidate that was fitted already."""
-    alone = ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)
+    alone = make_ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)
     return Ranking(base, (alone,))
 
 
-def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung, ...] | None:
+def reorder_and_refit(
+    rungs: Sequence[Rung], last: Fit, prepared: Prepared
+) -> tuple[Rung, ...] | None:
     """The rungs in an order in which the check error falls, each fitted without what comes later.
 
     last: the fit with all of them, from whose values the others begin
@@ -100,4 +102,4 @@ def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung
         except ModelError:
             return None
         backwards.append(replace(rung, fit=estimate(model, prepared)))
-    return falling((rungs[0], *reversed(backwards)), prepared)
+    return order_by_falling_error((rungs[0], *reversed(backwards)), prepared)

@@ -17,8 +17,8 @@ import numpy as np
 from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
-from .bodies_apart import of_bodies
-from .candidates import started
+from .bodies_apart import select_bodies
+from .candidates import make_starts
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
@@ -26,7 +26,7 @@ from .linear_start import linear_starts
 from .prepare import Prepared
 from .search_plan import PLAN
 from .solve import Solution, solve
-from .stated import at_stated, has_moved, is_at_stated
+from .stated import has_moved, is_at_stated, reset_to_stated
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def estimate_from_starts(
         base = base_of(base, prepared)
     if base is not None:
         model = with_parameters_of(model, base.coarse.model)
-    models = started(model, prepared.scales)
+    models = make_starts(model, prepared.scales)
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(e.corrections() and not e.linear for e in absent)
     kept = PLAN.corrected_stepped if rugged else PLAN.curved_stepped
@@ -95,19 +95,19 @@ def estimate_from_starts(
         curved = _with_strength(model) is None
         kept = kept if curved else PLAN.stepped
         if curved and stated is not None and has_moved(base.coarse, stated):
-            models += [at_stated(m, stated) for m in models]
+            models += [reset_to_stated(m, stated) for m in models]
         most = PLAN.corrected_predicted if rugged else PLAN.curved_predicted
-        models = _promising(model, models, coarse, base, most=most, worth=worth)
+        models = _select_promising(model, models, coarse, base, most=most, worth=worth)
         if not models:
-            return unchanged(model, base.fit)
+            return keep_absent(model, base.fit)
     elif len(models) == 1:
         return estimate(model, prepared)
     if len(models) > kept + 1:
         models = _best_stepped(models, coarse, kept, promised=base is not None)
-    best = min((_followed(m, coarse, EFFORTS.rough) for m in models), key=_squares)
+    best = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
     if rugged and base is not None and _squares(best) < PLAN.jolted * fit_squares(base.coarse):
-        best = _jolted(best, model.absent, coarse)
-    best = _in_order(best, coarse)
+        best = _jolt(best, model.absent, coarse)
+    best = _sort_elements(best, coarse)
     if base is not None and coarse is prepared:
         return fit_of(best, prepared)
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
@@ -125,22 +125,22 @@ def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
     if is_at_stated(fit, stated, at):
         return fit
     coarse = prepared.coarse
-    models = started(at_stated(fit.model, stated, at), prepared.scales)
+    models = make_starts(reset_to_stated(fit.model, stated, at), prepared.scales)
     if len(models) > PLAN.curved_stepped + 1:
         models = _best_stepped(models, coarse, PLAN.curved_stepped, promised=False)
-    other = min((_followed(m, coarse, EFFORTS.rough) for m in models), key=_squares)
-    here = _followed(fit.model, coarse, EFFORTS.rough)
+    other = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
+    here = _follow_start(fit.model, coarse, EFFORTS.rough)
     if _squares(other) > (1.0 - PLAN.elsewhere) * _squares(here):
         return fit
     return min((fit, estimate(other.model, prepared, effort=EFFORTS.rough)), key=fit_squares)
 
 
-def _followed(model: Model, prepared: Prepared, effort: Effort) -> Solution:
+def _follow_start(model: Model, prepared: Prepared, effort: Effort) -> Solution:
     """Where a start leads on these records."""
     return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
 
 
-def _in_order(best: Solution, prepared: Prepared) -> Solution:
+def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
     """The solution with parts of effects in their order, where no less is explained so.
 
     Their order says which parts must be determined, and which may be open.
@@ -148,7 +148,7 @@ def _in_order(best: Solution, prepared: Prepared) -> Solution:
     model = best.model.in_order()
     if model is best.model:
         return best
-    there = _followed(model, prepared, EFFORTS.rough)
+    there = _follow_start(model, prepared, EFFORTS.rough)
     return there if _squares(there) <= (1.0 + PLAN.elsewhere) * _squares(best) else best
 
 
@@ -161,12 +161,12 @@ def with_parameters_of(model: Model, other: Model) -> Model:
     return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
 
 
-def unchanged(model: Model, base: Fit) -> Fit:
+def keep_absent(model: Model, base: Fit) -> Fit:
     """The fit of a model whose new effects stay absent: the residual of the base."""
     return replace(base, model=with_parameters_of(model, base.model))
 
 
-def _promising(
+def _select_promising(
     model: Model,
     models: list[Model],
     prepared: Prepared,
@@ -181,14 +181,14 @@ def _promising(
     """
     linear = _with_strength(model)
     if linear is not None:
-        return _by_strength(models, *linear, prepared, base, worth)
+        return _start_by_strength(models, *linear, prepared, base, worth)
     promised = sorted((_promise(m, prepared, base.coarse), i) for i, m in enumerate(models))
     if promised[0][0] > base.least(worth):
         return []
-    return _varied(model, [models[i] for _, i in promised])[:most]
+    return _vary_starts(model, [models[i] for _, i in promised])[:most]
 
 
-def _varied(model: Model, ordered: list[Model]) -> list[Model]:
+def _vary_starts(model: Model, ordered: list[Model]) -> list[Model]:
     """The starts; first those at each value of parameters that the new effects need.
 
     A search that begins at a gap too narrow closes it, and never opens it again.
@@ -218,7 +218,7 @@ def _with_strength(model: Model) -> tuple[Effect, str] | None:
     return absent[0] if not model.parameters[strength].fixed else None
 
 
-def _by_strength(
+def _start_by_strength(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Base, worth: float
 ) -> list[Model]:
     """The best starts of an effect that is linear in its strength; none if no gain is expected."""
@@ -239,15 +239,15 @@ def _promise(model: Model, prepared: Prepared, base: Fit) -> float:
     values, before = model.parameters, base.model.parameters
     same = all(values[n].value == before[n].value for n in base.free)
     wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
-    moved = of_bodies(stretches, {model.locate(n)[0] for n in wanted} or set(model.bodies))
+    moved = select_bodies(stretches, {model.locate(n)[0] for n in wanted} or set(model.bodies))
     residual, columns = base.fit_residual.copy(), np.zeros((len(base.fit_residual), len(wanted)))
     residual[moved.rows], slopes = moved.relative(model, wanted)
     columns[moved.rows] = slopes * np.array([unit[model.declared(n).quantity] for n in wanted])
     whole = np.hstack([base.jacobian, base.by_shift, columns]) if same else columns
-    return _left(whole, residual) if np.isfinite(whole).all() else math.inf
+    return _remaining_squares(whole, residual) if np.isfinite(whole).all() else math.inf
 
 
-def _left(columns: Array, residual: Array) -> float:
+def _remaining_squares(columns: Array, residual: Array) -> float:
     """Squares of the residual that these columns cannot take away, by normal equations."""
     size = np.linalg.norm(columns, axis=0)
     columns = columns / np.where(size > 0, size, 1.0)
@@ -266,14 +266,14 @@ def _best_stepped(
     """
     solutions = []
     for i, model in enumerate(models):
-        solution = _followed(model, prepared, EFFORTS.first_steps)
+        solution = _follow_start(model, prepared, EFFORTS.first_steps)
         solutions.append((_squares(solution), i, solution.model))
     solutions.sort(key=lambda f: f[:2])
     best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [there for _, _, there in best]
 
 
-def _jolted(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
+def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
     """The best solution near by: a rugged sum of squares has many shallow minima.
 
     new: (effect, place) whose parameters are jolted, one at a time
@@ -285,9 +285,9 @@ def _jolted(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) 
         before = least
         for name, factor in product(names, PLAN.jolts):
             jolted = model.with_values({name: model.parameters[name].value * factor})
-            solution = _followed(jolted, prepared, EFFORTS.first_steps)
+            solution = _follow_start(jolted, prepared, EFFORTS.first_steps)
             if _squares(solution) < least:
                 least, model = _squares(solution), solution.model
         if least > (1.0 - PLAN.onward) * before:
             break
-    return best if model is best.model else _followed(model, prepared, EFFORTS.rough)
+    return best if model is best.model else _follow_start(model, prepared, EFFORTS.rough)

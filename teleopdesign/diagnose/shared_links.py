@@ -46,11 +46,11 @@ class Knowledge(ByValue):
 
     def best(self) -> Array:
         """The base parameters (b,) of least squares; 0 in directions that are unknown."""
-        centre, _ = _parted(self, np.diag(self.matrix))
+        centre, _ = _split_knowledge(self, np.diag(self.matrix))
         return centre
 
 
-def _parted(knowledge: Knowledge, squares: Array) -> tuple[Array, Array]:
+def _split_knowledge(knowledge: Knowledge, squares: Array) -> tuple[Array, Array]:
     """Centre (b,), and directions (b, b) of unit spread, wide where little is known.
 
     squares: (b,) by which each base parameter counts: its scale
@@ -91,7 +91,7 @@ def share(stretches: Sequence[Stretch], others: Knowledge, size: float) -> tuple
     """
     columns = [weighted_columns(s) for s in stretches]
     all_rows = np.vstack(columns) / size
-    centre, spread = _parted(others, np.diag(others.matrix) + np.sum(all_rows**2, axis=0))
+    centre, spread = _split_knowledge(others, np.diag(others.matrix) + np.sum(all_rows**2, axis=0))
     whole = all_rows @ spread
     basis, s, turned = np.linalg.svd(whole, full_matrices=False)
     less = 1.0 - 1.0 / np.sqrt(1.0 + s**2)

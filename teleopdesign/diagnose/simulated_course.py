@@ -90,7 +90,7 @@ def led_body(
     """
     body = with_bristle(without_absent(body), bristle, damping_ratio=damping_ratio)
     has_tip = any(e.role == "structure" for e in body.effects)
-    return LedBody(_wired(body, stiffness, damping), stiffness, damping, has_tip)
+    return LedBody(_wire_led_body(body, stiffness, damping), stiffness, damping, has_tip)
 
 
 def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course:
@@ -129,7 +129,7 @@ def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course
     return Course(*(kept[:n, columns.index(name)] for name in ("X", "X_velocity", "U")))
 
 
-def _wired(body: Body, stiffness: float, damping: float) -> Diagram:
+def _wire_led_body(body: Body, stiffness: float, damping: float) -> Diagram:
     """The body on X with its command U = F_led - (stiffness + damping s) X."""
     leads = controller("spring_damper", {"stiffness": stiffness, "damping": damping})
     return Diagram(

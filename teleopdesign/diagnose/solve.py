@@ -73,7 +73,7 @@ def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _S
     unit = prepared.scales
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
-    decades = np.array([over_decades(model, n) for n in free], dtype=bool)
+    decades = np.array([spans_decades(model, n) for n in free], dtype=bool)
     lower = np.array([d.lower for d in declared]) / scale
     upper = np.array(
         [min(d.upper / s, d.search.within) for d, s in zip(declared, scale, strict=True)]
@@ -152,7 +152,7 @@ def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:
     return model.with_links(best_links(model.links, stretches, left))
 
 
-def over_decades(model: Model, name: str) -> bool:
+def spans_decades(model: Model, name: str) -> bool:
     """Whether a parameter is searched on a logarithmic scale: positive, and zero means nothing.
 
     A strength that may vanish is searched on a linear one, so that it can reach zero.

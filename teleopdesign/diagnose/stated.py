@@ -10,7 +10,7 @@ from .fit import Fit
 from .search_plan import PLAN
 
 
-def at_stated(model: Model, stated: Model, at: str | None = None) -> Model:
+def reset_to_stated(model: Model, stated: Model, at: str | None = None) -> Model:
     """The model with its user's values: without an effect that is missing, others may have gone
     where no step leads back from.
 

@@ -24,7 +24,7 @@ from .fit import Fit, estimate
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
 from .rung import Rung
-from .rungs import ranking_alone, refitted
+from .rungs import ranking_alone, reorder_and_refit
 
 
 def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -63,11 +63,11 @@ def _with_line(
     # what the bends took the place of is back when they are taken away
     back = [r.instead_of for r in bent if r.instead_of is not None]
     line = [c for c in line if c.key not in gone | {one.key for one in back}]
-    saved = sum(_required(r.added.effect) for r in bent if r.added is not None)
-    saved -= len(line) + sum(_required(one.effect) for one in back)
+    saved = sum(_count_required(r.added.effect) for r in bent if r.added is not None)
+    saved -= len(line) + sum(_count_required(one.effect) for one in back)
     if not line or saved < 0:
         return None
-    fit = _exchanged(state.fit.model, bent, line, search)
+    fit = _exchange_for_line(state.fit.model, bent, line, search)
     if fit is None:
         return None
     floor, criteria = state.floor, search.criteria
@@ -81,13 +81,13 @@ def _with_line(
     before, after = state.rungs[:first], state.rungs[first:]
     rungs = (*before, *_line_rungs(before[-1].fit, line, search))
     rungs = (*rungs, *(r for r in after if all(r is not b for b in bent)))
-    order = refitted(rungs, fit, search.prepared)
+    order = reorder_and_refit(rungs, fit, search.prepared)
     if order is None:
         return None
     return replace(state.with_rungs(order), straightened=True)
 
 
-def _exchanged(
+def _exchange_for_line(
     model: Model, bent: Sequence[Rung], line: Sequence[Candidate], search: LadderSearch
 ) -> Fit | None:
     """The fit with the line and without the bends; None: another effect needs one of these."""
@@ -135,6 +135,6 @@ def is_bent(effect: Effect) -> bool:
     return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) != 0)
 
 
-def _required(effect: Effect) -> int:
+def _count_required(effect: Effect) -> int:
     """Parameters that must be estimated."""
     return sum(not p.optional for p in effect.parameters.values())

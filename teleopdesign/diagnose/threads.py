@@ -18,7 +18,7 @@ T = TypeVar("T")
 MOST = 4
 
 
-def in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> list[T]:
+def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> list[T]:
     """Results of a function, called as by `map`, in the order of the arguments."""
     workers = min(MOST, os.cpu_count() or 1)
     with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from ..measurement.reversals import since_reversal
+from ..measurement.reversals import look_back_to_reversal
 from .candidates import tells_place_from_time
 
 #: s without sure motion after which the same direction counts as a new start
@@ -20,23 +20,23 @@ def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] =
 
     beside: for each motion, those of an arm's other joints at the same times
     """
-    inputs = [_of_itself(m, [o for o in motions if o.body == m.body]) for m in motions]
+    inputs = [_columns_of_body(m, [o for o in motions if o.body == m.body]) for m in motions]
     if not beside:
         return inputs
     with_place = [tells_place_from_time(of_one) for of_one in zip(*beside, strict=True)]
     return [
-        np.column_stack([mine, *_of_others(others, with_place)])
+        np.column_stack([mine, *_columns_of_others(others, with_place)])
         for mine, others in zip(inputs, beside, strict=True)
     ]
 
 
-def _of_itself(motion: Motion, motions: Sequence[Motion]) -> Array:
+def _columns_of_body(motion: Motion, motions: Sequence[Motion]) -> Array:
     """Of the body itself (n, k); NaN before the first sure motion.
 
     motions: all of that body. Where none comes to a place again, or none turns round, place or
     time since a reversal would tell the clock, and with it the command that was played by it
     """
-    since = since_reversal(
+    since = look_back_to_reversal(
         motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
     )
     columns: list[Array] = [motion.velocity, motion.acceleration, motion.direction.astype(float)]
@@ -47,7 +47,7 @@ def _of_itself(motion: Motion, motions: Sequence[Motion]) -> Array:
     return np.column_stack([*columns, *motion.further.values()])
 
 
-def _of_others(motions: Sequence[Motion], with_place: Sequence[bool]) -> list[Array]:
+def _columns_of_others(motions: Sequence[Motion], with_place: Sequence[bool]) -> list[Array]:
     """Of the other joints at the same times, columns (n,).
 
     with_place: whether the place of each tells no clock

@@ -2,7 +2,7 @@
 
 from ..arguments import check_arguments
 from .admittance_device import admittance_device
-from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
+from .arms import Arm, joint, teleoperator_of_arms, tip_coordinates
 from .control_parts import controller_parts, plant_parts
 from .coupled_plants import coupled_plant_parts
 from .disturbance_observer import disturbance_observer
@@ -25,13 +25,13 @@ from .parts import (
     position_symbol,
 )
 from .shared_states import with_shared_states
-from .shipped import SHIPPED, shipped
+from .shipped import SHIPPED, load_shipped
 from .teleoperator import teleoperator
 from .toml_reading import read_diagram
 from .toml_writing import write_diagram
 from .wave_variables import wave_variables
 from .wiring import Diagram
-from .world_haptics_2005 import READINGS, Reading, reading, world_haptics_2005
+from .world_haptics_2005 import READINGS, Reading, read_open_number, world_haptics_2005
 
 __all__ = [
     "ANY",
@@ -51,7 +51,7 @@ __all__ = [
     "Part",
     "Reading",
     "admittance_device",
-    "by_jacobian",
+    "tip_coordinates",
     "controller_parts",
     "coupled_plant_parts",
     "disturbance_observer",
@@ -65,8 +65,8 @@ __all__ = [
     "plant_parts",
     "position_symbol",
     "read_diagram",
-    "reading",
-    "shipped",
+    "read_open_number",
+    "load_shipped",
     "teleoperator",
     "teleoperator_of_arms",
     "wave_variables",

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..arguments import checked, matrix_of
+from ..arguments import check_types, matrix_of
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
 from ..errors import ModelError
@@ -39,7 +39,7 @@ def joint(number: int) -> sp.Symbol:
     return sp.Symbol(f"q_{number}", real=True)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Arm:
     """The joints of an arm, and the position of the tip that they lead to.
@@ -69,14 +69,14 @@ class Arm:
                 raise ModelError(f"arm: {len(entries)} {name} for {len(self.joints)} joints")
 
 
-def by_jacobian(jacobian: Any) -> tuple[sp.Expr, ...]:
+def tip_coordinates(jacobian: Any) -> tuple[sp.Expr, ...]:
     """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints).
 
     jacobian: m/rad or m/m, nested lists or an array
     returns: one expression for each coordinate (m), for `Arm`; forces go back by J^T
     raises ModelError: no matrix of numbers
     """
-    matrix = matrix_of(jacobian, "by_jacobian: jacobian")
+    matrix = matrix_of(jacobian, "tip_coordinates: jacobian")
     symbols = [joint(n + 1) for n in range(matrix.shape[1])]
     return tuple(
         sp.Add(*(float(w) * q for w, q in zip(row, symbols, strict=True) if w)) for row in matrix

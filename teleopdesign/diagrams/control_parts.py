@@ -51,7 +51,7 @@ def controller_parts(
         )
     linear = control.StateSpace | control.TransferFunction | control.FrequencyResponseData
     if isinstance(system, control.InputOutputSystem) and not isinstance(system, linear):
-        return by_code(system, name, inputs, outputs, motion=motion, analog=analog), ()
+        return code_parts(system, name, inputs, outputs, motion=motion, analog=analog), ()
     places = [(i, j) for i in range(len(outputs)) for j in range(len(inputs))]
     every = {(i, j): from_control(entry_of(system, i, j, name), name="entry") for i, j in places}
     forms = {p: c.linear_form(name, sp.Symbol("s"), sp.S(0), held=True) for p, c in every.items()}
@@ -71,7 +71,7 @@ def controller_parts(
     return tuple(controls), tuple(sums)
 
 
-def by_code(
+def code_parts(
     system: control.InputOutputSystem,
     name: str,
     inputs: Sequence[str],
@@ -142,7 +142,7 @@ def plant_parts(
         return _with_rest(name, inertia, None, beside, (motion, command, driver), forces)
     if not isinstance(system, control.StateSpace | control.TransferFunction):
         force = f"{name}_force"
-        parts = by_code(system, name, (force,), (motion,), is_plant=True)
+        parts = code_parts(system, name, (force,), (motion,), is_plant=True)
         return parts, (Junction(force, {command: 1.0, **forces}),)
     s = sp.Symbol("s")
     # exact: python-control's conversion of matrices leaves zeros far out

@@ -18,7 +18,7 @@ from sympy.polys.matrices import DomainMatrix
 from ..blocks import Body, MatrixImpedance, Value
 from ..controllers import from_control
 from ..errors import ModelError
-from .control_parts import by_code, entry_of
+from .control_parts import code_parts, entry_of
 from .parts import Control, Junction, Linked, Moving
 
 if TYPE_CHECKING:
@@ -60,14 +60,14 @@ def coupled_plant_parts(
         whole = tuple(f"{name}_force_{i + 1}" for i in range(size))
         pairs = zip(whole, commands, drivers, strict=True)
         sums = (Junction(force, {command: 1.0, driver: 1.0}) for force, command, driver in pairs)
-        return by_code(system, name, whole, motions, is_plant=True), tuple(sums)
+        return code_parts(system, name, whole, motions, is_plant=True), tuple(sums)
     if isinstance(system, control.FrequencyResponseData):
         raise ModelError(
             f"{name}: a measured response of several axes has no form as bodies: fit transfer "
             "functions to it, or take one axis alone (`plant_parts`)"
         )
     if system.isdtime(strict=True):
-        system = _before_the_hold(system, name)
+        system = _undo_hold(system, name)
     return _bodies(system, name, motions, commands, drivers)
 
 
@@ -166,7 +166,7 @@ def _symmetric(matrix: np.ndarray) -> np.ndarray:
     return mean if np.abs(matrix - mean).max() <= _ROUNDING * np.abs(matrix).max() else matrix
 
 
-def _before_the_hold(system: control.LTI, name: str) -> control.StateSpace:
+def _undo_hold(system: control.LTI, name: str) -> control.StateSpace:
     """The plant in continuous time whose samples behind a zero-order hold these are."""
     import control
     from scipy.linalg import logm

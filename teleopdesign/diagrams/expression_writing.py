@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
-from ..errors import ExperimentError, ModelError, quoted
+from ..errors import ExperimentError, ModelError, quote
 from .expressions import read_expression
 
 
@@ -34,5 +34,5 @@ def expression_text(expression: sp.Expr, *, name: str) -> str:
     except ExperimentError as error:
         raise ModelError(f"{error}: it has no form in a file") from None
     if not same:
-        raise ModelError(f"{name}: {quoted(text)} has no form in a file: it reads as another")
+        raise ModelError(f"{name}: {quote(text)} has no form in a file: it reads as another")
     return text

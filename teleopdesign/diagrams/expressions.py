@@ -24,7 +24,7 @@ from typing import NamedTuple
 import sympy as sp
 from sympy.core.cache import clear_cache
 
-from ..errors import ExperimentError, ModelError, did_you_mean, quoted
+from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..names import check_name
 from .parts import position_symbol
 
@@ -96,12 +96,12 @@ def read_expression(text: str, *, where: str) -> sp.Expr:
         with _bounded_work():
             return _Reader().read(tree.body)
     except (SyntaxError, RecursionError, MemoryError, ValueError):
-        raise ExperimentError(f"{where}: found {quoted(text)}, expected an expression") from None
+        raise ExperimentError(f"{where}: found {quote(text)}, expected an expression") from None
     except _Endless:
         clear_cache()  # of what sympy was about to find out
-        raise ExperimentError(f"{where}: {quoted(text)} takes sympy too long to read") from None
+        raise ExperimentError(f"{where}: {quote(text)} takes sympy too long to read") from None
     except (ArithmeticError, NotImplementedError, TypeError):  # sympy on what makes no sense
-        raise ExperimentError(f"{where}: {quoted(text)} has no value that sympy knows") from None
+        raise ExperimentError(f"{where}: {quote(text)} has no value that sympy knows") from None
     except ModelError as error:
         raise ExperimentError(f"{where}: {error}") from None
 
@@ -167,7 +167,7 @@ class _Reader:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
             return self._called(node.func.id, [self._built(a, depth + 1) for a in node.args])
         raise ModelError(
-            f"found {quoted(ast.unparse(node))}, expected numbers, positions, + - * / **, pi, "
+            f"found {quote(ast.unparse(node))}, expected numbers, positions, + - * / **, pi, "
             f"{', '.join(FUNCTIONS)}"
         )
 
@@ -189,9 +189,9 @@ class _Reader:
         values = self._value(base), self._value(exponent)
         if values[1] is not None and not abs(values[1]) <= _LARGEST_POWER:
             raise ModelError(f"found a power larger than {_LARGEST_POWER} in size")
-        _finite(_raised, *values)
+        _finite(_raise_power, *values)
         if exponent.is_Integer and not base.is_number:
-            self._check_size(_multiplied_out(self._size(base), abs(int(exponent))))
+            self._check_size(_count_terms(self._size(base), abs(int(exponent))))
         if base.is_Rational and exponent.is_Integer:
             bits = max(map(int.bit_length, _parts(base))) * abs(int(exponent))
             if bits > _MOST_BITS:
@@ -201,7 +201,7 @@ class _Reader:
     def _called(self, name: str, arguments: list[sp.Expr]) -> sp.Expr:
         if name not in FUNCTIONS:
             raise ModelError(
-                f"found function {quoted(name)}, expected {', '.join(FUNCTIONS)}"
+                f"found function {quote(name)}, expected {', '.join(FUNCTIONS)}"
                 f"{did_you_mean(name, FUNCTIONS)}"
             )
         function = FUNCTIONS[name]
@@ -256,7 +256,7 @@ class _Reader:
                 self.roots.add(expression)
             if len(self.roots) > _MOST_ROOTS:
                 raise ModelError(f"found more than {_MOST_ROOTS} roots of numbers")
-            return _finite(_raised, *values)
+            return _finite(_raise_power, *values)
         if expression.func in _VALUES:
             return _finite(_VALUES[expression.func], *values)
         return None  # of other functions that sympy may make of these, only the arguments are known
@@ -271,7 +271,7 @@ class _Reader:
 
     def _counted(self, expression: sp.Expr) -> int:
         if expression.is_Pow and expression.exp.is_Integer:
-            return _multiplied_out(self._size(expression.base), abs(int(expression.exp)))
+            return _count_terms(self._size(expression.base), abs(int(expression.exp)))
         sizes = [self._size(a) for a in expression.args]
         if expression.is_Add:
             return sum(sizes)
@@ -297,7 +297,7 @@ def _links(node: ast.BinOp) -> Iterator[tuple[type, ast.expr]]:
 
 def _number(value: object) -> sp.Expr:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ModelError(f"found {quoted(repr(value))}, expected a number")
+        raise ModelError(f"found {quote(repr(value))}, expected a number")
     if isinstance(value, int) and value.bit_length() > _MOST_BITS:
         raise ModelError(f"found a number of more than {_MOST_BITS} bits")
     if not math.isfinite(value):
@@ -318,11 +318,11 @@ def _finite(call: Callable[..., float], *values: object) -> float | None:
     return result
 
 
-def _raised(base: float, exponent: float) -> float:
+def _raise_power(base: float, exponent: float) -> float:
     return float(base**exponent)
 
 
-def _multiplied_out(terms: int, power: int) -> int:
+def _count_terms(terms: int, power: int) -> int:
     """Terms of a sum of so many to that power."""
     return comb(terms + power - 1, power) if terms > 1 else 1
 

@@ -53,7 +53,7 @@ def parallel_rods(
     junctions: list[Junction] = []
     joined = {}
     if mechanism is not None:
-        lengths, forces = _named("L", numbers), _named("R_Z", numbers)
+        lengths, forces = _rod_names("L", numbers), _rod_names("R_Z", numbers)
         blocks.append(Linked("Z_J", mechanism, lengths, forces))
         joined = {n: {f"R_Z{n}": 1} for n in numbers}
     commands: dict[int, dict[str, float]] = {n: {f"R_D{n}": 1} for n in numbers}
@@ -63,14 +63,14 @@ def parallel_rods(
         junctions.append(Junction(f"E{n}", {f"R_D{n}": 1, f"R_M{n}": -1}))
     laws = (("C", cancellation, "L", "R_MBC"), ("H", force_feedback, "E", "R_FF"))
     for name, controllers, read, made in laws:
-        for (i, j), law in _by_rods(name, controllers, size).items():
+        for (i, j), law in _group_by_rods(name, controllers, size).items():
             force = f"{made}{i}" if i == j else f"{made}{i}_{j}"
             of = f"{name}{i}" if i == j else f"{name}{i}_{j}"
             blocks.append(Control(of, law, f"{read}{j}", force, f"L{j}", name in analog))
             commands[i][force] = 1
     hands = {k: {f"F_V{k}": 1} for k in numbers}
     if hand is not None:
-        blocks.append(Linked("Z_H", hand, _named("X", numbers), _named("F_H", numbers)))
+        blocks.append(Linked("Z_H", hand, _rod_names("X", numbers), _rod_names("F_H", numbers)))
         hands = {k: {f"F_H{k}": 1, f"F_V{k}": 1} for k in numbers}
     for n in numbers:
         junctions.append(Junction(f"R_A{n}", commands[n]))
@@ -82,7 +82,7 @@ def parallel_rods(
         tuple(blocks),
         tuple(junctions),
         {f"{signal}{n}": "force" for n in numbers for signal in ("R_D", "F_V")},
-        measured=(*_named("L", numbers), *_named("R_M", numbers)),
+        measured=(*_rod_names("L", numbers), *_rod_names("R_M", numbers)),
     )
 
 
@@ -96,7 +96,7 @@ def _inverse(geometry: Any, size: int) -> np.ndarray:
     return np.asarray(np.linalg.inv(g))
 
 
-def _named(signal: str, numbers: range) -> tuple[str, ...]:
+def _rod_names(signal: str, numbers: range) -> tuple[str, ...]:
     return tuple(f"{signal}{n}" for n in numbers)
 
 
@@ -105,7 +105,9 @@ def _row(weights: np.ndarray, signal: str) -> dict[str, float]:
     return {f"{signal}{k + 1}": float(w) for k, w in enumerate(weights) if abs(w) > 1e-15}
 
 
-def _by_rods(name: str, controllers: Controllers, size: int) -> dict[tuple[int, int], Controller]:
+def _group_by_rods(
+    name: str, controllers: Controllers, size: int
+) -> dict[tuple[int, int], Controller]:
     if isinstance(controllers, Mapping):
         by_pair = dict(controllers)
     else:

@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError, quoted
+from ..errors import ModelError, quote
 from ..frozen import Frozen
 from ..names import check_name
 
@@ -44,7 +44,7 @@ def as_expression(weight: Weight, *, where: str) -> sp.Expr:
     except sp.SympifyError:
         expression = None
     if not isinstance(expression, sp.Expr):
-        shown = quoted(weight) if isinstance(weight, str) else type(weight).__name__
+        shown = quote(weight) if isinstance(weight, str) else type(weight).__name__
         raise ModelError(f"{where}: found {shown}, expected a number or a sympy expression")
     return expression
 
@@ -54,7 +54,7 @@ def _check_names(where: str, *names: str) -> None:
         check_name(name, where=where)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Moving:
     """A body that forces move:  Z motion = command + loads.
@@ -89,7 +89,7 @@ class Moving:
         return (self.command, *self.loads)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Attached:
     """A body on a motion, which the body resists:  force = sign Z motion.
@@ -117,7 +117,7 @@ class Attached:
         return (self.motion,)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Linked:
     """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix.
@@ -173,7 +173,7 @@ class Entry:
     entries: tuple[tuple[int, int], ...]
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Control:
     """A controller:  output = controller(input), along the velocity of `motion`.
@@ -228,7 +228,7 @@ class Control:
         return any(stage.law.response is not None for stage in stages)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Junction:
     """A summing junction:  output = sum of weight * signal.
@@ -265,7 +265,7 @@ class Junction:
         return (*self.terms, *(x for x in self.arms if x not in self.terms))
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Kinematics:
     """A position that others determine:  output = expression of positions (`position_symbol`).

@@ -6,7 +6,7 @@ import math
 
 from ..blocks import MatrixImpedance, matrix_impedance
 from ..errors import ExperimentError
-from ..measurement.toml_table import Table, described
+from ..measurement.toml_table import Table, describe_toml_value
 
 #: keys of the matrices, each a list of rows (SI)
 MATRICES = ("mass", "damping", "stiffness")
@@ -31,9 +31,9 @@ def _matrix(table: Table, key: str, size: int) -> list[list[float]]:
         elif all(_is_finite(x) for row in rows for x in row):
             return [[float(x) for x in row] for row in rows]
         else:
-            wrong = next(described(x) for row in rows for x in row if not _is_finite(x))
+            wrong = next(describe_toml_value(x) for row in rows for x in row if not _is_finite(x))
     else:
-        wrong = described(rows)
+        wrong = describe_toml_value(rows)
     raise ExperimentError(
         f"{table.where(key)}: found {wrong}, expected {size} rows of {size} finite numbers, one "
         "for each motion"

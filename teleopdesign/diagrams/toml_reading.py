@@ -16,9 +16,9 @@ from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
 from ..controllers import CONTROLLERS, Controller, Stage
 from ..effects import EFFECTS, Effect
-from ..errors import ExperimentError, ModelError, did_you_mean, quoted
+from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..measurement.description import BODY, body_from
-from ..measurement.toml_table import Table, described, read_toml
+from ..measurement.toml_table import Table, describe_toml_value, read_toml
 from ..quantity import AXES, QUANTITIES
 from .expressions import read_expression
 from .parts import (
@@ -60,7 +60,7 @@ def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -
     try:
         if "kind" in head.content:
             return _short(root, head, effects)
-        return _free(root, head, effects)
+        return _read_free_diagram(root, head, effects)
     except ModelError as error:
         raise ExperimentError(f"{path.name}: {error}") from error
 
@@ -87,7 +87,7 @@ def _short(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
     return replace(diagram, name=_string(head, "name")) if "name" in head.content else diagram
 
 
-def _free(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
+def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
     """Blocks, junctions and what comes from outside, all written out."""
     root.allow(("diagram", "outside", "blocks", "kinematics", "junctions", "pose", "texts"))
     head.allow(("name", "measured", "kind"))
@@ -202,7 +202,7 @@ def _one_of(table: Table, key: str, known: Any) -> str:
     value = _string(table, key)
     if value not in known:
         raise ExperimentError(
-            f"{table.where(key)}: found {quoted(value)}, expected {', '.join(known)}"
+            f"{table.where(key)}: found {quote(value)}, expected {', '.join(known)}"
             f"{did_you_mean(value, known)}"
         )
     return value
@@ -218,6 +218,7 @@ def _strings(table: Table, key: str) -> list[str]:
     signals = table.content.get(key, [])
     if not isinstance(signals, list) or not all(isinstance(s, str) for s in signals):
         raise ExperimentError(
-            f"{table.where(key)}: found {described(signals)}, expected a list of signals in quotes"
+            f"{table.where(key)}: found {describe_toml_value(signals)}, "
+            "expected a list of signals in quotes"
         )
     return signals

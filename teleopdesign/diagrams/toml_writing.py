@@ -48,7 +48,7 @@ def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -
         lines += _table("outside", diagram.outside)
     for block in diagram.blocks:
         lines += ["", f"[blocks.{key_text(block.name)}]"]
-        lines += [] if kind is not None else _wiring(block)
+        lines += [] if kind is not None else _wiring_lines(block)
         if isinstance(block, Control):
             lines += ["analog = true"] if block.analog else []
             lines += _laws(block)
@@ -85,7 +85,7 @@ def _table(name: str, content: Mapping[str, Any]) -> list[str]:
     return ["", f"[{name}]", *(f"{key_text(k)} = {_value(v)}" for k, v in content.items())]
 
 
-def _wiring(block: Block) -> list[str]:
+def _wiring_lines(block: Block) -> list[str]:
     if isinstance(block, Moving):
         keys: dict[str, Any] = {"kind": "moving", "motion": block.motion, "command": block.command}
         keys |= {"loads": block.loads, "driver": block.driver}

@@ -12,7 +12,7 @@ from typing import TypeGuard
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError, did_you_mean
@@ -35,7 +35,7 @@ from .parts import (
 )
 
 
-@checked
+@check_types
 @dataclass(frozen=True, repr=False)
 class Diagram:
     """Blocks and junctions wired by signal names.
@@ -94,7 +94,7 @@ class Diagram:
         """Blocks, kinematics and junctions."""
         return (*self.blocks, *self.kinematics, *self.junctions)
 
-    @checked
+    @check_types
     def position(self, name: str) -> sp.Expr:
         """A motion, or a junction or kinematics of motions, on the positions of moving bodies.
 
@@ -152,7 +152,7 @@ class Diagram:
     def controls(self) -> tuple[Control, ...]:
         return tuple(b for b in self.blocks if isinstance(b, Control))
 
-    @checked
+    @check_types
     def block(self, name: str) -> Block:
         """The block of that name; ModelError with the nearest one."""
         for block in self.blocks:
@@ -167,7 +167,7 @@ class Diagram:
         """Whether the diagram has a block of that name."""
         return any(b.name == name for b in self.blocks)
 
-    @checked
+    @check_types
     def signal(self, name: str) -> str:
         """The name itself; ModelError with the nearest signal where there is none of that name."""
         if name not in self.signals:
@@ -204,9 +204,9 @@ class Diagram:
         """The diagram with these controllers' outputs from outside; unknown names are ignored."""
         free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
         kept = tuple(b for b in self.blocks if b.name not in names)
-        return _pruned(replace(self, blocks=kept, outside={**self.outside, **free}))
+        return _prune(replace(self, blocks=kept, outside={**self.outside, **free}))
 
-    @checked
+    @check_types
     def with_block(self, name: str, block: Body | MatrixImpedance | Controller) -> Diagram:
         """The diagram with another body or controller in the place of that name."""
         old = self.block(name)
@@ -238,7 +238,7 @@ class Diagram:
                 values |= {f"{block.name}.{n}": v for n, v in block.body.parameters.items()}
         return values
 
-    @checked
+    @check_types
     def with_values(self, values: Mapping[str, float]) -> Diagram:
         """The diagram with other parameter values, by the names in `values`."""
         known, diagram = self.values, self
@@ -272,11 +272,11 @@ def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
 
 
 def _sum(terms: Iterable[tuple[str, Weight]]) -> str:
-    text = " ".join(_weighted(signal, weight) for signal, weight in terms)
+    text = " ".join(_term_text(signal, weight) for signal, weight in terms)
     return text.removeprefix("+ ") or "0"
 
 
-def _weighted(signal: str, weight: Weight) -> str:
+def _term_text(signal: str, weight: Weight) -> str:
     if isinstance(weight, sp.Expr) and not weight.is_number:
         return f"+ ({weight}) {signal}"
     value = float(weight)
@@ -310,7 +310,7 @@ def _content(part: Part) -> str:
     return ""
 
 
-def _pruned(diagram: Diagram) -> Diagram:
+def _prune(diagram: Diagram) -> Diagram:
     """Without outside signals and junctions that only a block taken out had used."""
     used = {s for part in diagram.parts for s in part.inputs} | set(diagram.measured)
     outside = {s: q for s, q in diagram.outside.items() if s in used or q == "force"}

@@ -71,7 +71,7 @@ READINGS: Mapping[str, Reading] = Catalogue(
 )
 
 
-def reading(name: str) -> float:
+def read_open_number(name: str) -> float:
     """The value (SI) used for a number that the paper leaves open, by its name in `READINGS`.
 
     raises ModelError: no reading of that name, with the nearest one
@@ -84,22 +84,24 @@ def world_haptics_2005(*, position_loop: bool = False) -> Diagram:
 
     Force feedback H is analog, the cancellation C sampled; `position_loop` adds K and the load.
     """
-    level = reading("coulomb_level")
+    level = read_open_number("coulomb_level")
     device = Body(
         "prismatic",
-        {"inertia": Value(reading("mass")), "coulomb.level": Value(level)},
+        {"inertia": Value(read_open_number("mass")), "coulomb.level": Value(level)},
         (EFFECTS["coulomb"],),
     )
-    lead = {n: reading(f"position_{n}") for n in ("gain", "zero", "pole")}
-    smoothing = {"level": level, "smoothing_velocity": reading("smoothing_velocity")}
+    lead = {n: read_open_number(f"position_{n}") for n in ("gain", "zero", "pole")}
+    smoothing = {"level": level, "smoothing_velocity": read_open_number("smoothing_velocity")}
     return haptic_interface(
         device,
-        hand=Body("prismatic", {"inertia": Value(reading("load"))}) if position_loop else None,
+        hand=Body("prismatic", {"inertia": Value(read_open_number("load"))})
+        if position_loop
+        else None,
         cancellation=controller("smoothed_coulomb", smoothing),
         force_feedback=scheduled_force_feedback(
-            gain=reading("gain"),
-            scheduling_velocity=reading("scheduling_velocity"),
-            bandwidth=reading("bandwidth"),
+            gain=read_open_number("gain"),
+            scheduling_velocity=read_open_number("scheduling_velocity"),
+            bandwidth=read_open_number("bandwidth"),
         ),
         position_loop=controller("lead", lead) if position_loop else None,
         analog=("H",),

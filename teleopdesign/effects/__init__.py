@@ -36,13 +36,13 @@ from ._effect import (
     Role,
     State,
     delayed,
-    ordered,
     parameter_symbol,
+    sort_by_action,
 )
 from ._facts import RecordFacts, repeats_within_travel
 from ._linear import acts_linearly, is_linear
 from ._position import depends_on_position, depends_on_time, period
-from ._structure import make_structure, rubbing, touching
+from ._structure import make_rubbing_structure, make_structure, make_touching_structure
 
 __all__ = [
     "BLOCK_EFFECTS",
@@ -67,12 +67,12 @@ __all__ = [
     "is_linear",
     "load_effect",
     "make_structure",
-    "ordered",
+    "sort_by_action",
     "parameter_symbol",
     "period",
     "repeats_within_travel",
-    "rubbing",
-    "touching",
+    "make_rubbing_structure",
+    "make_touching_structure",
     "with_block_effects",
 ]
 
@@ -85,17 +85,17 @@ def load_effect(path: str | Path) -> Effect:
         one that is declared linear and is not
     """
     path = checked_path(path, "effect", "my_effect.py")
-    return _of_file(path.resolve(), path)
+    return _load_effect(path.resolve(), path)
 
 
 _LOADED: WeakValueDictionary[tuple[Path, str], Effect] = WeakValueDictionary()
 
 
-def _of_file(path: Path, written: Path, expected: str = "") -> Effect:
+def _load_effect(path: Path, written: Path, expected: str = "") -> Effect:
     """The effect of a file;  written: its path in messages;  expected: digest that it must have."""
 
     def read(content: bytes) -> Effect:
-        effect = _checked(_run(content, written), written)
+        effect = _check_effect(_run(content, written), written)
         if effect.linear and not acts_linearly(effect):
             raise ModelError(
                 f"{written}: declares linear = True, but its law is not linear in motion, command "
@@ -103,7 +103,7 @@ def _of_file(path: Path, written: Path, expected: str = "") -> Effect:
             )
         return effect
 
-    return load_once(_LOADED, _of_file, read, path, written, expected)
+    return load_once(_LOADED, _load_effect, read, path, written, expected)
 
 
 def _run(content: bytes, path: Path) -> ModuleType:
@@ -126,7 +126,7 @@ ONLY_IN = {
 }
 
 
-def _checked(module: ModuleType, path: Path) -> Effect:
+def _check_effect(module: ModuleType, path: Path) -> Effect:
     effect = getattr(module, "EFFECT", None)
     if not isinstance(effect, Effect):
         raise ModelError(f"{path}: found no EFFECT = Effect(...)")
@@ -168,7 +168,9 @@ def _checked(module: ModuleType, path: Path) -> Effect:
 def _shipped_effects() -> dict[str, Effect]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
     modules = {p: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    return {p.stem: remember(_checked(m, p), _shipped_effect, p.stem) for p, m in modules.items()}
+    return {
+        p.stem: remember(_check_effect(m, p), _shipped_effect, p.stem) for p, m in modules.items()
+    }
 
 
 def _shipped_effect(name: str) -> Effect:

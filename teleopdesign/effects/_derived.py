@@ -47,7 +47,7 @@ def phase(effect: Effect) -> str | None:
 
 
 @lru_cache(maxsize=64)
-def without(effect: Effect, parameter: str) -> Effect:
+def fix_at_zero(effect: Effect, parameter: str) -> Effect:
     """The effect with an optional parameter zero everywhere in its laws."""
 
     def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
@@ -72,7 +72,7 @@ def without(effect: Effect, parameter: str) -> Effect:
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},
     )
-    return remember(less, without, effect, parameter)
+    return remember(less, fix_at_zero, effect, parameter)
 
 
 def linear_form(effect: Effect, s: sp.Symbol, values: Mapping[str, Any] | None) -> sp.Expr:

@@ -27,11 +27,11 @@ from typing import Any
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..notebook import html_table
 from ..quantity import unit_of
 from ..recipes import recipe
-from ._derived import channels, linear_form, phase, strength, without
+from ._derived import channels, fix_at_zero, linear_form, phase, strength
 from ._facts import RecordFacts
 from ._parameter import PERIOD, FitSearch, Parameter, positive_amplitude
 from ._roles import ACTUATION_ORDER, CONTACT_ROLES, ENERGIES, ROLES, Energy, Role
@@ -56,13 +56,13 @@ __all__ = [
     "Role",
     "State",
     "delayed",
-    "ordered",
+    "sort_by_action",
     "parameter_symbol",
     "positive_amplitude",
 ]
 
 
-@checked
+@check_types
 @dataclass(frozen=True, repr=False)
 class Effect:
     """A physical effect: one law in one role. Each file of the package's folder has an example.
@@ -194,7 +194,7 @@ class Effect:
 
     def without(self, parameter: str) -> Effect:
         """The effect without an optional parameter, which is zero everywhere in the law."""
-        return without(self, parameter)
+        return fix_at_zero(self, parameter)
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol NAME_PARAMETER, one per effect."""
@@ -241,11 +241,11 @@ class Effect:
 
     def corrections(self) -> dict[str, sp.Expr]:
         """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
-        return dict(_of_states(self, "correction"))
+        return dict(_corrections_of_states(self, "correction"))
 
     def dry_bounds(self) -> dict[str, sp.Expr]:
         """Hidden state -> largest rate by which dry friction slows it, on symbols; {}: none."""
-        return dict(_of_states(self, "dry"))
+        return dict(_corrections_of_states(self, "dry"))
 
     def led_momentum(self) -> sp.Expr:
         """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
@@ -281,14 +281,14 @@ def _rates(effect: Effect) -> dict[str, sp.Expr]:
 
 
 @lru_cache(maxsize=256)
-def _of_states(effect: Effect, what: str) -> dict[str, sp.Expr]:
+def _corrections_of_states(effect: Effect, what: str) -> dict[str, sp.Expr]:
     """Hidden state -> its "correction" or its "dry" bound, of the states that have one."""
     now, p = effect._now(None), effect._parameters(None)
     laws = {name: getattr(state, what) for name, state in effect.states.items()}
     return {n: sp.sympify(law(now, p), strict=True) for n, law in laws.items() if law is not None}
 
 
-def ordered(effects: tuple[Effect, ...], role: Role) -> list[Effect]:
+def sort_by_action(effects: tuple[Effect, ...], role: Role) -> list[Effect]:
     """Effects of one role, in the order in which they act on the signal."""
     chosen = [e for e in effects if e.role == role]
     rank = {name: i for i, name in enumerate(ACTUATION_ORDER)}

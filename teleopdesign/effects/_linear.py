@@ -21,11 +21,11 @@ def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
     signals = list(signals)
     for law in laws:
         plain = law.replace(delayed, lambda signal, _: signal)  # late is linear, too
-        slopes = [_simple(sp.diff(plain, x)) for x in signals]
+        slopes = [_simplify_fraction(sp.diff(plain, x)) for x in signals]
         if any(slope.has(*signals) for slope in slopes if signals):
             return False
         rest = plain - sp.Add(*(a * x for a, x in zip(slopes, signals, strict=True)))
-        if _simple(rest) != 0:
+        if _simplify_fraction(rest) != 0:
             return False
     return True
 
@@ -45,5 +45,5 @@ def acts_linearly(effect: Effect) -> bool:
     return is_linear(laws, [*driving, *states])
 
 
-def _simple(expression: sp.Expr) -> sp.Expr:
+def _simplify_fraction(expression: sp.Expr) -> sp.Expr:
     return expression if not expression.args else sp.simplify(expression)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..errors import ModelError, did_you_mean
 from ..quantity import QUANTITIES
 
@@ -21,7 +21,7 @@ def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
     }
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class FitSearch:
     """How a fit searches a parameter whose value nobody states.
@@ -41,7 +41,7 @@ class FitSearch:
     essential: bool = False
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).

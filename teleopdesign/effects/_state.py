@@ -8,13 +8,13 @@ from typing import Any
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 
 #: of a stop: a state that it holds rests up to here, or it would chatter between two rates
 HELD = 1.001
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class State:
     """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.

@@ -22,7 +22,7 @@ from typing import Any
 
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..errors import ModelError
 from ..quantity import MAINS
 from ..recipes import remember
@@ -40,7 +40,7 @@ BESIDE, TONE = 0.05, 0.1
 SEEN = 0.005
 
 
-@checked
+@check_types
 def make_structure(
     *,
     coupling: Coupling,
@@ -133,7 +133,7 @@ def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
 
 
 @lru_cache(maxsize=64)  # laws compare by identity: one structure, one kernel
-def touching(structure: Effect, contact: sp.Expr) -> Effect:
+def make_touching_structure(structure: Effect, contact: sp.Expr) -> Effect:
     """A structure whose tip, and not the actuator's side, touches the environment.
 
     contact: force that an environment takes, on the body's motion in `SIGNALS`
@@ -141,18 +141,18 @@ def touching(structure: Effect, contact: sp.Expr) -> Effect:
     assert structure.coupling is not None
     tip = replace(structure.states["tip_velocity"], rate=_accelerate(structure.coupling, contact))
     states = {**structure.states, "tip_velocity": tip}
-    return remember(replace(structure, states=states), touching, structure, contact)
+    return remember(replace(structure, states=states), make_touching_structure, structure, contact)
 
 
 @lru_cache(maxsize=64)
-def rubbing(structure: Effect, level: sp.Expr) -> Effect:
+def make_rubbing_structure(structure: Effect, level: sp.Expr) -> Effect:
     """A structure whose tip dry friction of that level holds.
 
     level: on parameters of the body's effects
     """
     tip = replace(structure.states["tip_velocity"], dry=lambda now, p: level / p.tip_inertia)
     states = {**structure.states, "tip_velocity": tip}
-    return remember(replace(structure, states=states), rubbing, structure, level)
+    return remember(replace(structure, states=states), make_rubbing_structure, structure, level)
 
 
 def _join(coupling: Coupling, now: Any, p: Any) -> sp.Expr:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..errors import ExperimentError, did_you_mean
 
 
-@checked
+@check_types
 def example(name: str = "rod") -> Path:
     """The folder of an experiment that comes with the package: "rod".
 

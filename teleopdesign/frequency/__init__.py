@@ -3,7 +3,7 @@
 from ..arguments import check_arguments
 from ..derive import transfer_function
 from .describing_function import describing_function
-from .grid import falling
+from .grid import falling_profile
 from .impedance_map import ImpedanceMap
 from .loop import LoopGain, delay_margin, loop_gain
 from .matrix_response import MatrixResponse, matrix_response
@@ -20,7 +20,7 @@ __all__ = [
     "bode",
     "delay_margin",
     "describing_function",
-    "falling",
+    "falling_profile",
     "loop_gain",
     "matrix_response",
     "measured_impedance",

@@ -44,7 +44,7 @@ def describing_function(
     amplitudes, frequencies = sizes.reshape(-1, 1), f.reshape(-1, 1)
     coefficients = np.empty(sizes.size, dtype=complex)
     for part in _parts(sizes.size, 1 if law.rates else _AT_ONCE):
-        motion = along(amplitudes[part], frequencies[part])
+        motion = cycle_values(amplitudes[part], frequencies[part])
         signals = motion if isinstance(of, Body) else controller_signals(motion)
         if law.rates:
             signals = {symbol: values.reshape(-1) for symbol, values in signals.items()}
@@ -66,7 +66,7 @@ def driven_gain(
     returns: phasor of the drive (1: in phase with position) -> complex gain. Where the gain follows
         speed, drives of another phase meet another gain; size matters only to nonlinear laws
     """
-    law, motion, phase = controller_law(of), along(amplitude, frequency), middles()
+    law, motion, phase = controller_law(of), cycle_values(amplitude, frequency), middles()
 
     def gain(drive: complex) -> complex:
         signal = drive.real * np.sin(phase) + drive.imag * np.cos(phase)
@@ -80,7 +80,7 @@ def driven_gain(
     return lambda drive: (sine + cosine + (sine - cosine) * drive.conjugate() / drive) / 2
 
 
-def along(
+def cycle_values(
     amplitude: float | np.ndarray, frequency: float | np.ndarray
 ) -> dict[sp.Symbol, np.ndarray]:
     """Position and its derivatives in the middle of each step of a cycle; no force acts.

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 Amplitude = float | Sequence[float] | np.ndarray | Callable[[np.ndarray], np.ndarray]
 
 
-def falling(amplitude: float, *, exponent: float = 0.8) -> Callable[[np.ndarray], np.ndarray]:
+def falling_profile(
+    amplitude: float, *, exponent: float = 0.8
+) -> Callable[[np.ndarray], np.ndarray]:
     """The profile amplitude * (f / 1 Hz)^-exponent; 0.8 is that of figure 7 of the paper.
 
     amplitude: at 1 Hz, m or rad;  returns: frequency (n,), Hz -> amplitude (n,), m or rad

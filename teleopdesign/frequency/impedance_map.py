@@ -116,7 +116,7 @@ class ImpedanceMap(ByValue):
         tables = {"size": self.decibel, "phase_deg": self.phase}
         tables |= {n: self.data[n] for n in ("distortion", "unsettled") if n in self.data}
         cases = {
-            str(case): {name: _rounded(t.sel(case=case).values) for name, t in tables.items()}
+            str(case): {name: _round_values(t.sel(case=case).values) for name, t in tables.items()}
             for case in self.data["case"].values
         }
         write_json(path, {**written, "cases": cases})
@@ -145,7 +145,7 @@ def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
     return {"real": z.real, "imaginary": z.imag}
 
 
-def _rounded(values: np.ndarray) -> list[object]:
+def _round_values(values: np.ndarray) -> list[object]:
     """Five digits, more than any figure shows and the same on every machine; None: no number."""
     numbers = [float(f"{x:.5g}") if np.isfinite(x) else None for x in values.reshape(-1)]
     entries: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()

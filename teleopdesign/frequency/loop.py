@@ -89,11 +89,11 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
     periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]
     fastest = np.pi / max(periods) if periods else float("inf")
-    growing = _growing(linear.blocks[controller])
+    growing = _count_growing_poles(linear.blocks[controller])
     return LoopGain(gain, controller, linear.left_out, linear.held, fastest, growing)
 
 
-def _growing(form: sp.Expr) -> int:
+def _count_growing_poles(form: sp.Expr) -> int:
     """Poles in the right half plane of a rational form; of others, 0."""
     if form.atoms(AppliedUndef) or form.has(sp.exp):
         return 0
@@ -118,7 +118,7 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
                 f'judge the rest with `diagram.without("{gone[0]}")`, or simulate'
             )
         if loop.expression.atoms(AppliedUndef):
-            return _least_delay(*measured_crossings(loop.expression, growing=loop.growing))
+            return _smallest_delay(*measured_crossings(loop.expression, growing=loop.growing))
         whole = loop.transfer_function(delay_order=_PADE)
     else:
         whole = loop
@@ -128,10 +128,10 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
         phase, crossing = _crossings(loop)
     else:
         _, phase, _, _, crossing, _ = control.stability_margins(whole, returnall=True)
-    return _least_delay(phase, crossing)
+    return _smallest_delay(phase, crossing)
 
 
-def _least_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
+def _smallest_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
     # a crossing is reached by turning back as far as its phase lies ahead of -180 degrees
     delays = np.radians(np.asarray(phase) % 360) / np.asarray(crossing)
     return float(delays.min()) if len(delays) else float("inf")

@@ -57,7 +57,7 @@ def first_harmonic(
         raise ModelError(
             f"{law.where}: no describing function, for it depends on {', '.join(strangers)}"
         )
-    states = _closed(law, signals, 1 / (float(frequency) * STEPS)) if law.rates else {}
+    states = _close_cycle(law, signals, 1 / (float(frequency) * STEPS)) if law.rates else {}
     along = {**signals, **states}
     used, call = law.force
     with np.errstate(all="ignore"):  # a piecewise law is computed also where it does not hold
@@ -74,7 +74,7 @@ def middles() -> np.ndarray:
     return 2 * np.pi * (np.arange(STEPS) + 0.5) / STEPS
 
 
-def _closed(
+def _close_cycle(
     law: LawExpressions, signals: Mapping[sp.Symbol, np.ndarray], step: float
 ) -> dict[sp.Symbol, np.ndarray]:
     """Hidden states in the middle of each step of a cycle that ends where it began."""
@@ -119,12 +119,12 @@ def _cycle(
     for row in rows:
         derivatives = call(*state, *row)
         middle = [
-            _advanced(z, a, b, step / 2)
+            _advance(z, a, b, step / 2)
             for z, a, b in zip(state, derivatives, derivatives[n:], strict=False)
         ]
         derivatives = call(*middle, *row)
         state = [
-            _advanced(z, a, b, step)
+            _advance(z, a, b, step)
             for z, a, b in zip(state, derivatives, derivatives[n:], strict=False)
         ]
         exponent = [e + a * step for e, a in zip(exponent, derivatives, strict=False)]
@@ -132,7 +132,7 @@ def _cycle(
     return np.array(values), np.exp(exponent), np.array(state)
 
 
-def _advanced(state: float, a: float, b: float, step: float) -> float:
+def _advance(state: float, a: float, b: float, step: float) -> float:
     """The state after a step of its rate a z + b."""
     x = a * step
     share = 1 + x / 2 if abs(x) < 1e-8 else math.expm1(x) / x

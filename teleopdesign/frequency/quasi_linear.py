@@ -16,7 +16,7 @@ import sympy as sp
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer
-from ..derive.printing import along_symbol, dead_time_symbol
+from ..derive.printing import dead_time_symbol, motion_controller_symbol
 from ..diagrams import Control, Diagram
 from ..diagrams.units import first_axis
 from ..errors import ModelError
@@ -100,7 +100,7 @@ class _Form:
             block_symbol(f"A_{n}"): complex(e.subs(S, s)) for n, e in self.linear.actuation.items()
         }
         for name, form in self.linear.along.items():
-            values[along_symbol(name)] = complex(form.subs(S, s))
+            values[motion_controller_symbol(name)] = complex(form.subs(S, s))
             values[block_symbol(name)] = complex(self.linear.blocks[name].subs(S, s))
         values |= {dead_time_symbol(n): complex(t) for n, t in self.linear.dead_times.items()}
         values[S] = s

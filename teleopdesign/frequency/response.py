@@ -124,14 +124,14 @@ def bode(
         )
         rows.append(numerical(expression)(2j * np.pi * f))
         left_out[name] = linear.left_out
-    data = labelled(
+    data = label_response(
         np.array(rows), list(cases), f, unit=ratio_unit(linear_tips(diagram), output, input)
     )
     data.attrs |= {"output": output, "input": input, "speed": abs(speed)}
     return FrequencyResponse(data, output, input, left_out)
 
 
-def labelled(
+def label_response(
     values: np.ndarray, cases: list[str], frequency: np.ndarray, *, unit: str
 ) -> xarray.Dataset:
     """Magnitude and phase of complex values (cases, n) over frequency (n,) in Hz."""

@@ -61,7 +61,7 @@ def steady_harmonics(
         setup = _set_up(diagram, drive, duration=cycles / drive.frequency)
         rows, timing = setup.checked(long_step="refine", every_step=True)
         columns = dict(zip(setup.program.layout.columns, rows.T, strict=True))
-        columns = _outside(diagram, drive, len(rows), timing.step) | columns
+        columns = _outside_signals(diagram, drive, len(rows), timing.step) | columns
         harmonics = {
             name: lock_in(
                 _signal(diagram, columns, name),
@@ -107,7 +107,9 @@ def _length(diagram: Diagram, drive: Sinusoid) -> float:
     return 1e-3 if diagram.outside.get(drive.drive) == "force" else drive.amplitude
 
 
-def _outside(diagram: Diagram, drive: Sinusoid, rows: int, step: float) -> dict[str, np.ndarray]:
+def _outside_signals(
+    diagram: Diagram, drive: Sinusoid, rows: int, step: float
+) -> dict[str, np.ndarray]:
     """Signals from outside at the nodes: the drive, and zeros."""
     inputs = {name: np.zeros(rows) for name in diagram.outside}
     if drive.drive in inputs:

@@ -21,7 +21,7 @@ from ..by_value import ByValue
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from ..plain_data import plain, write_json
+from ..plain_data import make_plain, write_json
 from ..quantity import unit_of
 from ..standard_error import with_standard_error
 from .mean_error import mean_error
@@ -108,7 +108,7 @@ class CoulombLevel(ByValue):
             ],
             "units": {"force": force, "velocity": speed},
         }  # fmt: skip
-        content: dict[str, Any] = plain(data)
+        content: dict[str, Any] = make_plain(data)
         return content
 
     def to_json(self, path: str | Path) -> None:
@@ -179,7 +179,7 @@ def coulomb_level(
             f"{experiment.folder.name}: coulomb_level: no run of {shortest:g} s at a speed within "
             f"{100 * tolerance:g} %"
         )
-    speeds = _by_speed(_pairs(runs))
+    speeds = _group_by_speed(_pairs(runs))
     ways = {
         way: _line(
             np.array([abs(r.velocity) for r in runs if r.direction == way]),
@@ -247,7 +247,7 @@ def _pair(forward: SteadyRun, backward: SteadyRun) -> _Pair:
     return _Pair(speed, float(parts[0].mean()), float(parts[1].mean()), error)
 
 
-def _by_speed(pairs: Sequence[_Pair]) -> tuple[LevelAtSpeed, ...]:
+def _group_by_speed(pairs: Sequence[_Pair]) -> tuple[LevelAtSpeed, ...]:
     """Pairs of one speed together; their scatter counts where it is larger than their errors."""
     groups: list[list[_Pair]] = []
     for pair in sorted(pairs, key=lambda p: p.speed):

@@ -121,7 +121,7 @@ def _earliest(velocity: Array, tolerance: float) -> np.ndarray:
             low.pop()
         high.append(k)
         low.append(k)
-        while high and not _within(values[low[0]], values[high[0]], tolerance):
+        while high and not _is_within(values[low[0]], values[high[0]], tolerance):
             first += 1
             if high[0] < first:
                 high.popleft()
@@ -131,6 +131,6 @@ def _earliest(velocity: Array, tolerance: float) -> np.ndarray:
     return starts
 
 
-def _within(low: float, high: float, tolerance: float) -> bool:
+def _is_within(low: float, high: float, tolerance: float) -> bool:
     middle = (low + high) / 2
     return low * high > 0 and (high - low) / 2 <= tolerance * abs(middle)

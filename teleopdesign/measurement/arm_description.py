@@ -12,9 +12,9 @@ import numpy as np
 from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, Array, tensor
 from ..by_value import ByValue
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..errors import ExperimentError, did_you_mean, quote
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
-from .toml_table import Table, described
+from .toml_table import Table, describe_toml_value
 
 #: whether inertial parameters are estimated, or taken as they are
 ESTIMATES = ("base parameters", "as given")
@@ -63,8 +63,8 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
     estimate = table.text("estimate", ESTIMATES[0])
     if estimate not in ESTIMATES:
         raise ExperimentError(
-            f"{table.where('estimate')}: found {quoted(estimate)}, expected "
-            f"{' or '.join(map(quoted, ESTIMATES))}{did_you_mean(estimate, ESTIMATES)}"
+            f"{table.where('estimate')}: found {quote(estimate)}, expected "
+            f"{' or '.join(map(quote, ESTIMATES))}{did_you_mean(estimate, ESTIMATES)}"
         )
     bodies = {
         name: _joint(name, joint, link)
@@ -76,7 +76,7 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
 def _require_name(name: str, where: str) -> None:
     if not _NAME.fullmatch(name) or name in _TAKEN:
         raise ExperimentError(
-            f"{where}: found {quoted(name)}, expected a name of letters and digits, none of "
+            f"{where}: found {quote(name)}, expected a name of letters and digits, none of "
             f"{', '.join(_TAKEN)}"
         )
 
@@ -121,7 +121,7 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chai
     if not path.is_relative_to(folder.resolve()) or not path.is_file():
         names = sorted(p.name for p in folder.iterdir() if p.suffix in (".urdf", ".xml"))
         raise ExperimentError(
-            f"{table.where('urdf')}: no file {quoted(file)} in {folder.name}/, found "
+            f"{table.where('urdf')}: no file {quote(file)} in {folder.name}/, found "
             f"{', '.join(names[:10]) or 'none'}{did_you_mean(file, names)}"
         )
     named = [joint.text("urdf_joint", name) for name, joint in joints.items()]
@@ -146,7 +146,7 @@ def _link(table: Table) -> Link:
     kind = table.text("kind", "revolute")
     if kind not in ("revolute", "prismatic"):
         raise ExperimentError(
-            f'{table.where("kind")}: found {quoted(kind)}, expected "revolute" or "prismatic"'
+            f'{table.where("kind")}: found {quote(kind)}, expected "revolute" or "prismatic"'
         )
     axis = numbers_from(table, "axis", 3, (0.0, 0.0, 1.0))
     if not (size := float(np.linalg.norm(axis))) > 0:
@@ -182,6 +182,7 @@ def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...])
         isinstance(x, int | float) and not isinstance(x, bool) and abs(x) < 1e12 for x in numbers
     ):
         raise ExperimentError(
-            f"{table.where(key)}: found {described(entry)}, expected {count} finite numbers"
+            f"{table.where(key)}: found {describe_toml_value(entry)}, "
+            f"expected {count} finite numbers"
         )
     return np.array([float(x) for x in numbers])

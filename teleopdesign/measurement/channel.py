@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..errors import ExperimentError, did_you_mean, quote
 from ..quantity import si_factor, to_si
 from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
@@ -63,7 +63,7 @@ def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[s
 
     raises ExperimentError: unknown or missing channel, wrong kind of unit, a column used twice
     """
-    table = _flattened(table, bodies)
+    table = _flatten(table, bodies)
     known = _known_names(bodies)
     channels: dict[str, Channel] = {}
     for key in table.content:
@@ -73,11 +73,11 @@ def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[s
             listed = ", ".join((*known, "sample_rate"))
             hint = did_you_mean(key, (*known, "sample_rate"))
             raise ExperimentError(
-                f"{table.where()}: no quantity {quoted(key)}, expected some of {listed}{hint}"
+                f"{table.where()}: no quantity {quote(key)}, expected some of {listed}{hint}"
             )
         name = known[key]
         if name in channels:
-            raise ExperimentError(f"{table.where(key)}: {quoted(name)} is given twice")
+            raise ExperimentError(f"{table.where(key)}: {quote(name)} is given twice")
         channels[name] = _channel(table.table(key), name, bodies)
     _refuse_missing(table, channels, bodies)
     _refuse_shared_columns(table, channels)
@@ -134,7 +134,7 @@ def frequency_from(table: Table, key: str) -> float:
     return to_si(value, entry.text("unit"), quantity="frequency", where=where)
 
 
-def _flattened(table: Table, bodies: Mapping[str, BodyDescription]) -> Table:
+def _flatten(table: Table, bodies: Mapping[str, BodyDescription]) -> Table:
     """To TOML, "master.position" without quotes is a table in a table: make it one key again."""
     content: dict[str, Any] = {}
     for key, value in table.content.items():
@@ -199,7 +199,7 @@ def _refuse_missing(
             if f"{body}.{quantity}" not in channels:
                 name = quantity if tuple(bodies) == ONE_BODY else f"{body}.{quantity}"
                 listed = ", ".join(table.content) or "no channel"
-                raise ExperimentError(f"{table.where()}: no {quoted(name)}, found {listed}")
+                raise ExperimentError(f"{table.where()}: no {quote(name)}, found {listed}")
 
 
 def _refuse_shared_columns(table: Table, channels: Mapping[str, Channel]) -> None:
@@ -209,5 +209,5 @@ def _refuse_shared_columns(table: Table, channels: Mapping[str, Channel]) -> Non
             other = first_use.setdefault(column, name)
             if other != name:
                 raise ExperimentError(
-                    f"{table.where(name)}: found column {quoted(column)}, which {other} uses"
+                    f"{table.where(name)}: found column {quote(column)}, which {other} uses"
                 )

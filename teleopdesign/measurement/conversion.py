@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, quoted
+from ..errors import ExperimentError, quote
 from ..quantity import converting_factor, si_factor, to_si
-from .toml_table import Table, described
+from .toml_table import Table, describe_toml_value
 
 Array = NDArray[np.float64]
 
@@ -94,15 +94,14 @@ def conversion_of(
     if "torque_constant" in table.content:
         if kind != "force":
             raise ExperimentError(
-                f"{table.where('torque_constant')}: found on {quoted(quantity)}, expected on a "
-                f"force"
+                f"{table.where('torque_constant')}: found on {quote(quantity)}, expected on a force"
             )
         value, written = _constant(table, "torque_constant", f"{_force(axis)}/A")
         constant, names = constant * value, [*names, f"({written})"]
     if "gear_ratio" in table.content:
         if kind not in ("force", "position", "velocity"):
             raise ExperimentError(
-                f"{table.where('gear_ratio')}: found on {quoted(quantity)}, expected on a "
+                f"{table.where('gear_ratio')}: found on {quote(quantity)}, expected on a "
                 f"position, "
                 "a velocity or a force"
             )
@@ -118,7 +117,7 @@ def conversion_of(
         else:
             constant = constant / value
             names = [*names, f"(1/({written}))"] if written else names
-    base, per_count = _counted(table, unit, kind=kind, axis=axis)
+    base, per_count = _unit_of_count(table, unit, kind=kind, axis=axis)
     where = table.where("unit")
     if names:
         factor = converting_factor(base, "*".join(names), quantity=kind, axis=axis, where=where)
@@ -156,8 +155,8 @@ def _scales(table: Table, count: int) -> tuple[float, ...]:
     numbers = [v for v in listed if isinstance(v, int | float) and not isinstance(v, bool)]
     if len(numbers) != len(listed) or not all(math.isfinite(v) and v != 0 for v in numbers):
         raise ExperimentError(
-            f"{table.where('scale')}: found {described(value)}, expected a number other than 0"
-            + (", or a list of them" if count > 1 else "")
+            f"{table.where('scale')}: found {describe_toml_value(value)}, "
+            "expected a number other than 0" + (", or a list of them" if count > 1 else "")
         )
     if len(listed) != count:
         raise ExperimentError(
@@ -185,21 +184,21 @@ def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
             unit = ""
     if example is not None and not unit:
         raise ExperimentError(
-            f"{table.where(key)}: no unit, expected {{ value = ..., unit = {quoted(example)} }}"
+            f"{table.where(key)}: no unit, expected {{ value = ..., unit = {quote(example)} }}"
         )
     if value == 0:
         raise ExperimentError(f"{table.where(key)}: found 0, expected another number")
     return value, unit
 
 
-def _counted(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
+def _unit_of_count(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
     """Unit of a count and how much of it one count is; other units are one of themselves."""
     keys = [key for key in ("count", "counts_per_turn") if key in table.content]
     if unit not in COUNTS:
         if keys:
             raise ExperimentError(
-                f"{table.where(keys[0])}: found with unit {quoted(unit)}, "
-                f"expected unit {quoted(COUNTS[0])}"
+                f"{table.where(keys[0])}: found with unit {quote(unit)}, "
+                f"expected unit {quote(COUNTS[0])}"
             )
         return unit, 1.0
     if len(keys) != 1:
@@ -220,7 +219,7 @@ def _without_constant(unit: str, kind: str, axis: str, where: str) -> float:
     except ExperimentError as problem:
         if kind == "force" and unit in ("A", "mA"):
             raise ExperimentError(
-                f"{where}: found {quoted(unit)}, expected beside a current "
+                f"{where}: found {quote(unit)}, expected beside a current "
                 f'torque_constant = {{ value = ..., unit = "{_force(axis)}/A" }} of the motor'
             ) from None
         raise problem
@@ -244,7 +243,7 @@ def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[f
         turn = to_si(1.0, "turn", quantity="angle") / si_factor(unit, quantity="angle")
     except ExperimentError:
         raise ExperimentError(
-            f"{where}: found true with unit {quoted(unit)}, expected the length at which it wraps"
+            f"{where}: found true with unit {quote(unit)}, expected the length at which it wraps"
         ) from None
     return turn / abs(scales[0])
 

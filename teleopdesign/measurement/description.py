@@ -8,7 +8,7 @@ unit they were written in. Which quantity an effect's parameter is, only the eff
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..errors import ExperimentError, did_you_mean, quote
 from ..quantity import AXES, to_si
 from .toml_table import Table
 
@@ -78,7 +78,7 @@ def bodies_from(model: Table) -> dict[str, BodyDescription]:
             f"{model.where()}: found {listed}, "
             "expected [model.device], or [model.master] and [model.slave]"
         )
-    return {name: _moving(name, model.table(name)) for name in names}
+    return {name: _require_inertia(name, model.table(name)) for name in names}
 
 
 def environment_from(
@@ -98,7 +98,7 @@ def environment_from(
     return EnvironmentDescription(values, effects_from(table), table.where())
 
 
-def _moving(name: str, table: Table) -> BodyDescription:
+def _require_inertia(name: str, table: Table) -> BodyDescription:
     """A body that records show in motion: it has an inertia, if it says which."""
     table.allow(BODY)
     body = body_from(name, table)
@@ -117,8 +117,8 @@ def body_from(name: str, table: Table) -> BodyDescription:
     axis = table.text("axis")
     if axis not in AXES:
         raise ExperimentError(
-            f"{table.where('axis')}: found {quoted(axis)}, expected "
-            f"{' or '.join(quoted(a) for a in AXES)}{did_you_mean(axis, AXES)}"
+            f"{table.where('axis')}: found {quote(axis)}, expected "
+            f"{' or '.join(quote(a) for a in AXES)}{did_you_mean(axis, AXES)}"
         )
     inertia = None
     if "inertia" in table.content:

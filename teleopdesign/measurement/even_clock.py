@@ -52,10 +52,10 @@ def _is_even(stamps: Array, segments: Sequence[slice], period: float) -> bool:
     steps = np.where(within, steps, usual)
     if np.all(np.abs(steps - usual) <= _JITTER * usual):
         return True
-    return abs(period - usual) > _EQUAL * usual and only_rounded(stamps, segments, period)
+    return abs(period - usual) > _EQUAL * usual and is_only_rounded(stamps, segments, period)
 
 
-def only_rounded(stamps: Array, segments: Sequence[slice], period: float) -> bool:
+def is_only_rounded(stamps: Array, segments: Sequence[slice], period: float) -> bool:
     """Steps differ because stamps are coarse: each is still next to its place on a uniform grid."""
     allowed = (0.5 + 1e-3) * _resolution(stamps) + _JITTER * period
     for segment in segments:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import final
 
 from ..by_value import ByValue
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..errors import ExperimentError, did_you_mean, quote
 from ..notebook import html_table
 from ..quantity import unit_of
 from .arm_description import ArmDescription, arm_from
@@ -17,7 +17,7 @@ from .doors.bag import is_bag
 from .reading import ReadingStep, reading_table
 from .record import SEPARATE, Record, read_record
 from .tables import is_log, tables_in
-from .toml_table import Table, described, read_toml
+from .toml_table import Table, describe_toml_value, read_toml
 
 _FILE = "experiment.toml"
 
@@ -72,25 +72,24 @@ class Experiment(ByValue):
         """Axis of a body: "prismatic" or "revolute"; raises ExperimentError: no such body."""
         if body not in self.bodies:
             raise ExperimentError(
-                f"{self.folder.name}/{_FILE}: no body {quoted(body)}, "
-                f"found {', '.join(self.bodies)}"
+                f"{self.folder.name}/{_FILE}: no body {quote(body)}, found {', '.join(self.bodies)}"
             )
         return self.bodies[body].axis
 
     def _repr_html_(self) -> str:
         rows = [
-            (name, body.axis, ", ".join(body.effects) or "no effects", _measured(self, name))
+            (name, body.axis, ", ".join(body.effects) or "no effects", _measured_names(self, name))
             for name, body in self.bodies.items()
         ]
         rows += [
             (r.file, r.use, f"{r.duration:.6g} s", f"{1 / r.sample_time:.6g} Hz")
             for r in self.records
         ]
-        title = f"Experiment {quoted(self.title)} ({self.folder.name})"
+        title = f"Experiment {quote(self.title)} ({self.folder.name})"
         return html_table(title, ("body or record", "axis or use", "", ""), rows)
 
     def __repr__(self) -> str:
-        lines = [f"Experiment {quoted(self.title)} ({self.folder.name})"]
+        lines = [f"Experiment {quote(self.title)} ({self.folder.name})"]
         for name, body in self.bodies.items():
             effects = ", ".join(body.effects) or "no effects"
             lines.append(f"  {name}: {body.axis}, {effects}")
@@ -191,7 +190,7 @@ def _record_entries(
                 what = (
                     "is listed twice" if span == other_span else "is listed with spans that overlap"
                 )
-                raise ExperimentError(f"{table.where('file')}: {quoted(file)} {what}")
+                raise ExperimentError(f"{table.where('file')}: {quote(file)} {what}")
         use = _choice(table, "use", ("fit", "check"))
         separate = {
             name for name in SEPARATE if _choice(table, name, ("common", "own"), "common") == "own"
@@ -215,7 +214,8 @@ def _span(table: Table) -> tuple[float, ...] | None:
     )
     if not numbers or len(span) != 2 or not 0 <= span[0] < span[1] < 1e9:
         raise ExperimentError(
-            f"{table.where('span')}: found {described(span)}, expected [begin, end] in s, from the "
+            f"{table.where('span')}: found {describe_toml_value(span)}, "
+            "expected [begin, end] in s, from the "
             "log's first row"
         )
     return (float(span[0]), float(span[1]))
@@ -228,9 +228,9 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
 def _choice(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
     value = table.text(key, default)
     if value not in choices:
-        listed = " or ".join(quoted(choice) for choice in choices)
+        listed = " or ".join(quote(choice) for choice in choices)
         raise ExperimentError(
-            f"{table.where(key)}: found {quoted(value)}, "
+            f"{table.where(key)}: found {quote(value)}, "
             f"expected {listed}{did_you_mean(value, choices)}"
         )
     return value
@@ -244,17 +244,17 @@ def _check_path(table: Table, folder: Path, file: str) -> None:
         exists = path.is_file() or is_bag(path) or path.is_dir() and bool(tables_in(path))
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
-        raise ExperimentError(f"{where}: {quoted(file)} cannot be read: {reason}") from None
+        raise ExperimentError(f"{where}: {quote(file)} cannot be read: {reason}") from None
     if not inside:
         raise ExperimentError(
-            f"{where}: found {quoted(file)}, expected a file inside {folder.name}/"
+            f"{where}: found {quote(file)}, expected a file inside {folder.name}/"
         )
     if not exists:
         names = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
         others = [name for name in names if name != _FILE]
         listed = ", ".join(others[:10]) + (", ..." if len(others) > 10 else "")
         raise ExperimentError(
-            f"{where}: no file {quoted(file)}, found {listed or 'none'}{did_you_mean(file, others)}"
+            f"{where}: no file {quote(file)}, found {listed or 'none'}{did_you_mean(file, others)}"
         )
 
 
@@ -270,7 +270,7 @@ def _check_bandwidth(
             )
 
 
-def _measured(experiment: Experiment, body: str) -> str:
+def _measured_names(experiment: Experiment, body: str) -> str:
     """Names of what is measured of a body."""
     return ", ".join(q for q in BODY_QUANTITIES if f"{body}.{q}" in experiment.channels)
 

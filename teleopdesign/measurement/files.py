@@ -27,7 +27,7 @@ def experiment_files(folder: Path) -> dict[str, Path | None]:
     None: no file of that name in the folder. Where experiment.toml cannot be read, it stands alone:
     what reads the experiment says why.
     """
-    files: dict[str, Path | None] = {"experiment.toml": _within(folder, "experiment.toml")}
+    files: dict[str, Path | None] = {"experiment.toml": _resolve_within(folder, "experiment.toml")}
     try:
         table = read_toml(folder / "experiment.toml", f"{folder.name}/experiment.toml")
         records = [t.text("file") for t in table.tables("records")]
@@ -37,13 +37,13 @@ def experiment_files(folder: Path) -> dict[str, Path | None]:
         if "\0" not in name and (folder / name).is_dir():
             for path in sorted((folder / name).rglob("*")):
                 inside = path.relative_to(folder).as_posix()
-                files[inside] = _within(folder, inside)
+                files[inside] = _resolve_within(folder, inside)
         else:
-            files[name] = _within(folder, name)
+            files[name] = _resolve_within(folder, name)
     return files
 
 
-def _within(folder: Path, name: str) -> Path | None:
+def _resolve_within(folder: Path, name: str) -> Path | None:
     """The regular file of that name, if it lies in the folder."""
     path = folder / name
     if not path.is_file() or not path.resolve().is_relative_to(folder.resolve()):

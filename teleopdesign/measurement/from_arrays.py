@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import checked
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..arguments import check_types
+from ..errors import ExperimentError, did_you_mean, quote
 from ..quantity import AXES, unit_of
 from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
 from .column_names import likeness, unit_in_name
@@ -27,7 +27,7 @@ ChannelEntry = str | Mapping[str, Any]
 _WHERE = "experiment"
 
 
-@checked
+@check_types
 def experiment(
     data: Any,
     *,
@@ -68,7 +68,7 @@ def experiment(
     }
     if axis not in AXES:
         raise ExperimentError(
-            f"{_WHERE}: axis: found {quoted(axis)}, expected {' or '.join(map(quoted, AXES))}"
+            f"{_WHERE}: axis: found {quote(axis)}, expected {' or '.join(map(quote, AXES))}"
             f"{did_you_mean(axis, AXES)}"
         )
     entered = {key: entry for key, entry in entries.items() if entry is not None}
@@ -87,7 +87,7 @@ def experiment(
     if fit is not None:
         spans = [("fit", span) for span in _spans(fit, "fit")]
     spans += [("check", span) for span in _spans(check, "check")]
-    return in_memory(content, log, spans, title=title, bandwidth=bandwidth)
+    return build_experiment(content, log, spans, title=title, bandwidth=bandwidth)
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
@@ -120,12 +120,12 @@ def _refuse_unknown_units(units: Mapping[str, str], log: Log) -> None:
     for column in units:
         if column not in log.names:
             raise ExperimentError(
-                f"{_WHERE}: units: no column {quoted(column)}, found {', '.join(log.names)}"
+                f"{_WHERE}: units: no column {quote(column)}, found {', '.join(log.names)}"
                 f"{did_you_mean(column, log.names)}"
             )
 
 
-def in_memory(
+def build_experiment(
     content: Mapping[str, Any],
     log: Log,
     spans: Sequence[tuple[str, Sequence[float] | None]],

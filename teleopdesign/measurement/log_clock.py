@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, quoted
+from ..errors import ExperimentError, quote
 from .channel import Channel
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock, counted_time, segments_of
@@ -59,7 +59,7 @@ def clock_of_log(
         stamps = columns.values[channels["time"].column] * (to_seconds or 1.0)
         where = f"{name}: channels.time"
     labels = _labels(columns, channels, name)
-    again = _repeated(columns, channels, on_this_clock, filled) & _later(stamps)
+    again = _mark_repeated(columns, channels, on_this_clock, filled) & _later(stamps)
     rows = np.flatnonzero(filled & ~again)
     stamps = stamps[rows]
     steps: list[ReadingStep] = []
@@ -72,7 +72,7 @@ def clock_of_log(
     if sample_rate is not None and len(rows) == len(filled):
         clock = RecordClock(rows, time, rows, time, sample_time, segments, segments)
     else:
-        clock = clock_of(stamps, segments, _same(columns, channels, rows, on_this_clock), where)
+        clock = clock_of(stamps, segments, _repeats(columns, channels, rows, on_this_clock), where)
         clock = replace(clock, rows=rows[clock.rows])
     stamped, more = _stamps(clock, columns, channels, file)
     if empty:
@@ -111,7 +111,7 @@ def _filled_rows(
                 row = int(np.argmax(bad))
                 short = key.removeprefix("device.")
                 raise ExperimentError(
-                    f"{name}: channels.{short}: column {quoted(column)}, row {row + 1}: found "
+                    f"{name}: channels.{short}: column {quote(column)}, row {row + 1}: found "
                     f"{columns.values[column][row]:g}, and no number in {bad.mean():.0%} of the "
                     f"rows, expected at most {MOST_EMPTY:.0%}"
                 )
@@ -126,7 +126,7 @@ def _later(stamps: Array) -> NDArray[np.bool_]:
     return np.asarray(steps > 0.5 * np.median(forward)) if len(forward) else steps > 0
 
 
-def _repeated(
+def _mark_repeated(
     columns: LogColumns,
     channels: Mapping[str, Channel],
     on_this_clock: set[str],
@@ -159,7 +159,7 @@ def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> 
     return labels
 
 
-def _same(
+def _repeats(
     columns: LogColumns,
     channels: Mapping[str, Channel],
     rows: NDArray[np.intp],

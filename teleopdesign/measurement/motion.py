@@ -136,7 +136,7 @@ def direction_of(position: Array, change: float, step: float, patience: int) -> 
     return np.cumsum(edges[:-1]).astype(np.int8)
 
 
-def beside(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def mark_neighbours(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """The marked samples and those next to one."""
     wide = marked.copy()
     wide[1:] |= marked[:-1]
@@ -197,7 +197,7 @@ def motion_of(
         if name == "other_position":
             more["other_velocity"] = s.back(smooth * s.derivative(1))
             more["other_acceleration"] = s.back(smooth * s.derivative(2))
-    direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
+    direction[mark_neighbours(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,
         file=file,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ExperimentError
-from ..plain_data import replacing, write_text
+from ..plain_data import write_beside, write_text
 from .channel import channels_from, sample_rate_from
 from .description import bodies_from
 from .first_guess import FirstGuess, guess_from
@@ -56,7 +56,7 @@ def make_folder(
             if log.is_dir():
                 shutil.copytree(log, target)
                 continue
-            with replacing(target) as part:
+            with write_beside(target) as part:
                 shutil.copyfile(log, part)
     except OSError as problem:
         raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
@@ -156,7 +156,7 @@ def experiment_text(
     if inertia is not None:
         lines.append(f'inertia = {{ value = {inertia!r}, unit = "{mass}", fixed = true }}')
     elif first is not None:
-        value = _rounded(first.inertia) if first.inertia > 0 else 1.0
+        value = _round(first.inertia) if first.inertia > 0 else 1.0
         lines.append(
             f'inertia = {{ value = {value!r}, unit = "{mass}" }}'.ljust(60)
             + "# a start, from the log; fixed = true if you know it"
@@ -176,7 +176,7 @@ def experiment_text(
     lines.append("")
     for record in records:
         lines.append("[[records]]")
-        lines += [f"{k} = {_plain(v)}" for k, v in record.items()]
+        lines += [f"{k} = {_toml_text(v)}" for k, v in record.items()]
     if survey.guesses:
         lines += ["", "[guessed]"]
         lines += [f"{string_text(key)} = {string_text(why)}" for key, why in survey.guesses.items()]
@@ -191,18 +191,18 @@ def _first_of(name: str, first: FirstGuess | None, force: str, length: str) -> s
     if name not in known or not known[name][1] > 0:
         return "{}"
     parameter, value, unit = known[name]
-    return f'{{ {parameter} = {{ value = {_rounded(value)!r}, unit = "{unit}" }} }}'
+    return f'{{ {parameter} = {{ value = {_round(value)!r}, unit = "{unit}" }} }}'
 
 
-def _rounded(value: float) -> float:
+def _round(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
 
 
 def _table(entries: Mapping[str, Any]) -> str:
-    return inline_text({name: _plain(value) for name, value in entries.items()})
+    return inline_text({name: _toml_text(value) for name, value in entries.items()})
 
 
-def _plain(value: Any) -> str:
+def _toml_text(value: Any) -> str:
     if isinstance(value, Mapping):
         return _table(value)
     if isinstance(value, bool):
@@ -210,5 +210,5 @@ def _plain(value: Any) -> str:
     if isinstance(value, str):
         return string_text(value)
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(_plain, value)) + "]"
+        return "[" + ", ".join(map(_toml_text, value)) + "]"
     return repr(value)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, quoted
+from ..errors import ExperimentError, quote
 from .doors._cells import number_of
 
 Array = NDArray[np.float64]
@@ -18,9 +18,7 @@ _LONG = 2**53
 def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
     """A vector of float64 out of what a file holds: (n,), (n, 1) or (1, n) numbers or dates."""
     values = np.asarray(values)
-    begin = (
-        f"{file}: {channel}: column {quoted(column)}" if channel else f"{file}: {quoted(column)}"
-    )
+    begin = f"{file}: {channel}: column {quote(column)}" if channel else f"{file}: {quote(column)}"
     if values.ndim == 2 and 1 in values.shape:
         values = values.reshape(-1)
     if values.ndim != 1:
@@ -67,5 +65,5 @@ def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
 def _first_non_number(values: NDArray[Any]) -> tuple[int, str]:
     for row, value in enumerate(values, start=1):
         if not isinstance(value, int | float | np.number):
-            return row, quoted(str(value))
+            return row, quote(str(value))
     return 1, f"values of type {values.dtype}"

@@ -70,7 +70,7 @@ def repeated_rows(
         stopped[repeats(x, step)] = True
     short = (past - first < LASTING) & (first > 0) & (past < len(same))
     noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= ALONE]
-    unlikely = _by_chance([*positions, *forces], same, first, past) <= ALONE
+    unlikely = _chance_of_repeats([*positions, *forces], same, first, past) <= ALONE
     unlikely &= np.count_nonzero(unlikely & short) > ALONE * len(same)
     inside = short & (unlikely | bool(noisy) | stopped[past])
     lasting = np.flatnonzero(past - first >= LASTING)
@@ -144,7 +144,7 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
     return stretches
 
 
-def _by_chance(
+def _chance_of_repeats(
     read: Sequence[Array], same: NDArray[np.bool_], first: NDArray[np.intp], past: NDArray[np.intp]
 ) -> Array:
     """Chance that what is read repeats together in a row, at each run, as it repeats beside it.

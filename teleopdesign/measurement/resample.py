@@ -27,7 +27,7 @@ _SEEN, _ALIKE, _PHASE = 20, 0.95, 0.005
 TRIALS = 2000
 
 
-def on_grid(
+def resample_on_grid(
     values: Array, clock: RecordClock, rule: Rule, *, stamped: bool, step: float, delay: float = 0.0
 ) -> Array:
     """A signal (m,), a value a used row, on the record's grid (n,).
@@ -46,11 +46,13 @@ def on_grid(
             at = (clock.stamps[rows] - clock.time[samples.start]) / clock.sample_time
             if clock.restarts:
                 at += place[0] - at[0]
-        out[samples] = placed(values[rows], at - delay / clock.sample_time, grid, rule, step=step)
+        out[samples] = interpolate_by_rule(
+            values[rows], at - delay / clock.sample_time, grid, rule, step=step
+        )
     return out
 
 
-def placed(
+def interpolate_by_rule(
     values: Array, at: Array, grid: Array, rule: Rule, *, step: float, slower_clock: bool = False
 ) -> Array:
     """Values (m,) at ascending instants (m,) by their rule at others (n,), both in samples.
@@ -60,7 +62,7 @@ def placed(
     if len(at) == len(grid) and np.array_equal(at, grid):
         return values
     if rule == "held":
-        return _held(*((values, at) if slower_clock else _filled(values, at)), grid)
+        return _average_held(*((values, at) if slower_clock else _fill_held(values, at)), grid)
     if rule == "position":
         return _position(values, at, grid, step)
     return np.interp(grid, at, values)
@@ -110,11 +112,11 @@ def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[
         cells, first = np.unique(np.floor(at[rows] - phase), return_index=True)
         unseen += int(cells[-1] - cells[0]) + 1 - len(cells)
         grid = np.arange(samples.start, samples.stop, dtype=np.float64)
-        out[samples] = _held(*_filled(values[rows][first], cells + phase), grid)
+        out[samples] = _average_held(*_fill_held(values[rows][first], cells + phase), grid)
     return out, unseen / len(clock.time)
 
 
-def _filled(values: Array, at: Array) -> tuple[Array, Array]:
+def _fill_held(values: Array, at: Array) -> tuple[Array, Array]:
     """Held values with the line between rows where rows are lost.
 
     A lost row had a different command: the line between its neighbours errs by half of
@@ -134,7 +136,7 @@ def _filled(values: Array, at: Array) -> tuple[Array, Array]:
     return np.concatenate([values, np.interp(new, at, values)])[order], whole[order]
 
 
-def _held(values: Array, at: Array, grid: Array) -> Array:
+def _average_held(values: Array, at: Array, grid: Array) -> Array:
     """Mean over each sample of a command that holds from each instant to the next."""
     if len(at) == len(grid) and np.array_equal(at, grid):
         return values
@@ -157,10 +159,10 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
     # beyond the ends the end's reading stays
     smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
-    return np.where(slow, _in_steps(values[left], values[right], part, step), smooth)
+    return np.where(slow, _interpolate_in_steps(values[left], values[right], part, step), smooth)
 
 
-def _in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
+def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
     """What an encoder reads on the line between two readings;  part: of the way, 0 to 1.
 
     step: 0 for none, where the nearer reading is taken
@@ -196,7 +198,9 @@ def filling_error(values: Array, clock: RecordClock, rule: Rule, *, step: float)
         if rule == "position":
             cubic = (-x[inner - 2] + 4 * x[inner - 1] + 4 * x[inner + 1] - x[inner + 2]) / 6.0
             slow = np.abs(x[inner + 1] - x[inner - 1]) <= 2.0 * STEPS * step
-            made = np.where(slow, _in_steps(x[inner - 1], x[inner + 1], 0.5, step), cubic)
+            made = np.where(
+                slow, _interpolate_in_steps(x[inner - 1], x[inner + 1], 0.5, step), cubic
+            )
         else:
             made = 0.5 * (x[inner - 1] + x[inner + 1])
         error.append(made - x[inner])

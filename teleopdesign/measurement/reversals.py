@@ -24,7 +24,7 @@ class SinceReversal:
     known: NDArray[np.bool_]
 
 
-def since_reversal(
+def look_back_to_reversal(
     direction: NDArray[np.int8], position: Array, *, sample_time: float, rest: float
 ) -> SinceReversal:
     """Look back from each sample to where the present motion began.
@@ -53,7 +53,7 @@ def since_reversal(
     )
 
 
-def near_reversals(direction: NDArray[np.int8], *, within: int) -> NDArray[np.bool_]:
+def mark_reversals(direction: NDArray[np.int8], *, within: int) -> NDArray[np.bool_]:
     """The samples at most so many before or after one where the motion sets off the other way.
 
     direction: +1, -1, or 0 where no motion is sure

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import ExperimentError
-from ..plain_data import replacing, write_text
+from ..plain_data import write_beside, write_text
 from ..quantity import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, ModelValue
@@ -45,7 +45,7 @@ def write_experiment(experiment: Experiment, folder: str | Path) -> Path:
             text.write(",".join(columns) + "\n")
             np.savetxt(text, np.column_stack(list(columns.values())), fmt="%.17g", delimiter=",")
             packed = gzip.compress(text.getvalue().encode(), 6, mtime=0)
-            with replacing(folder / name) as part:
+            with write_beside(folder / name) as part:
                 part.write_bytes(packed)
         toml = experiment_text(experiment, names)
         write_text(folder / "experiment.toml", toml)

@@ -17,8 +17,8 @@ from .resample import (
     command_phase,
     commands_on_clock,
     filling_error,
-    on_grid,
-    placed,
+    interpolate_by_rule,
+    resample_on_grid,
 )
 from .tables import LogColumns
 
@@ -52,7 +52,9 @@ def signals_of_log(
             text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
             steps.append(ReadingStep(file, text, "moved back", "none"))
         if conversion.columns[0] in columns.stamps:
-            signals[key], step = _of_another_clock(columns, channel, conversion, clock, file, name)
+            signals[key], step = _resample_by_stamps(
+                columns, channel, conversion, clock, file, name
+            )
             steps.append(step)
             continue
         rows = clock.clock.rows
@@ -61,16 +63,16 @@ def signals_of_log(
         if clock.stamped and channel.quantity == "actuator_force" and not conversion.delay:
             phase = command_phase(values, clock.clock)
         if phase is None:
-            signals[key] = _on_grid(values, channel, conversion, clock)
+            signals[key] = _resample_channel(values, channel, conversion, clock)
             continue
         signals[key], unseen = commands_on_clock(values, clock.clock, phase)
-        steps.append(_on_signal_clock(values, clock, phase, unseen, file, name))
+        steps.append(_describe_signal_clock(values, clock, phase, unseen, file, name))
     if clock.clock.lost:
-        steps.append(_lost(columns, channels, conversions, clock, file))
+        steps.append(_describe_lost_rows(columns, channels, conversions, clock, file))
     return signals, steps
 
 
-def _on_signal_clock(
+def _describe_signal_clock(
     values: Array, clock: LogClock, phase: float, unseen: float, file: str, name: str
 ) -> ReadingStep:
     """What is said of a command that changes on an even clock while rows are read at others."""
@@ -110,15 +112,17 @@ def encoder_step(channel: Channel, values: Array) -> float:
     return channel.resolution or reading_step(values)
 
 
-def _on_grid(values: Array, channel: Channel, conversion: Conversion, clock: LogClock) -> Array:
+def _resample_channel(
+    values: Array, channel: Channel, conversion: Conversion, clock: LogClock
+) -> Array:
     rule, step = rule_of(channel, values), encoder_step(channel, values)
-    out = on_grid(
+    out = resample_on_grid(
         values, clock.clock, rule, stamped=clock.stamped, step=step, delay=conversion.delay
     )
-    return _stepped(out, values, channel, step)
+    return _restore_steps(out, values, channel, step)
 
 
-def _stepped(out: Array, values: Array, channel: Channel, step: float) -> Array:
+def _restore_steps(out: Array, values: Array, channel: Channel, step: float) -> Array:
     """Where no resolution is stated it is seen in the readings, and filling must leave it there."""
     if out is values or channel.quantity != "position" or channel.resolution or step <= 0.0:
         return out
@@ -128,7 +132,7 @@ def _stepped(out: Array, values: Array, channel: Channel, step: float) -> Array:
     return np.where(np.isin(out, values), out, stepped)
 
 
-def _of_another_clock(
+def _resample_by_stamps(
     columns: LogColumns,
     channel: Channel,
     conversion: Conversion,
@@ -148,7 +152,7 @@ def _of_another_clock(
     rule, step = rule_of(channel, values), encoder_step(channel, values)
     out = np.concatenate(
         [
-            placed(
+            interpolate_by_rule(
                 values,
                 (at - clock.clock.time[s.start]) / h,
                 np.arange(s.stop - s.start, dtype=np.float64),
@@ -162,10 +166,10 @@ def _of_another_clock(
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
     rate = (len(at) - 1) / max(float(at[-1] - at[0]), 1e-300)
     text = f"{name} has stamps of its own, {rate:.4g} Hz"
-    return _stepped(out, values, channel, step), ReadingStep(file, text, words[rule], "none")
+    return _restore_steps(out, values, channel, step), ReadingStep(file, text, words[rule], "none")
 
 
-def _lost(
+def _describe_lost_rows(
     columns: LogColumns,
     channels: Mapping[str, Channel],
     conversions: Mapping[str, Conversion],

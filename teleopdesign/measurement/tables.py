@@ -14,8 +14,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, did_you_mean, quoted
-from .doors._log import Log, bare_column, listed, refuse_odd_names
+from ..errors import ExperimentError, did_you_mean, quote
+from .doors._log import Log, bare_column, join_names, refuse_odd_names
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
 from .doors.folder import open_folder
@@ -80,7 +80,7 @@ def open_log(path: Path, file: str) -> Log:
     """
     opened: Callable[[Path, str], Log] | None = open_bag if is_bag(path) else None
     if opened is None and path.is_dir() and (parts := tables_in(path)):
-        return _reading(lambda: open_folder(path, file, parts, open_log), file)
+        return _read_with_errors(lambda: open_folder(path, file, parts, open_log), file)
     if opened is None:
         name = path.name.lower()
         opened = next((door for ending, door in DOORS.items() if name.endswith(ending)), None)
@@ -90,13 +90,13 @@ def open_log(path: Path, file: str) -> Log:
             f"{file}: is an experiment already; next: teleopdesign diagnose {word}"
         )
     if opened is None:
-        kind = "a folder" if path.is_dir() else f"a file of kind {quoted(path.suffix)}"
+        kind = "a folder" if path.is_dir() else f"a file of kind {quote(path.suffix)}"
         more = ", or a folder of tables" if path.is_dir() else ""
         raise ExperimentError(f"{file}: found {kind}, expected {', '.join(DOORS)}{more}")
     door = opened
-    log = _reading(lambda: door(path, file), file)
+    log = _read_with_errors(lambda: door(path, file), file)
     refuse_odd_names(log, file)
-    return replace(log, read=lambda wanted: _reading(lambda: log.read(wanted), file))
+    return replace(log, read=lambda wanted: _read_with_errors(lambda: log.read(wanted), file))
 
 
 def tables_in(folder: Path) -> list[Path]:
@@ -113,7 +113,7 @@ def is_log(path: Path) -> bool:
     return path.name.lower().endswith(tuple(DOORS))
 
 
-def _reading(read: Callable[[], Result], file: str) -> Result:
+def _read_with_errors(read: Callable[[], Result], file: str) -> Result:
     try:
         return read()
     except (OSError, EOFError, zlib.error, MemoryError) as problem:
@@ -158,17 +158,17 @@ def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
         same = [name for name in columns if bare_column(name) == column]
         if column not in columns and same:
             raise ExperimentError(
-                f"{file}: {channel}: found {len(same)} columns {quoted(column)}, "
-                f"expected one of {', '.join(map(quoted, same))}"
+                f"{file}: {channel}: found {len(same)} columns {quote(column)}, "
+                f"expected one of {', '.join(map(quote, same))}"
             )
         if column not in columns:
             raise ExperimentError(
-                f"{file}: {channel}: no column {quoted(column)}, "
-                f"found {listed(columns) or 'no column'}{did_you_mean(column, columns)}"
+                f"{file}: {channel}: no column {quote(column)}, "
+                f"found {join_names(columns) or 'no column'}{did_you_mean(column, columns)}"
             )
         if columns.count(column) > 1:
             raise ExperimentError(
-                f"{file}: {channel}: found {columns.count(column)} columns {quoted(column)}, "
+                f"{file}: {channel}: found {columns.count(column)} columns {quote(column)}, "
                 "expected one"
             )
 
@@ -181,7 +181,7 @@ def _refuse_different_lengths(columns: LogColumns, file: str, wanted: Wanted) ->
     for other in others:
         if len(columns.values[other]) != len(columns.values[first]):
             raise ExperimentError(
-                f"{file}: {wanted[other]}: column {quoted(other)} has "
+                f"{file}: {wanted[other]}: column {quote(other)} has "
                 f"{len(columns.values[other])} rows, "
-                f"expected {len(columns.values[first])} as {quoted(first)}"
+                f"expected {len(columns.values[first])} as {quote(first)}"
             )

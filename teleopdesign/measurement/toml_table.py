@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
-from ..errors import ExperimentError, did_you_mean, quoted
+from ..errors import ExperimentError, did_you_mean, quote
 
 
 @final
@@ -32,7 +32,7 @@ class Table:
             if key not in known:
                 listed = ", ".join(known)
                 raise ExperimentError(
-                    f"{self.where()}: unknown key {quoted(key)}, "
+                    f"{self.where()}: unknown key {quote(key)}, "
                     f"expected {listed}{did_you_mean(key, known)}"
                 )
 
@@ -78,7 +78,7 @@ class Table:
     def _required(self, key: str, kind: str) -> Any:
         if key not in self.content:
             hint = did_you_mean(key, self.content).replace("did you mean", "is it written as")
-            raise ExperimentError(f"{self.where()}: no key {quoted(key)}, expected {kind}{hint}")
+            raise ExperimentError(f"{self.where()}: no key {quote(key)}, expected {kind}{hint}")
         return self.content[key]
 
     def _checked(self, value: object, key: str, above: float) -> float:
@@ -94,14 +94,14 @@ class Table:
         return number
 
     def _wrong_type(self, key: str, expected: str) -> ExperimentError:
-        observed = described(self.content.get(key))
+        observed = describe_toml_value(self.content.get(key))
         return ExperimentError(f"{self.where(key)}: found {observed}, expected {expected}")
 
 
-def described(value: object) -> str:
+def describe_toml_value(value: object) -> str:
     """A TOML value as a message names it."""
     if isinstance(value, str):
-        return quoted(value)
+        return quote(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, dict):

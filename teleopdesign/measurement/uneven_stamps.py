@@ -85,7 +85,7 @@ def sparse_clock(
     places_of_rows = np.concatenate(index)
     check_size(len(whole), where)
     check_duration(len(whole), period, where)
-    off = _off_clock(stamps[rows], whole[places_of_rows], of_rows)
+    off = _deviation_from_clock(stamps[rows], whole[places_of_rows], of_rows)
     return RecordClock(
         rows=rows,
         stamps=stamps[rows],
@@ -138,7 +138,7 @@ def _grid_of(
     return time, index, segments, of_rows
 
 
-def _off_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
+def _deviation_from_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
     """Stamps less the even time, each stretch about its mean: its clock may have been set."""
     off = stamps - time
     for stretch in stretches:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt_zi
 
-from ..machine_code import kept
+from ..machine_code import compile_and_keep
 from .filtering import CONTINUED, Array
 
 
@@ -39,7 +39,7 @@ def lanes(signals: int) -> int:
     return signals if signals < 3 else max(8, -(-signals // 4) * 4)
 
 
-@kept
+@compile_and_keep
 def settle(states: Array, steady_state: Array, row: Array) -> None:
     """Set the states (2, 2, signals) to those of a signal that has always been this row."""
     for s in range(2):
@@ -48,7 +48,7 @@ def settle(states: Array, steady_state: Array, row: Array) -> None:
                 states[s, i, j] = steady_state[s, i] * row[j]
 
 
-@kept
+@compile_and_keep
 def go_on(y: Array, states: Array, sos: Array, backward: bool) -> None:
     """Filter the columns of y (samples, signals) in place, from these states on.
 
@@ -70,7 +70,7 @@ def go_on(y: Array, states: Array, sos: Array, backward: bool) -> None:
             y[k, j] = second
 
 
-@kept
+@compile_and_keep
 def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
     """Filter the columns of y (samples, signals) in place, from one end to the other."""
     n, r = y.shape
@@ -79,8 +79,8 @@ def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
     go_on(y, states, sos, backward)
 
 
-@kept
-def copied(values: Array, to: Array) -> None:
+@compile_and_keep
+def copy_rows(values: Array, to: Array) -> None:
     """Copy the rows of one array into another; both lie without gaps in memory.
 
     One by one: for rows at once numba compiles a check of shapes, which takes three times as long.
@@ -90,8 +90,8 @@ def copied(values: Array, to: Array) -> None:
         there[i] = flat[i]
 
 
-@kept
-def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> None:
+@compile_and_keep
+def filter_both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> None:
     """Filter the columns of y (n samples, signals) forward and backward: zero phase.
 
     extended: (m + n + m, signals); afterwards its rows m to m + n are the filtered signals
@@ -102,7 +102,7 @@ def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> Non
         for j in range(r):
             extended[k, j] = 2.0 * y[0, j] - y[m - k, j]
             extended[m + n + k, j] = 2.0 * y[n - 1, j] - y[n - 2 - k, j]
-    copied(y, extended[m : m + n])
+    copy_rows(y, extended[m : m + n])
     one_way(extended, sos, steady_state, False)
     one_way(extended[m:], sos, steady_state, True)
 
@@ -124,6 +124,6 @@ def zero_phase(
     m = margin(n, sample_time)
     side_by_side = columns(rows)
     extended = np.empty((n + 2 * m, side_by_side.shape[1]))
-    both_ways(side_by_side, extended, *sections(cutoff, sample_time))
+    filter_both_ways(side_by_side, extended, *sections(cutoff, sample_time))
     filtered = extended[m : m + n] if at is None else extended[m + at]
     return np.ascontiguousarray(filtered[:, : len(rows)].T).reshape(*y.shape[:-1], -1)

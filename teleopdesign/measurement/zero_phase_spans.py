@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..machine_code import kept
+from ..machine_code import compile_and_keep
 from .filtering import Array
-from .zero_phase import copied, go_on, sections, settle
+from .zero_phase import copy_rows, go_on, sections, settle
 
 #: rows between two spans up to which they are one: to cross costs as much as to filter so many
 NEAR = 16
@@ -100,7 +100,7 @@ def crossings(cutoff: float, sample_time: float) -> tuple[Array, Array]:
     return np.array(free), np.array(back)
 
 
-@kept
+@compile_and_keep
 def _multiply(to: Array, left: Array, right: Array) -> None:
     """Matrices (4, 4) times states (4, signals) or matrices, added to what is there."""
     for i in range(4):
@@ -109,7 +109,7 @@ def _multiply(to: Array, left: Array, right: Array) -> None:
                 to[i, j] += left[i, k] * right[k, j]
 
 
-@kept
+@compile_and_keep
 def _cross(rows: int, step: Array, swing: Array, free: Array, back: Array) -> None:
     """Set both matrices (4, 4) of `crossings` for any number of rows, from powers of two.
 
@@ -131,8 +131,8 @@ def _cross(rows: int, step: Array, swing: Array, free: Array, back: Array) -> No
         power += 1
 
 
-@kept
-def between(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Array, Array]:
+@compile_and_keep
+def connect_spans(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Array, Array]:
     """Both matrices of `crossings` from each span to the next, (k, 4, 4); zeros before the first.
 
     free, back: from `crossings`
@@ -143,7 +143,7 @@ def between(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Array, A
     return steps, swings
 
 
-@kept
+@compile_and_keep
 def filter_spans(
     y: Array,
     extended: Array,
@@ -171,7 +171,7 @@ def filter_spans(
                 extended[e, j] = 2.0 * y[n - 1, j] - y[m + 2 * (n - 1) - e, j]
         first, last = max(begin - m, 0), min(end - m, n)
         if first < last:
-            copied(y[first:last], extended[m + first : m + last])
+            copy_rows(y[first:last], extended[m + first : m + last])
         here = states[c]
         if c == 0:
             settle(here.reshape(2, 2, r), steady_state, extended[begin])

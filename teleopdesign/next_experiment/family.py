@@ -62,8 +62,8 @@ def family(setting: Setting) -> tuple[PathPart, ...]:
         _starts_after_rest,
         _steps,
         _places,
-        _growing,
-        _repeated,
+        _grow_amplitude,
+        _repeat_path,
     )
     return tuple(part for maker in makers for part in maker(setting))
 
@@ -113,11 +113,11 @@ def _runs(s: Setting) -> Iterator[PathPart]:
         legs: list[Move | Hold] = []
         for _ in range(times):
             legs += [Move(reach, speed), Move(-reach, speed)]
-        text = _back_and_forth(s, reach, speed)
+        text = _describe_back_and_forth(s, reach, speed)
         yield _part(s, text, [*legs, Move(0.0, speed)])
 
 
-def _back_and_forth(s: Setting, reach: float, speed: float) -> str:
+def _describe_back_and_forth(s: Setting, reach: float, speed: float) -> str:
     return f"run back and forth over {s.show(2 * reach, 'position')} at {s.show(speed, 'velocity')}"
 
 
@@ -197,7 +197,7 @@ def _places(s: Setting) -> Iterator[PathPart]:
         yield _part(s, text, [*legs, Move(0.0, brisk)])
 
 
-def _growing(s: Setting) -> Iterator[PathPart]:
+def _grow_amplitude(s: Setting) -> Iterator[PathPart]:
     t = np.arange(0.0, 1.5 * ABOUT, s.sample_time)
     for largest in (0.3 * s.limits.high, 100 * s.step):
         smallest = 0.5 * SEEN * s.step
@@ -213,12 +213,14 @@ def _growing(s: Setting) -> Iterator[PathPart]:
         yield PathPart(text, y)
 
 
-def _repeated(s: Setting) -> Iterator[PathPart]:
+def _repeat_path(s: Setting) -> Iterator[PathPart]:
     if s.repeated <= 0.0:
         return
     speed = BRISK * s.limits.speed
     reach = _reach(s, speed, 0.5 * ABOUT)
     times = max(1, round(s.repeated * speed / (4 * reach)))
     legs: list[Move | Hold] = [Move(reach, speed), Move(-reach, speed)] * times
-    text = f"{_back_and_forth(s, reach, speed)} for {s.show(s.repeated, 'time')}, from cold"
+    text = (
+        f"{_describe_back_and_forth(s, reach, speed)} for {s.show(s.repeated, 'time')}, from cold"
+    )
     yield _part(s, text, [*legs, Move(0.0, speed)])

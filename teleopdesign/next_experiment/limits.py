@@ -71,26 +71,28 @@ def shown_limits(prepared: Prepared) -> dict[str, Limits]:
     it only where there are no others.
     """
     bodies = dict.fromkeys(s.motion.body for s in prepared.stretches)
-    return {b: _shown([s for s in prepared.stretches if s.motion.body == b]) for b in bodies}
+    return {
+        b: _limits_of_records([s for s in prepared.stretches if s.motion.body == b]) for b in bodies
+    }
 
 
-def _shown(stretches: Sequence[Stretch]) -> Limits:
+def _limits_of_records(stretches: Sequence[Stretch]) -> Limits:
     common = [s for s in stretches if not s.has_zero_offset] or [stretches[0]]
-    accelerations = [s.motion.lowpassed(s.motion.acceleration)[_inside(s)] for s in stretches]
+    accelerations = [s.motion.lowpassed(s.motion.acceleration)[_inner_rows(s)] for s in stretches]
     jerks = [
         np.diff(a) / s.motion.sample_time for a, s in zip(accelerations, stretches, strict=True)
     ]
     return Limits(
         low=min(float(s.motion.position.min()) for s in common),
         high=max(float(s.motion.position.max()) for s in common),
-        speed=_largest([s.motion.velocity[_inside(s)] for s in stretches]),
+        speed=_largest([s.motion.velocity[_inner_rows(s)] for s in stretches]),
         acceleration=_largest(accelerations),
         jerk=_largest(jerks),
         force=max(float(np.abs(s.motion.command).max()) for s in stretches),
     )
 
 
-def _inside(stretch: Stretch) -> slice:
+def _inner_rows(stretch: Stretch) -> slice:
     """The rows with known derivatives: the ends of each record are left out."""
     return slice(int(stretch.keep[0]), int(stretch.keep[-1]) + 1)
 

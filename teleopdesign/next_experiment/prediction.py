@@ -199,7 +199,9 @@ def _curves(truth: Rival, fitted: Refit, other: int) -> Curves:
     return Curves(body, unit, here[0].motion.time[rows], left, noise)
 
 
-def least_determined(determined: Sequence[DeterminedParameter]) -> tuple[DeterminedParameter, ...]:
+def find_least_determined(
+    determined: Sequence[DeterminedParameter],
+) -> tuple[DeterminedParameter, ...]:
     """Each parameter once, with its largest standard error over all truths."""
     least: dict[str, DeterminedParameter] = {}
     for d in determined:

@@ -15,14 +15,14 @@ from ..quantity import si_factor
 from .family import PathPart, Setting, Show, family
 from .following import servo_of
 from .limits import Limits, course_of, shown_limits
-from .prediction import least_determined, predict
+from .prediction import find_least_determined, predict
 from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups
 from .rivals import Rival, depends_on_time, pairs, rivals_of
 from .search import SafeParts, compose, join_paths, try_parts
 from .separation import floor_force, present_separation
 from .synthesis import Bench, plan_motion
-from .words import sentence_of, unordered
+from .words import list_pairs_once, sentence_of
 
 #: s that a proposal may last by default, and that it lasts at least: a short one is repeated, so
 #: that chance weighs less
@@ -52,18 +52,18 @@ def propose(
     say = progress or (lambda _: None)
     say("finding what is left open")
     rivals = rivals_of(diagnosis)
-    kept = _kept(diagnosis, limits or {})
+    kept = _merge_limits(diagnosis, limits or {})
     bench = _bench(diagnosis, kept)
     if not rivals:
-        return _finished(diagnosis, rivals, kept, bench)
-    setting = _setting(diagnosis, rivals, bench)
+        return _finish_proposal(diagnosis, rivals, kept, bench)
+    setting = _make_setting(diagnosis, rivals, bench)
     parts = family(setting)
     say(f"trying {len(parts)} motions")
     candidates = try_parts(
         parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed
     )
     if not candidates.parts:
-        return _finished(diagnosis, rivals, kept, bench)
+        return _finish_proposal(diagnosis, rivals, kept, bench)
     chosen = compose(candidates, duration + setting.repeated, bench.sample_time)
     reference, path_parts = _reference([candidates.parts[k] for k in chosen], bench)
     plan = plan_motion(join_paths(path_parts), bench)
@@ -81,7 +81,7 @@ def propose(
         reference=reference,
         sentence="",
         separations=tuple(s for p in predictions for s in p.separations),
-        determined=least_determined([d for p in predictions for d in p.determined]),
+        determined=find_least_determined([d for p in predictions for d in p.determined]),
         curves=tuple(c for p in predictions for c in p.curves),
         remedies={},
         limits=kept,
@@ -92,13 +92,13 @@ def propose(
     return sentence_of(replace(proposal, remedies=_remedies(proposal, candidates, setting, seed)))
 
 
-def _finished(
+def _finish_proposal(
     diagnosis: Diagnosis, rivals: tuple[Rival, ...], limits: Mapping[str, Limits], bench: Bench
 ) -> Proposal:
     return sentence_of(Proposal(diagnosis, rivals, None, "", (), (), (), {}, limits, bench))
 
 
-def _kept(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[str, Limits]:
+def _merge_limits(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[str, Limits]:
     shown = shown_limits(diagnosis.prepared)
     for body in stated:
         if body not in shown:
@@ -121,7 +121,7 @@ def _bench(diagnosis: Diagnosis, limits: Mapping[str, Limits]) -> Bench:
     )
 
 
-def _setting(diagnosis: Diagnosis, rivals: Sequence[Rival], bench: Bench) -> Setting:
+def _make_setting(diagnosis: Diagnosis, rivals: Sequence[Rival], bench: Bench) -> Setting:
     stretches = diagnosis.prepared.stretches
     gain = bench.course.gain
     longest = max(r.duration for r in diagnosis.experiment.records)
@@ -174,7 +174,7 @@ def _remedies(
     diagnosis, bench = proposal.diagnosis, proposal.bench
     inertia = {b: body.parameters["inertia"].value for b, body in diagnosis.model.bodies.items()}
     others = {}
-    for i, j in [p for p in unordered(proposal) if not proposal.decides(p)][:PAIRS]:
+    for i, j in [p for p in list_pairs_once(proposal) if not proposal.decides(p)][:PAIRS]:
         a, b = proposal.rivals[i], proposal.rivals[j]
         places = list(dict.fromkeys((a.candidate.at, b.candidate.at)))
         changed = setups(places, diagnosis.prepared, bench, setting, proposal.limits, inertia)

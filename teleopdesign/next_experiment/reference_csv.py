@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..measurement.experiment import Experiment
-from ..plain_data import harmless_cell, replacing
+from ..plain_data import harmless_cell, write_beside
 from ..quantity import si_factor
 from .proposal import Reference
 
@@ -29,6 +29,6 @@ def write_reference(reference: Reference, experiment: Experiment, path: str | Pa
         head.append(channel.column)
         columns.append(position / factor)
         forms.append("%.9g")
-    with replacing(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+    with write_beside(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerow(map(harmless_cell, head))
         np.savetxt(file, np.column_stack(columns), fmt=forms, delimiter=",")

@@ -79,7 +79,7 @@ def remedies(
         )
         listed.append(Remedy(setup.change, candidates.best((0, 1)) if candidates.parts else 0.0))
     if along is not None and back is not None:
-        listed += _known(pair, along, back)
+        listed += _remedies_by_knowledge(pair, along, back)
     return tuple(sorted(listed, key=lambda r: -r.separation))
 
 
@@ -150,7 +150,7 @@ def _finer(
     )
 
 
-def _known(pair: tuple[Rival, Rival], along: Sums, back: Sums) -> list[Remedy]:
+def _remedies_by_knowledge(pair: tuple[Rival, Rival], along: Sums, back: Sums) -> list[Remedy]:
     """Each shared parameter, and all of them, known from elsewhere."""
     places = {r.candidate.at for r in pair}
     here = [n for n in pair[0].fit.free if pair[0].model.locate(n)[0] in places]

@@ -45,14 +45,14 @@ def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
     questions = open_questions(diagnosis)
     for number, question in enumerate(questions):
         if question.added is not None:
-            rivals += _of_question(diagnosis, question, number)
+            rivals += _rivals_of_question(diagnosis, question, number)
     if not rivals:
         next_ones = [q for q in questions if q.added is None]
         rivals = [Rival(c, fit) for q in next_ones for c, fit in q.others]
     return tuple(rivals) if len(rivals) > 1 else ()
 
 
-def _of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> list[Rival]:
+def _rivals_of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> list[Rival]:
     """The accepted effect of a question and its rivals, each in the final model."""
     assert question.added is not None
     rivals = [Rival(question.added, diagnosis.estimated, number)]

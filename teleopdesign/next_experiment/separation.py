@@ -111,15 +111,15 @@ def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: fl
     """
     fit, check = prepared.of("fit"), prepared.of("check") or prepared.of("fit")
     present = normal_matrix(other, prepared)
-    on_fit = _against(truth, other, fit, present)
+    on_fit = _sums_against(truth, other, fit, present)
     step = -solve_normal(present, on_fit.gradient.sum(0))
-    shown = on_fit if check is fit else _against(truth, other, check, present)
+    shown = on_fit if check is fit else _sums_against(truth, other, check, present)
     left = float(
         shown.squares.sum() + 2 * shown.gradient.sum(0) @ step + step @ shown.normal.sum(0) @ step
     )
     return float(np.sqrt(max(left, 0.0) / sum(s.measured for s in check)) / floor)
 
 
-def _against(truth: Rival, other: Rival, stretches: Sequence[Stretch], present: Array) -> Sums:
+def _sums_against(truth: Rival, other: Rival, stretches: Sequence[Stretch], present: Array) -> Sums:
     truth_left = [r for r, _ in relative_residuals(truth.model, stretches)]
     return sums_of(other, truth_left, stretches, [0] * len(stretches), present, 0.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..finding import Finding, Graph, Series
-from ..plain_data import plain
+from ..plain_data import make_plain
 from ..quantity import si_factor
 from .prediction import DECIDES, SAME
 from .rivals import pairs
@@ -30,11 +30,11 @@ def sentence_of(proposal: Proposal) -> Proposal:
 
 def _sentences(proposal: Proposal) -> list[str]:
     if not proposal.rivals:
-        return [_nothing_open(proposal)]
+        return [_explain_nothing_open(proposal)]
     if proposal.reference is None:
         return ["No motion that was tried keeps within the limits: none is proposed."]
     said = []
-    pairs = unordered(proposal)
+    pairs = list_pairs_once(proposal)
     decided = [p for p in pairs if proposal.decides(p)]
     left_open = [p for p in pairs if not proposal.decides(p)]
     if proposal.is_useful:
@@ -52,7 +52,7 @@ def _sentences(proposal: Proposal) -> list[str]:
     return said
 
 
-def _nothing_open(proposal: Proposal) -> str:
+def _explain_nothing_open(proposal: Proposal) -> str:
     if proposal.diagnosis.verdict == "undecided":
         return (
             "No effect tried helps, so there are no rivals to tell apart and no motion is proposed."
@@ -60,12 +60,12 @@ def _nothing_open(proposal: Proposal) -> str:
     return "The present records decide: no rival is left to tell apart."
 
 
-def unordered(proposal: Proposal) -> list[tuple[int, int]]:
+def list_pairs_once(proposal: Proposal) -> list[tuple[int, int]]:
     """Pairs of rivals of one question, each once."""
     return [(i, j) for i, j in pairs(proposal.rivals) if i < j]
 
 
-def of_pair(proposal: Proposal, pair: tuple[int, int]) -> list[Separation]:
+def select_pair(proposal: Proposal, pair: tuple[int, int]) -> list[Separation]:
     """Both separations of a pair of rivals."""
     ids = {id(proposal.rivals[i]) for i in pair}
     return [s for s in proposal.separations if {id(s.truth), id(s.other)} == ids]
@@ -86,9 +86,10 @@ def _what_to_do(proposal: Proposal) -> str:
 
 
 def _how_many(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
-    both = [s for p in decided for s in of_pair(proposal, p)]
+    both = [s for p in decided for s in select_pair(proposal, p)]
     return (
-        f"That tells {len(decided)} of {len(unordered(proposal))} pairs of rivals: the wrong one "
+        f"That tells {len(decided)} of {len(list_pairs_once(proposal))} pairs of "
+        "rivals: the wrong one "
         f"of each then leaves {min(s.predicted for s in both):.1f} to "
         f"{max(s.predicted for s in both):.1f} noise floors more than sensors do (now "
         f"{min(s.present for s in both):.2f} to {max(s.present for s in both):.2f})."
@@ -96,7 +97,7 @@ def _how_many(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
 
 
 def _what_it_shows(proposal: Proposal, pair: tuple[int, int]) -> str:
-    first, second = of_pair(proposal, pair)
+    first, second = select_pair(proposal, pair)
     return (
         f"If {first.truth} is right, {first.other} then leaves {first.predicted:.1f} noise floors "
         f"more than sensors do (now {first.present:.2f}); if {second.truth} is right, "
@@ -106,11 +107,11 @@ def _what_it_shows(proposal: Proposal, pair: tuple[int, int]) -> str:
 
 def _what_stays_open(proposal: Proposal, pair: tuple[int, int]) -> str:
     a, b = (proposal.rivals[i] for i in pair)
-    most = min(s.predicted for s in of_pair(proposal, pair))
+    most = min(s.predicted for s in select_pair(proposal, pair))
     said = (
         f"No motion tried within the limits separates {a} from {b}: {most:.2f} noise floors, "
-        f"{min(s.present for s in of_pair(proposal, pair)):.2f} on the present records, where 1 is "
-        "clear."
+        f"{min(s.present for s in select_pair(proposal, pair)):.2f} on the present records, "
+        "where 1 is clear."
     )
     remedies = proposal.remedies.get(pair, ())
     if not remedies:
@@ -197,7 +198,7 @@ def proposal_data(proposal: Proposal) -> dict[str, Any]:
         ],
         "limits": {b: asdict(value) for b, value in proposal.limits.items()},
     }
-    content: dict[str, Any] = plain(data)
+    content: dict[str, Any] = make_plain(data)
     return content
 
 
@@ -218,8 +219,8 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
             graph=_reference_graph(proposal),
         )
     ]
-    for pair in unordered(proposal):
-        both = of_pair(proposal, pair)
+    for pair in list_pairs_once(proposal):
+        both = select_pair(proposal, pair)
         if not both:
             continue
         decides = proposal.decides(pair)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ._statement import Figure, Numbers, near
+from ._statement import Figure, Numbers, figure_near
 
 
 def turned_about(coordinates: np.ndarray) -> np.ndarray:
@@ -43,9 +43,11 @@ def closed_paths() -> Numbers:
         mapped -= float(np.linalg.solve(to_velocity.T, 2.0 * e) @ velocity) / n
     return Numbers(
         (
-            near("symmetric 6 x 6 over its size, one turn", released(spring) / size, 0, 1e-12),
-            near("its skew part, against the formula", released(skew), expected, 1e-9, "J"),
-            near("angles, torques by J^T", mapped, 0.0, 1e-12, "J"),
+            figure_near(
+                "symmetric 6 x 6 over its size, one turn", released(spring) / size, 0, 1e-12
+            ),
+            figure_near("its skew part, against the formula", released(skew), expected, 1e-9, "J"),
+            figure_near("angles, torques by J^T", mapped, 0.0, 1e-12, "J"),
             Figure("angles, torques as they are: size", abs(plain), low=0.01, unit="J"),
         )
     )

@@ -47,7 +47,7 @@ def _without_floats(*expressions: sp.Basic) -> None:
             raise NotProved(f"a float in {expression}: a number proves nothing")
 
 
-def _shown(sign: str, expression: sp.Expr) -> str:
+def _show_sign(sign: str, expression: sp.Expr) -> str:
     text = str(expression).replace("**", "^")
     return f"  [{sign} {text}]" if len(text) <= _LONGEST else ""
 
@@ -83,7 +83,7 @@ class Equal(ProofStep):
 
     def as_text(self) -> str:
         """With the right side."""
-        return self.words + _shown("=", self.right)
+        return self.words + _show_sign("=", self.right)
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ class Limit(ProofStep):
 
     def as_text(self) -> str:
         """With the value."""
-        return self.words + _shown("->", self.value)
+        return self.words + _show_sign("->", self.value)
 
 
 @dataclass(frozen=True)

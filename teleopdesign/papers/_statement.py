@@ -61,7 +61,7 @@ class Figure:
         return f"{self.what}: {self.value:.4g}{unit}, must be {self.low:.4g} to {self.high:.4g}"
 
 
-def near(what: str, value: float, expected: float, within: float, unit: str = "") -> Figure:
+def figure_near(what: str, value: float, expected: float, within: float, unit: str = "") -> Figure:
     """A number that must lie within `within` of `expected`."""
     return Figure(what, float(value), expected - within, expected + within, unit)
 

@@ -9,12 +9,12 @@ import sympy as sp
 
 from ..blocks import Body, Value
 from ..controllers import controller
-from ..diagrams import Diagram, four_cases, reading, world_haptics_2005
+from ..diagrams import Diagram, four_cases, read_open_number, world_haptics_2005
 from ..effects import EFFECTS
 from ..frequency import describing_function, measured_impedance
 from ._laws import coulomb
 from ._proof import Correction, Equal, Holds, Limit, NotNegative, ProofSteps, proof
-from ._statement import BERNSTEIN, DERIVED, Figure, Numbers, near, shows
+from ._statement import BERNSTEIN, DERIVED, Figure, Numbers, figure_near, shows
 from .describing_functions import first_harmonic
 
 m, A, a0, f, F_C, w, y, r = sp.symbols("m A a_0 f F_C omega y r", positive=True)
@@ -24,7 +24,7 @@ LOSS = sp.atan(r * y) - sp.atan(y)  # phase lost while the amplitude falls by r,
 
 def corner_at_20_hz() -> Numbers:
     """The friction per mass and amplitude that puts the corner at 20 Hz."""
-    return Numbers((near("F_C/(m a_0) for 20 Hz", pi**3 * 20**1.2, 1130, 5, "N/(kg m)"),))
+    return Numbers((figure_near("F_C/(m a_0) for 20 Hz", pi**3 * 20**1.2, 1130, 5, "N/(kg m)"),))
 
 
 @shows(
@@ -58,8 +58,8 @@ def degrees_lost() -> Numbers:
     # half of the last digit printed
     return Numbers(
         (
-            near("one decade", loss[0], 54.9, 0.05, "deg"),
-            near("two decades", loss[1], 78.6, 0.05, "deg"),
+            figure_near("one decade", loss[0], 54.9, 0.05, "deg"),
+            figure_near("two decades", loss[1], 78.6, 0.05, "deg"),
         )
     )
 
@@ -130,14 +130,14 @@ def phase(z: complex) -> float:
     return float(np.degrees(np.angle(z)) % 360)
 
 
-def cancelled(
+def remaining_impedance(
     amplitude: np.ndarray, *, share: float, smoothing: float, frequency: float
 ) -> np.ndarray:
     """Impedance of mass and Coulomb friction less smoothed Coulomb friction of `share` its level.
 
     From describing functions; N/m over amplitude (n,).
     """
-    level, mass = reading("coulomb_level"), reading("mass")
+    level, mass = read_open_number("coulomb_level"), read_open_number("mass")
     parameters = {"inertia": Value(mass), "coulomb.level": Value(level)}
     rod = Body("prismatic", parameters, (EFFECTS["coulomb"],))
     values = {"level": share * level, "smoothing_velocity": smoothing}
@@ -160,9 +160,9 @@ def minimum_over_amplitude() -> Numbers:
     again; for cancellation alone it takes over-compensation, and the rise is tiny.
     """
     grid = np.geomspace(1e-4, 1.0, 1500)
-    exact = cancelled(grid, share=1.0, smoothing=0.005, frequency=5.0)
+    exact = remaining_impedance(grid, share=1.0, smoothing=0.005, frequency=5.0)
     figures = [
-        near("MBC: phase at 1 m amplitude, V = 2000 a", phase(exact[-1]), 180, 1, "deg"),
+        figure_near("MBC: phase at 1 m amplitude, V = 2000 a", phase(exact[-1]), 180, 1, "deg"),
         Figure(
             "MBC: steepest rise at Fhat_C = F_C",
             np.diff(decibel(exact)).max(),
@@ -177,15 +177,15 @@ def minimum_over_amplitude() -> Numbers:
         (1.2, 0.005, 1.14, 0.0, 0.13),
         (1.5, 0.005, 0.439, 2.8, 2.85),
     ):
-        z = cancelled(grid, share=share, smoothing=smoothing, frequency=5.0)
+        z = remaining_impedance(grid, share=share, smoothing=smoothing, frequency=5.0)
         turned = int(np.argmax(z.imag < 0))  # F_1 = 4 F_C/pi: nothing but the mass is left
         minimum = np.interp(0, -z.imag[turned - 1 : turned + 1], grid[turned - 1 : turned + 1])
         what = f"MBC, a {1e3 * smoothing:g} mm/s, Fhat_C {share} F_C"
-        figures.append(near(f"{what}: minimum", 1e3 * minimum, place, 0.005, "mm"))
+        figures.append(figure_near(f"{what}: minimum", 1e3 * minimum, place, 0.005, "mm"))
         rise = float(np.ptp(decibel(z[turned:])))
         figures.append(Figure(f"{what}: rise after it", rise, low, high, "dB"))
     hybrid = four_cases(world_haptics_2005())["hybrid"]
-    for name, level in (("FF", 0.0), ("hybrid", reading("coulomb_level"))):
+    for name, level in (("FF", 0.0), ("hybrid", read_open_number("coulomb_level"))):
         diagram = hybrid.with_values({"C.smoothed_coulomb.level": level})
         sizes = [
             float(decibel(apparent_impedance(diagram, amplitude=x, frequency=5.0)))
@@ -211,7 +211,7 @@ def bandwidth_of_force_feedback() -> Numbers:
     """Which bandwidth of H fits the measured slope and phase."""
     hybrid = four_cases(world_haptics_2005())["hybrid"]
     bare = hybrid.with_values({"C.smoothed_coulomb.level": 0.0})
-    level, mass = reading("coulomb_level"), reading("mass")
+    level, mass = read_open_number("coulomb_level"), read_open_number("mass")
     a_0 = level / (mass * pi**3 * 20**1.2)  # corner without compensation at 20 Hz
 
     def run(bandwidth: float, frequency: float) -> complex:
@@ -231,15 +231,21 @@ def bandwidth_of_force_feedback() -> Numbers:
     # 1 dB/decade and 10 deg cannot be seen in a printed figure, several times that can
     return Numbers(
         (
-            near("20 Hz: slope 1 to 5 Hz", slope(wide[1.0], wide[5.0]), free, 1.0, "dB/decade"),
+            figure_near(
+                "20 Hz: slope 1 to 5 Hz", slope(wide[1.0], wide[5.0]), free, 1.0, "dB/decade"
+            ),
             Figure(
                 "2 Hz: slope 1 to 5 Hz",
                 slope(narrow[1.0], narrow[5.0]),
                 free + 5.0,
                 unit="dB/decade",
             ),
-            near("20 Hz: phase added at 5 Hz", phase(wide[5.0]) - phase(none(5.0)), 0, 10, "deg"),
-            near("2 Hz: phase added at 5 Hz", phase(narrow[5.0]) - phase(none(5.0)), 40, 5, "deg"),
+            figure_near(
+                "20 Hz: phase added at 5 Hz", phase(wide[5.0]) - phase(none(5.0)), 0, 10, "deg"
+            ),
+            figure_near(
+                "2 Hz: phase added at 5 Hz", phase(narrow[5.0]) - phase(none(5.0)), 40, 5, "deg"
+            ),
             Figure("20 Hz: phase at 20 Hz", phase(run(20.0, 20.0)), high=180, unit="deg"),
             Figure("20 Hz: phase at 30 Hz", phase(run(20.0, 30.0)), low=180, unit="deg"),
             Figure("20 Hz: phase at 60 Hz", phase(run(20.0, 60.0)), low=180, unit="deg"),

@@ -11,7 +11,7 @@ from ..diagrams import haptic_interface
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
 from ._proof import Correction, Equal, Grows, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import MAHVASH, Numbers, near, shows
+from ._statement import MAHVASH, Numbers, figure_near, shows
 from .dahl_euler import ABOVE, BELOW, INSIDE, LEVELS, T, d, e, f, f_c, sigma
 
 SHARE = sp.exp(-sigma * d / f_c)  # of the distance to the level that is left after the travel d
@@ -46,7 +46,9 @@ def sampled_compensator() -> Numbers:
         step = dahl_step(f, d, 1 if dx >= 0 else -1, f_c, sigma)
         force = float(step.subs({f: force, d: abs(dx), f_c: level, sigma: stiffness}))
         worst = max(worst, abs(float(sampled) - force))
-    return Numbers((near("largest difference", worst, 0.0, 1e-13, "N"),))  # rounding of doubles
+    return Numbers(
+        (figure_near("largest difference", worst, 0.0, 1e-13, "N"),)
+    )  # rounding of doubles
 
 
 @shows(

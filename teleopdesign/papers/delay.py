@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from ._laws import dahl_rate
 from ._proof import Equal, Grows, Holds, Limit, NotNegative, ProofSteps, proof
-from ._statement import BERNSTEIN, DERIVED, Numbers, near, shows
+from ._statement import BERNSTEIN, DERIVED, Numbers, figure_near, shows
 from .describing_functions import DAHL_FRICTION, DAHL_SPRING, u
 from .describing_functions import f as DAHL_LEVEL
 
@@ -18,12 +18,12 @@ late = omega * tau
 FRICTIONLIKE, SPRINGLIKE, TURN = sp.symbols("frictionlike springlike turn", nonnegative=True)
 
 
-def released(force: sp.Expr) -> sp.Expr:
+def work_over_cycle(force: sp.Expr) -> sp.Expr:
     """Work of a force(angle) over a cycle of x = A sin(angle)."""
     return sp.integrate(sp.expand(sp.expand_trig(force * A * sp.cos(angle))), (angle, 0, 2 * sp.pi))
 
 
-LATE_FRICTION = released(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
+LATE_FRICTION = work_over_cycle(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
 
 
 @shows(
@@ -102,7 +102,7 @@ def late_inertia() -> ProofSteps:
     """Cancelling inertia with any delay gives out energy; a late friction compensator within the
     level of ideal Coulomb friction does not: limit cycles have another source.
     """
-    work = released(mass * -A * omega**2 * sp.sin(angle - late))
+    work = work_over_cycle(mass * -A * omega**2 * sp.sin(angle - late))
     less = sp.Symbol("less", nonnegative=True)
     coulomb_work = LATE_FRICTION.subs({a1: 0, b1: 4 * f_D / sp.pi})
     return proof(
@@ -121,7 +121,9 @@ def late_inertia() -> ProofSteps:
 def least_damping() -> Numbers:
     """The constant of the least damper."""
     x = float(brentq(lambda x: np.sin(x) - x * np.cos(x), np.pi, 1.5 * np.pi))
-    return Numbers((near("-min sin(x)/x", -np.sin(x) / x, 0.2172, 5e-5),))  # half a last digit
+    return Numbers(
+        (figure_near("-min sin(x)/x", -np.sin(x) / x, 0.2172, 5e-5),)
+    )  # half a last digit
 
 
 @shows(

@@ -60,7 +60,7 @@ def sign_of_the_passive_hand() -> ProofSteps:
     formula="T_o = Z_H (Z_H + Z_M)^-1",
     printed="the inverse is missing in the available text",
 )
-def uncompensated() -> ProofSteps:
+def desired_to_felt_force() -> ProofSteps:
     """Desired force to force on the hand, without compensation."""
     right = Z_H * (Z_H + Z_M) ** -1
     return proof(

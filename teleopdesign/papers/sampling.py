@@ -12,7 +12,7 @@ import sympy as sp
 from ..passivity import passivity_controlled
 from ._laws import dahl_rate
 from ._proof import Equal, Limit, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import DERIVED, Figure, Numbers, Paper, near, shows
+from ._statement import DERIVED, Figure, Numbers, Paper, figure_near, shows
 
 COLGATE = Paper(
     "Colgate 1997",
@@ -51,7 +51,7 @@ def damper_takes_most() -> list[ProofStep]:
     ]
 
 
-def needed(block: sp.Expr) -> sp.Expr:
+def least_damping(block: sp.Expr) -> sp.Expr:
     """Damping needed at the angle theta by a held force -H x: T/2/(1 - cos) Re[(1 - 1/z) H]."""
     return T / 2 / (1 - c) * sp.re(sp.expand((1 - BACK) * block))
 
@@ -91,33 +91,35 @@ def held_blocks() -> ProofSteps:
             sp.expand(jump * sp.conjugate(jump)),
             2 * (1 - c),
         ),
-        Equal("spring", needed(spring), K * T / 2),
-        Equal("spring with damper from differences", needed(spring + damper), K * T / 2 - B * c),
+        Equal("spring", least_damping(spring), K * T / 2),
+        Equal(
+            "spring with damper from differences", least_damping(spring + damper), K * T / 2 - B * c
+        ),
         NotNegative(
             "at most K T/2 + abs(B), reached at theta = pi",
-            B - (needed(damper)),
+            B - (least_damping(damper)),
             B * inside,
             {inside: 1 + c},
         ),
         NotNegative(
             "negative damper: at most B, reached at theta -> 0",
-            B - needed(-damper),
+            B - least_damping(-damper),
             B * short,
             {short: 1 - c},
         ),
         Equal("Dahl near rest is a spring", dahl_rate(sp.S(0), v, r, sigma), sigma * v),
-        Equal("cancelled: no damping needed", needed(-sigma), -sigma * T / 2),
-        Equal("one sample late", needed(one), -sigma * T / 2 * (1 + 2 * c)),
+        Equal("cancelled: no damping needed", least_damping(-sigma), -sigma * T / 2),
+        Equal("one sample late", least_damping(one), -sigma * T / 2 * (1 + 2 * c)),
         NotNegative(
             "at most sigma_D T/2, at theta = pi",
-            sigma * T / 2 - needed(one),
+            sigma * T / 2 - least_damping(one),
             sigma * T * inside,
             {inside: 1 + c},
         ),
-        Equal("two samples late", needed(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
+        Equal("two samples late", least_damping(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
         NotNegative(
             "at most (5/8) sigma_D T, at cos = -1/4",
-            sp.Rational(5, 8) * sigma * T - needed(two),
+            sp.Rational(5, 8) * sigma * T - least_damping(two),
             sigma * T / 2 * (2 * c + sp.Rational(1, 2)) ** 2,
         ),
         assuming=[1 + c, 1 - c],
@@ -189,7 +191,7 @@ def controlled_port() -> Numbers:
     friction_power = friction * np.abs(speed)
     figures = [
         Figure("least energy over that turned over", port.energy.min() / turned, low=-1e-12),
-        near("and in the end, the deficit is made up", port.energy[-1] / turned, 0.0, 1e-12),
+        figure_near("and in the end, the deficit is made up", port.energy[-1] / turned, 0.0, 1e-12),
         Figure("damping that it adds at most", float(port.damping.max()), low=0.1, unit="N s/m"),
         Figure("with a damper of 0.5 N s/m it is not", bounded.energy[-1] / turned, high=-0.1),
     ]

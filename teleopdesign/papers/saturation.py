@@ -17,7 +17,7 @@ from ..effects import EFFECTS
 from ..simulate import simulate
 from ._laws import coulomb, dahl_rate, dahl_step, smoothed_coulomb, viscous
 from ._proof import Equal, Grows, Holds, Limit, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import DERIVED, MAHVASH, Figure, Numbers, claim, near, shows
+from ._statement import DERIVED, MAHVASH, Figure, Numbers, claim, figure_near, shows
 from .dahl_loop import ENERGY
 from .dahl_loop import A as AMPLITUDE
 from .dahl_loop import f_c as LEVEL
@@ -160,7 +160,7 @@ def needed_amplitude() -> Numbers:
     table: dict[float, tuple[float, float]] = {1.02: (51, 0.5), 1.05: (21, 0.5), 1.1: (11, 0.5)}
     table |= {1.2: (6, 0.5), 1.5: (2.98, 0.005), 2.0: (1.92, 0.005)}
     figures = [
-        near(
+        figure_near(
             f"u from which f_D = {ratio} f_C gives out energy",
             float(brentq(lambda x, r=ratio: r * (1 - np.tanh(x) / x) - 1, 1e-3, 1e3)),
             *expected,

@@ -9,7 +9,7 @@ from ..simulate import Loop, Simulation, loop_of
 from ._closed_paths import closed_paths
 from ._laws import coulomb
 from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import MAHVASH, Numbers, Paper, claim, near, shows
+from ._statement import MAHVASH, Numbers, Paper, claim, figure_near, shows
 from ._two_sides import AMPLITUDE, FREQUENCY, FRICTION, SLAVE_DAMPING, STIFFNESS, slow_cycle
 
 LLEWELLYN = Paper(
@@ -179,10 +179,12 @@ def free_space_force() -> Numbers:
         felt, left = mid_stroke(simulation, "F_u").width / 2, (1 - share) * FRICTION
         # the damper, and a hundredth of the friction: inertia, settling of the bristles
         within = viscous + 0.01 * FRICTION
-        figures.append(near(f"user force, f_D = {share} f_C", felt, left, within, "N"))
+        figures.append(figure_near(f"user force, f_D = {share} f_C", felt, left, within, "N"))
         slack = 1e3 * mid_stroke(simulation, "X_e").width / 2
         expected = 1e3 * left / STIFFNESS
-        figures.append(near("  position error", slack, expected, 1e3 * within / STIFFNESS, "mm"))
+        figures.append(
+            figure_near("  position error", slack, expected, 1e3 * within / STIFFNESS, "mm")
+        )
     return Numbers(tuple(figures))
 
 
@@ -228,10 +230,12 @@ def contact_force() -> Numbers:
         expected = 2 * (1 - share) * FRICTION / (1 + ratio)
         # the damper widens the loop; a hundredth of the friction for what is not yet steady
         figures.append(
-            near(f"hysteresis width, f_D = {share} f_C", width, expected, viscous + 0.02, "N")
+            figure_near(
+                f"hysteresis width, f_D = {share} f_C", width, expected, viscous + 0.02, "N"
+            )
         )
         series = STIFFNESS * ENVIRONMENT / (STIFFNESS + ENVIRONMENT)
-        figures.append(near("  stiffness felt", stiffness, series, 0.01 * series, "N/m"))
+        figures.append(figure_near("  stiffness felt", stiffness, series, 0.01 * series, "N/m"))
     return Numbers(tuple(figures))
 
 
@@ -278,11 +282,11 @@ def transparency_figures() -> Numbers:
         name = f"f_D = {share} f_C"
         # a twentieth of a newton of friction: damping of the slave, settling of bristles
         figures += [
-            near(f"{name}: stiffness ratio", stiffness / ENVIRONMENT, 1 / (1 + ratio), 0.01),
-            near(
+            figure_near(f"{name}: stiffness ratio", stiffness / ENVIRONMENT, 1 / (1 + ratio), 0.01),
+            figure_near(
                 "  hysteresis width", width / FRICTION, 2 * (1 - share) / (1 + ratio), 0.05, "f_C"
             ),
-            near(
+            figure_near(
                 "  rms difference",
                 difference / FRICTION,
                 quasi_static_difference(share),

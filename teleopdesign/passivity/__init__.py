@@ -45,7 +45,7 @@ from .search.by_simulation import (
     Given,
     SimulatedMotion,
     confirmed_motion,
-    given_out,
+    released_energy,
     search_counterexample,
 )
 from .search.stroke_motion import Strokes
@@ -59,7 +59,11 @@ from .theorems.dahl_compensation import (
     onset_amplitude,
     self_motion_speed,
 )
-from .theorems.delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
+from .theorems.delayed_compensation import (
+    delayed_small_motion,
+    inertia_given_out,
+    released_by_delay,
+)
 from .theorems.delayed_coupling import delayed_spring
 from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
 from .theorems.energy_tank import energy_tank
@@ -73,7 +77,7 @@ from .two_port.claims import absolutely_stable, passive
 from .two_port.two_port import (
     FrequencyMargins,
     TwoPort,
-    over_frequency,
+    sweep_margins,
     teleoperator_two_port,
     two_port,
 )
@@ -130,8 +134,8 @@ __all__ = [
     "energy_tank",
     "free_motion",
     "free_motion_margin",
-    "given_out",
-    "given_out_late",
+    "released_energy",
+    "released_by_delay",
     "hand_port",
     "impedance",
     "inertia_given_out",
@@ -147,7 +151,7 @@ __all__ = [
     "observe_record",
     "observe_simulation",
     "onset_amplitude",
-    "over_frequency",
+    "sweep_margins",
     "passive",
     "passivity_controlled",
     "ports",

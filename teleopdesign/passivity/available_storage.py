@@ -104,16 +104,16 @@ def available_storage(
     travel = 4 * min(lengths) / (points - 1)
     moves = moves or int(24 * max(lengths) / travel) + 10 * points
     _check_work(moves, points, len(stateful), ratio=max(lengths) / min(lengths))
-    fine, growth = _iterated(stateful, friction, points, travel, moves, load_coefficient)
+    fine, growth = _iterate(stateful, friction, points, travel, moves, load_coefficient)
     half = points // 2 + 1
     longer = travel * (points - 1) / (half - 1)
-    coarse, _ = _iterated(stateful, friction, half, longer, -(-moves // 2), load_coefficient)
+    coarse, _ = _iterate(stateful, friction, half, longer, -(-moves // 2), load_coefficient)
     gain = growth / (travel * (moves - moves // 2))
     tolerance = _BLUR * compensator.level
     return AvailableStorage(fine, gain, travel, moves, tolerance, growth, float(coarse.max()))
 
 
-def _iterated(
+def _iterate(
     stateful: Sequence[Element],
     friction: Sequence[Element],
     points: int,
@@ -124,7 +124,7 @@ def _iterated(
     """Storage after so many moves, and the most that it gained over the second half of them, J."""
     step = [_move(stateful, friction, s * travel, points=points, load=load) for s in (1, -1)]
     # iterated is V less what springs hold, which interpolation would blur most
-    held = _held(stateful, points)
+    held = _stored_energy(stateful, points)
     v = half = -held
     for n in range(moves):
         if n == moves // 2:
@@ -149,7 +149,7 @@ def _length(element: Element) -> float:
     return element.level * compliance(element)
 
 
-def _held(stateful: Sequence[Element], points: int) -> Array:
+def _stored_energy(stateful: Sequence[Element], points: int) -> Array:
     """Energy in the springs of friction at each node, less that of the compensator's, J."""
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):

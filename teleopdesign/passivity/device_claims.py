@@ -70,7 +70,7 @@ def compensation_claims(
     computer: period, delay (whole periods) and encoder of the compensator; None: continuous
     """
     question = Question(device, compensator.stage, computer=computer)
-    return [*settle(question), _searched(device, compensator, computer, rng, tries)]
+    return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
 
 
 def friction_claims(
@@ -84,7 +84,7 @@ def friction_claims(
     return settle(question, simulated=False)
 
 
-def _searched(
+def _search_claim(
     device: IdentifiedDevice,
     compensator: Compensator,
     computer: Sampling | None,

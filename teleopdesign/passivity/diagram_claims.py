@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
@@ -24,10 +24,10 @@ from .friction_pairs import FrictionPair, friction_pairs, pair_claims
 from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
     Port,
-    judged,
+    drop_absent_effects,
+    is_spanned,
     nonlinear_parts,
     ports,
-    spanned,
     without_friction,
     without_holding,
 )
@@ -36,7 +36,7 @@ from .theorems import TopicClaim
 from .theorems.wave_channel import wave_claim
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Search:
     """How motions are sought; SI.
@@ -79,7 +79,7 @@ def diagram_claims(
     raises ModelError: a block without values, or no port
     """
     search = search or Search()
-    whole = judged(diagram)
+    whole = drop_absent_effects(diagram)
     alone = without_holding(whole)
     all_ports, bent = ports(alone), nonlinear_parts(alone)
     claims: list[TopicClaim] = []
@@ -100,7 +100,7 @@ def diagram_claims(
     if not any(not c.analog for c in alone.controls):  # nothing that a computer could sample
         claims = [replace(one, time="any") for one in claims]
     if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in claims):
-        claims += [_searched(whole, port, rng, search) for port in all_ports]
+        claims += [_search_claim(whole, port, rng, search) for port in all_ports]
     return DiagramClaims(diagram, all_ports, bent, tuple(claims))
 
 
@@ -132,7 +132,7 @@ def composed_claim(
         claims = [one.claim for one in answers if not one.spends_damping]
         if pair.device.set_aside or not pair.is_constant:
             return None
-        if not spanned(pair.body.motion, all_ports):
+        if not is_spanned(pair.body.motion, all_ports):
             return None
         if pair.cancellation is None and pair.device.presliding is not None:
             return None  # no theorem about friction alone is called here
@@ -160,7 +160,9 @@ def composed_claim(
     return TopicClaim(WHOLE[0], Claim(statement, Proof(method, certificates)))
 
 
-def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Search) -> TopicClaim:
+def _search_claim(
+    whole: Diagram, port: Port, rng: np.random.Generator, search: Search
+) -> TopicClaim:
     topic = f"port {port}, search by simulation"
     statement = f"{whole.name}: the port {port} gives out no energy"
     if port.motion is None:

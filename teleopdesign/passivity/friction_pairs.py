@@ -10,7 +10,7 @@ from ..diagrams import Control, Diagram, Moving
 from ..errors import ModelError
 from .claims.claim import Claim, Unknown
 from .declarations import keeps_its_bound
-from .identified import IdentifiedDevice, about_device, identified
+from .identified import IdentifiedDevice, identify_device, restate_for_device
 from .shares import drives_alone
 from .theorems import Question, TopicClaim, settle
 
@@ -71,7 +71,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
         if len(along) > 1 or not all(_is_bounded(c, part, diagram) for c in along):
             continue
         try:
-            device = identified(_exact(part.body))
+            device = identify_device(_exact(part.body))
         except ModelError:
             continue
         pairs.append(FrictionPair(part, along[0] if along else None, device))
@@ -105,4 +105,4 @@ def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClai
     law = f"{pair.cancellation.name} ({pair.stage.law.name})"
     statement = f"friction of {pair.body.name} with {law} is passive"
     why = "no limit is known for such a law on a contact that gives before it slides"
-    return [TopicClaim(topic, about_device(pair.device, Claim(statement, Unknown(why))))]
+    return [TopicClaim(topic, restate_for_device(pair.device, Claim(statement, Unknown(why))))]

@@ -24,7 +24,7 @@ from ..realise.friction_interval import (
 )
 from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
-from .claims.axis_units import in_units_of
+from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
 from .declarations import unchecked_energy
 
@@ -90,7 +90,7 @@ class IdentifiedDevice:
         return unit_of("stiffness", self.body.axis)
 
 
-def identified(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
+def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
     """Read levels, presliding and damping off a body, with the errors of its parameters.
 
     reach: of the motions that claims are about; None: every motion
@@ -153,7 +153,7 @@ def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) 
     return tuple(dict.fromkeys(left))
 
 
-def of_whole_device(
+def extend_to_device(
     claim: Claim, *, over: str, left: Sequence[str], declared: Sequence[str] = ()
 ) -> Claim:
     """A claim about friction as one about its device: over which reach, and with all its effects.
@@ -173,15 +173,17 @@ def of_whole_device(
     return Claim(claim.statement, Unknown(why))
 
 
-def about_device(device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()) -> Claim:
+def restate_for_device(
+    device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()
+) -> Claim:
     """A claim about friction as one about the device, in the units of its axis.
 
     besides: effects that its theorem is about, though no claim about friction alone is
     """
     left = [name for name in device.set_aside if name not in besides]
-    claim = in_units_of(device.body.axis, claim)
+    claim = use_units_of(device.body.axis, claim)
     declared = [e.name for e in device.body.effects if e.energy != "supplies"]
-    return of_whole_device(claim, over=device.friction.over, left=left, declared=declared)
+    return extend_to_device(claim, over=device.friction.over, left=left, declared=declared)
 
 
 def _is_open(effect: Effect) -> bool:

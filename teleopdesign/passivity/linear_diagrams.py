@@ -13,7 +13,7 @@ import sympy as sp
 
 from ..diagrams import Diagram
 from ..errors import ModelError
-from .claims.axis_units import in_units_of
+from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
 from .linear.hidden_modes import controllers_grow, growth_within
 from .linear.positive_real import NEARBY, positive_real
@@ -41,7 +41,7 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
         return [TopicClaim(WHOLE[0], Claim(statement, Unknown(f"not linear: {', '.join(bent)}")))]
     claims = _linear_claims(diagram, all_ports)
     if any(one.claim.holds for one in claims):
-        claims = _beside_what_grows(claims, growth_within(diagram))
+        claims = _restate_beside_growth(claims, growth_within(diagram))
     if any(one.claim.status == "evidence" for one in claims) and controllers_grow(diagram):
         claims = [_open_inside(one) for one in claims]
     if not any(one.claim.status == "refuted" for one in claims):
@@ -60,8 +60,8 @@ def _refuted_there_too(
     try:
         z = impedance_matrix(other, all_ports)
     except ModelError:
-        return [_on_rounding(one) for one in claims]
-    return [one if _fails(one, z) else _on_rounding(one) for one in claims]
+        return [_restate_on_rounding(one) for one in claims]
+    return [one if _fails(one, z) else _restate_on_rounding(one) for one in claims]
 
 
 def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
@@ -82,7 +82,7 @@ def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
     return is_shown_unstable(two_port(z.tolist()))
 
 
-def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
+def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
     if rate is None:
         return claims
     how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
@@ -118,7 +118,7 @@ def _nearby(diagram: Diagram) -> list[Diagram]:
     ]
 
 
-def _on_rounding(one: TopicClaim) -> TopicClaim:
+def _restate_on_rounding(one: TopicClaim) -> TopicClaim:
     if one.claim.status != "refuted":
         return one
     why = f"it fails by less than a change of {NEARBY:.1g} of its values decides: rounding"
@@ -130,20 +130,20 @@ def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicCla
         z = impedance_matrix(diagram, all_ports)
         if len(all_ports) == 1:
             judge = late_one_port if z.has(sp.exp) else positive_real
-            claim = in_units_of(_axis(diagram, all_ports), judge(z[0, 0]))
+            claim = use_units_of(_axis(diagram, all_ports), judge(z[0, 0]))
             return [TopicClaim(WHOLE[1], claim)]
     except ModelError as problem:
         claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
         return [TopicClaim(WHOLE[0], claim)]
     axis = _axis(diagram, all_ports)
     if len(all_ports) > 2:
-        return [TopicClaim(WHOLE[0], in_units_of(axis, passive_together(z)))]
+        return [TopicClaim(WHOLE[0], use_units_of(axis, passive_together(z)))]
     system = two_port(z.tolist())
     return [
-        TopicClaim(WHOLE[2], in_units_of(axis, passive(system))),
+        TopicClaim(WHOLE[2], use_units_of(axis, passive(system))),
         TopicClaim(
             "both ports, whatever passive holds them",
-            in_units_of(axis, absolutely_stable(system)),
+            use_units_of(axis, absolutely_stable(system)),
         ),
     ]
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..derive import symbol_values, two_port_functions
 from ..diagrams import Diagram
@@ -61,7 +61,7 @@ class MarginMap(ByValue):
         )
 
 
-@checked
+@check_types
 def margin_map(
     diagram: Diagram,
     values: Mapping[str, Sequence[float] | np.ndarray],
@@ -88,7 +88,7 @@ def margin_map(
     base = linear_blocks(device, speed=speed)
     fixed = _responses(base, f)
     varied = [
-        [_of_block(device.with_values({name: float(x)}), name, f, speed) for x in numbers]
+        [_select_block(device.with_values({name: float(x)}), name, f, speed) for x in numbers]
         for name, numbers in values.items()
     ]
     shape = (len(varied[0]), len(varied[1]))
@@ -140,7 +140,7 @@ def _responses(linear: LinearBlocks, f: np.ndarray) -> dict[str, np.ndarray]:
     return responses | {n: np.full(len(f), float(t)) for n, t in linear.dead_times.items()}
 
 
-def _of_block(device: Diagram, name: str, f: np.ndarray, speed: float) -> dict[str, np.ndarray]:
+def _select_block(device: Diagram, name: str, f: np.ndarray, speed: float) -> dict[str, np.ndarray]:
     """What belongs to the block of that parameter, at the values of this diagram."""
     block = name.partition(".")[0]
     here = _responses(linear_blocks(device, speed=speed, only=block), f)

@@ -16,7 +16,7 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
 from ..blocks import Body
-from ..controllers import Controller, in_exact_numbers
+from ..controllers import Controller, make_exact
 from ..derive import symbol_values, transfer
 from ..derive.elimination import rows
 from ..derive.printing import dead_time_symbol
@@ -56,15 +56,15 @@ class Port:
         return first if not others and weight == 1 else None
 
     def __str__(self) -> str:
-        parts = [m if w == 1 else f"{_said(w)} {m}" for m, w in self.weights.items()]
+        parts = [m if w == 1 else f"{_weight_text(w)} {m}" for m, w in self.weights.items()]
         return f"({self.force}, {' + '.join(parts).replace('+ -', '- ')})"
 
 
-def _said(weight: float | sp.Expr) -> str:
+def _weight_text(weight: float | sp.Expr) -> str:
     return f"({weight})" if isinstance(weight, sp.Expr) else f"{weight:.4g}"
 
 
-def judged(diagram: Diagram) -> Diagram:
+def drop_absent_effects(diagram: Diagram) -> Diagram:
     """The diagram with effects left out that are absent at their values.
 
     raises ModelError: a block is known by its name only, or a value that is left is infinite
@@ -90,7 +90,7 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
         shares = shares_of(diagram, force)
         loads = {b.motion: total_share(b.loads, shares) for b in moving}
-        if weights := {m: _plain(w) for m, w in loads.items() if w != 0}:
+        if weights := {m: _plain_number(w) for m, w in loads.items() if w != 0}:
             at_forces.append(Port(force, weights))
     if not at_forces:
         raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")
@@ -102,7 +102,7 @@ def _is_fixed(part: Kinematics) -> bool:
     return is_linear([sp.sympify(part.expression)], [position_symbol(n) for n in part.inputs])
 
 
-def _plain(weight: sp.Expr) -> float | sp.Expr:
+def _plain_number(weight: sp.Expr) -> float | sp.Expr:
     return weight if weight.free_symbols else float(weight)
 
 
@@ -149,7 +149,10 @@ def impedance_matrix(
         [
             [
                 sp.Add(
-                    *(exact(w) * S * _marked(motions[m][f], late) for m, w in port.weights.items())
+                    *(
+                        exact(w) * S * _mark_delays(motions[m][f], late)
+                        for m, w in port.weights.items()
+                    )
                 )
                 for f in forces
             ]
@@ -175,7 +178,7 @@ def _mobility(
     equations = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
     if not all(e.free_symbols <= {S} for row in equations for e in row.values()):
         raise ModelError(f"{diagram.name}: values are needed")
-    system, right = (placed(equations, n) for n in (unknown, [p.force for p in at]))
+    system, right = (arrange_coefficients(equations, n) for n in (unknown, [p.force for p in at]))
     try:
         answers = system.lu_solve(-right).to_Matrix()
     except DMNonInvertibleMatrixError:
@@ -184,12 +187,13 @@ def _mobility(
     return weights * answers * S
 
 
-def placed(equations: Sequence[Mapping[str, sp.Expr]], names: Sequence[str]) -> DomainMatrix:
+def arrange_coefficients(
+    equations: Sequence[Mapping[str, sp.Expr]], names: Sequence[str]
+) -> DomainMatrix:
     """Coefficients of these signals in each equation, exact rational functions of S."""
     field = sp.QQ.frac_field(S)
     entries = [
-        [field.from_sympy(in_exact_numbers(row.get(n, sp.S(0)))) for n in names]
-        for row in equations
+        [field.from_sympy(make_exact(row.get(n, sp.S(0)))) for n in names] for row in equations
     ]
     return DomainMatrix(entries, (len(equations), len(names)), field)
 
@@ -205,7 +209,7 @@ def _inverse(matrix: sp.Matrix) -> sp.Matrix | None:
     return made.inv().to_Matrix()
 
 
-def _marked(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
+def _mark_delays(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
     """The form with a symbol for each e^(-s T), also within one of a sum of dead times."""
 
     def product(power: sp.Expr) -> sp.Expr:
@@ -229,7 +233,7 @@ def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
     return diagram.without(*names)
 
 
-def spanned(motion: str, standing: Sequence[Port]) -> bool:
+def is_spanned(motion: str, standing: Sequence[Port]) -> bool:
     """Whether ports that stand still hold that motion of a body too, at fixed lever arms."""
     if not all(port.is_fixed for port in standing):
         return False

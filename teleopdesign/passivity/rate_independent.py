@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..errors import ModelError
 
 #: share of the energy of a round below which springs that are not yet steady do not matter
@@ -38,7 +38,7 @@ def _check(element: Element) -> None:
             raise ModelError(f"{type(element).__name__}: {name} = {number:g}, expected above 0")
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Coulomb:
     """Coulomb friction: force = level * sign(velocity);  level: N or N m."""
@@ -53,7 +53,7 @@ class Coulomb:
         return math.copysign(self.level, travel) if travel else force, self.level * abs(travel)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Dahl:
     """df/dx = stiffness (1 - f/level sgn v): exact over any travel."""
@@ -71,11 +71,11 @@ class Dahl:
         length, s = self.level / self.stiffness, math.copysign(1.0, travel)
         y = abs(travel) / length
         gone = -math.expm1(-y)
-        work = self.level * length * _beyond_linear(y) + s * force * length * gone
+        work = self.level * length * _quadratic_remainder(y) + s * force * length * gone
         return force * (1 - gone) + s * self.level * gone, work
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Spring:
     """A spring that slides at its level: a body stuck by Coulomb friction behind a compliance."""
@@ -96,7 +96,7 @@ class Spring:
         return end, s * (force + end) / 2 * stretch + self.level * (abs(travel) - stretch)
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class DahlBehindSpring:
     """A contact of Dahl friction (level, stiffness) that is pulled through a spring.
@@ -134,7 +134,7 @@ def compliance(element: Element) -> float:
     return float(sum(1 / x for x in parts))
 
 
-def _beyond_linear(y: float) -> float:
+def _quadratic_remainder(y: float) -> float:
     """y - (1 - e^-y), without cancellation where y is small."""
     if y > 0.1:
         return y + math.expm1(-y)
@@ -189,15 +189,15 @@ class Cycle:
         """Plain data, to be written as JSON."""
         return {
             "kind": "cycle",
-            "compensator": _plain(self.compensator),
-            "friction": [_plain(e) for e in self.friction],
+            "compensator": _list_entries(self.compensator),
+            "friction": [_list_entries(e) for e in self.friction],
             "turning_points": list(self.turning_points),
             "rounds": self.rounds,
             "energy": self.energy,
         }
 
 
-def _plain(element: Element) -> list[object]:
+def _list_entries(element: Element) -> list[object]:
     return [type(element).__name__.lower(), *vars(element).values()]
 
 

@@ -34,7 +34,7 @@ def shares_of(diagram: Diagram, signal: str) -> Shares:
             if name in sums:
                 shares[name] = total_share(sums[name], shares)
     except CycleError:
-        shares = _solved(diagram, sums, signal)
+        shares = _solve_sums(diagram, sums, signal)
     return {name: share for name, share in shares.items() if share != 0}
 
 
@@ -66,7 +66,7 @@ def _weight(weight: sp.Expr | float) -> sp.Expr:
     return expression if expression.free_symbols else exact(weight)
 
 
-def _solved(
+def _solve_sums(
     diagram: Diagram, sums: Mapping[str, Mapping[str, sp.Expr]], signal: str
 ) -> dict[str, sp.Expr]:
     names = list(sums)

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..plain_data import replacing
+from ..plain_data import write_beside
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def save_figure(
     layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
     with plt.style.context([*house_style(), layout]):
         for file in files:
-            with replacing(file) as part:
+            with write_beside(file) as part:
                 figure.savefig(part)
     return files
 

@@ -57,7 +57,7 @@ def plot_bode(
                     upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
                     continue
                 upper.plot(f, 20 * np.log10(part["magnitude"]), **style)
-                lower.plot(f, _beside(part["phase"], response, name), **style)
+                lower.plot(f, _unwrap_beside(part["phase"], response, name), **style)
         unit = response.data["magnitude"].attrs["units"]
         upper.set_ylabel(
             "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_text(unit)})"
@@ -123,7 +123,7 @@ def _name(one: FrequencyResponse, case: str) -> str:
     return "measured" if len(one.data["case"]) == 1 else "_"
 
 
-def _beside(phase: xarray.DataArray, model: FrequencyResponse, case: str) -> np.ndarray:
+def _unwrap_beside(phase: xarray.DataArray, model: FrequencyResponse, case: str) -> np.ndarray:
     """Measured phase on the turn of the model's, which is unwrapped from another start."""
     import numpy as np
 

@@ -56,7 +56,7 @@ def plot_impedance(
         if len(result.data["case"]) > 1:
             # below 90 and above 270 degrees there is room
             lower.legend(loc="upper left", ncols=1 if columns == 2 else 2)
-        texts = [_shade_text(result, _other(result, against)), _WHICH if model else ""]
+        texts = [_shade_text(result, _other_variable(result, against)), _WHICH if model else ""]
         upper.set_title("; ".join(t for t in texts if t), loc="left", pad=3)
     return figure
 
@@ -69,7 +69,7 @@ def _impedance_lines(
     dotted: bool,
 ) -> None:
     x, _ = _scale(result, against)
-    other = _other(result, against)
+    other = _other_variable(result, against)
     shades = result.data[other].values if other else [None]
     for case in map(str, result.data["case"].values):
         for k, value in enumerate(shades):
@@ -123,7 +123,7 @@ def _scale(result: ImpedanceMap, name: str) -> tuple[np.ndarray, str]:
     return (1e3 * values, "amplitude (mm)") if unit == "m" else (values, f"amplitude ({unit})")
 
 
-def _other(result: ImpedanceMap, against: str) -> str:
+def _other_variable(result: ImpedanceMap, against: str) -> str:
     """The variable that is not the abscissa; "" where there is none or one value of it."""
     other = "amplitude" if against == "frequency" else "frequency"
     return "" if result.on_profile else other

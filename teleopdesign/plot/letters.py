@@ -46,7 +46,7 @@ def letters_without_a_font(texts: Iterable[str]) -> str:
     return "".join(c for c in letters if not any(f.get_char_index(ord(c)) for f in fonts))
 
 
-def about_boxes(texts: Iterable[str]) -> str:
+def explain_boxes(texts: Iterable[str]) -> str:
     """One line about letters that are drawn as boxes, and what helps; empty if there are none."""
     lacking = letters_without_a_font(texts)
     if not lacking:

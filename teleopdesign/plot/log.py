@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import motion_columns
 from ..measurement.survey import Survey
-from ..plain_data import replacing
+from ..plain_data import write_beside
 from ..quantity import unit_of
 from .letters import further_fonts
 
@@ -29,10 +29,10 @@ _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
 def save_survey(figure: Figure, path: Path) -> None:
-    """Write the picture; `about_boxes` says which letters of names no font has."""
+    """Write the picture; `explain_boxes` says which letters of names no font has."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
-        with replacing(path) as part:
+        with write_beside(path) as part:
             figure.savefig(part, format="png")
 
 

@@ -37,7 +37,7 @@ def plot_proposal(proposal: Proposal) -> Figure:
         )
         graphs = [f.graph for f in proposal.findings() if f.graph is not None]
         _graph(axes[0], graphs[0])
-        _left(axes[1], proposal)
+        _plot_separation(axes[1], proposal)
         _separations(axes[2], proposal)
     return figure
 
@@ -54,7 +54,7 @@ def _line(ax: Axes, series: Series, named: bool) -> None:
     ax.plot(series.x, series.y, lw=0.9, label=series.name if named else None)
 
 
-def _left(ax: Axes, proposal: Proposal) -> None:
+def _plot_separation(ax: Axes, proposal: Proposal) -> None:
     """What the widest separated pair leaves: the wrong model's residual over the right one's."""
     widest = max(proposal.separations, key=lambda s: s.predicted)
     curves = proposal.curves[proposal.separations.index(widest)]

@@ -39,7 +39,9 @@ def plot_teleoperator_onset(data: xarray.Dataset) -> matplotlib.figure.Figure:
             ),
         ):
             x = data[name].values
-            _grown(axis, x, y, data[f"growth_over_{name}"].values > 0, "simulated swing grows")
+            _mark_growth(
+                axis, x, y, data[f"growth_over_{name}"].values > 0, "simulated swing grows"
+            )
             hatch_region(axis, x, y[0], 1.0, r"passive, proved: $f_D\leq f_C$")
             axis.axhline(
                 data.attrs["cycles"],
@@ -69,7 +71,7 @@ def plot_teleoperator_onset(data: xarray.Dataset) -> matplotlib.figure.Figure:
     return figure
 
 
-def _grown(axis: Axes, x: np.ndarray, y: np.ndarray, grown: np.ndarray, label: str) -> None:
+def _mark_growth(axis: Axes, x: np.ndarray, y: np.ndarray, grown: np.ndarray, label: str) -> None:
     import numpy as np
     from matplotlib.colors import ListedColormap
 

@@ -260,7 +260,7 @@ def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
                 status = data[name].sel(cancelled=force).values
                 refuted = _ones_where(status == "proved")
                 axis.pcolormesh(x, k, refuted, shading="nearest", cmap=ListedColormap([colour]))
-                axis.plot([], [], "s", color=colour, label=_cancelled(float(force)))
+                axis.plot([], [], "s", color=colour, label=_describe_cancellation(float(force)))
                 axis.plot(x, data[limit].sel(cancelled=force).values, color=THEORY)
             axis.plot([], [], color=THEORY, label=r"$\min(2b/T,\ 2(f_C-f_D)/\Delta)$")
             axis.set(xscale="log", yscale="log", xlim=(x[0], x[-1]), ylim=(k[0], k[-1]))
@@ -279,6 +279,6 @@ def _ones_where(shown: np.ndarray) -> np.ma.MaskedArray[tuple[int, ...], np.dtyp
     return np.ma.masked_where(~shown, np.ones(shown.shape))
 
 
-def _cancelled(force: float) -> str:
+def _describe_cancellation(force: float) -> str:
     about = f"{force:g} N of friction cancelled" if force else "no compensation"
     return f"proved, {about}"

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import ModelError
 from .design import ONE_COLUMN, TWO_COLUMNS
 from .letters import house_style
-from .study_data import StudyData, label, listed, number, spread
+from .study_data import StudyData, join_names, label, number, spread
 from .study_maps import MOST_PANELS, Overlay, draw_map, draw_panels
 
 if TYPE_CHECKING:
@@ -58,7 +58,9 @@ class StudyPlots:
         self._study.require(across, dims)
         each = [d for d in dims if d != across]
         if len(each) > 1:
-            raise ModelError(f"study: curves: give values of all but two of {listed(dims)}: at=...")
+            raise ModelError(
+                f"study: curves: give values of all but two of {join_names(dims)}: at=..."
+            )
         with plt.style.context(house_style()):
             figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
             lines = self.data[each[0]].values if each else [None]

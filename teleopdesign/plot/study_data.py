@@ -49,7 +49,7 @@ class StudyData:
             name = known[0]
         if name not in known:
             raise ModelError(
-                f'study: no measure "{name}" in numbers, has {listed(known)}'
+                f'study: no measure "{name}" in numbers, has {join_names(known)}'
                 f"{did_you_mean(name, known)}"
             )
         return self.data[name]
@@ -68,7 +68,7 @@ class StudyData:
         """Refuse a name that is none of the known axes."""
         if name not in known:
             raise ModelError(
-                f'study: no axis "{name}", has {listed(known)}{did_you_mean(name, known)}'
+                f'study: no axis "{name}", has {join_names(known)}{did_you_mean(name, known)}'
             )
 
     def pair(self, values: xarray.DataArray, x: str, y: str) -> tuple[str, str]:
@@ -76,7 +76,8 @@ class StudyData:
         dims = [str(d) for d in values.dims]
         if len(dims) != 2:
             raise ModelError(
-                f"study: a map has two axes, found {listed(dims) or 'none'}: give values of the "
+                f"study: a map has two axes, found {join_names(dims) or 'none'}: "
+                "give values of the "
                 "others: at=..."
             )
         for name in (x, y):
@@ -121,7 +122,7 @@ def words(name: str) -> str:
     return " ".join(parts)
 
 
-def listed(names: Sequence[str]) -> str:
+def join_names(names: Sequence[str]) -> str:
     """Names in a message."""
     return ", ".join(names)
 

@@ -41,7 +41,9 @@ def plot_unexplained(failure: ResidualDescription) -> Figure:
     lines = [
         line
         for finding in failure.findings
-        for line in textwrap.wrap(_plain(_said(finding.where, finding.sentence)), LETTERS)
+        for line in textwrap.wrap(
+            _plain_text(_sentence_text(finding.where, finding.sentence)), LETTERS
+        )
     ]
     rows = math.ceil(len(panels) / COLUMNS)
     title = 0.14 * (len(lines) + 1)
@@ -74,11 +76,11 @@ def plot_unexplained(failure: ResidualDescription) -> Figure:
     return figure
 
 
-def _said(where: str, sentence: str) -> str:
+def _sentence_text(where: str, sentence: str) -> str:
     return f"{where}: {sentence}" if where else sentence[:1].upper() + sentence[1:]
 
 
-def _plain(text: str) -> str:
+def _plain_text(text: str) -> str:
     return text.replace("$", r"\$")
 
 

@@ -13,13 +13,13 @@ import sympy as sp
 
 from ..controllers import calls_in
 from .equations import Equations
-from .laws import Names, assignments, indented
+from .laws import Names, assignments, indent
 from .signal_symbols import (
     PERIOD,
     TIME,
     acceleration,
     estimate,
-    measured,
+    reading_symbol,
     signal,
     travel_rate,
     velocity,
@@ -90,7 +90,7 @@ def _places(rows: Mapping[str, Iterable[sp.Symbol]]) -> dict[sp.Symbol, str]:
 
 
 def _function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
-    body = indented(list(lines) or ["pass"], 4)
+    body = indent(list(lines) or ["pass"], 4)
     return f"@jitted\ndef {name}({', '.join([*arguments, 'lane'])}):\n{body}\n\n\n"
 
 
@@ -147,7 +147,7 @@ class Generator:
         self.parameters = sorted(used & set(e.parameters), key=str)
         self.sensors = sorted(
             {s for x in self._computer_expressions() for s in x.free_symbols}
-            & {measured(s) for s in (*e.signals, *self.motions)},
+            & {reading_symbol(s) for s in (*e.signals, *self.motions)},
             key=str,
         )
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
@@ -327,8 +327,8 @@ class Generator:
         """Signals of the computer, and its states stepped before and after they are taken."""
         motions, made = self.motions, self._made()
         rows = {
-            "NOW": [measured(x.name) for x in self._now()],
-            "SEEN": [measured(m) for m in motions],
+            "NOW": [reading_symbol(x.name) for x in self._now()],
+            "SEEN": [reading_symbol(m) for m in motions],
             "TRAVEL": [travel_rate(m) for m in motions],
             "KNOWN": [estimate(m) for m in motions],
             "COMPUTER_STATES": self.computer_states,

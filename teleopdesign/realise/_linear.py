@@ -40,16 +40,16 @@ def solve_linear(
             for row in rows:  # an unknown that enters other than linearly is named
                 for x in sorted(left & row.free_symbols, key=str):
                     _factor(row, x, left, name)
-            raise _undetermined(left, name)
+            raise _undetermined_error(left, name)
         (no_number, others, _), i, x, factor = choice
         if no_number and others > 1:
-            values, steps = _joined(rows, left, name)
+            values, steps = _solve_rest(rows, left, name)
             return {s: e.xreplace(values) for s, e in solution.items()} | values, steps
         row = rows.pop(i)
         value = -row.xreplace({x: sp.S(0)}) / factor
         rows = [r.xreplace({x: value}) if r.has(x) else r for r in rows]
         # like terms must meet, or a pivot that is zero would not be seen
-        rows = [_gathered(r, left - {x}) for r in rows]
+        rows = [_gather(r, left - {x}) for r in rows]
         solution = {s: e.xreplace({x: value}) for s, e in solution.items()} | {x: value}
         left.remove(x)
     return solution, {}
@@ -62,12 +62,12 @@ def _factor(row: sp.Expr, x: sp.Symbol, unknown: set[sp.Symbol], name: str) -> s
     return factor
 
 
-def _undetermined(left: set[sp.Symbol], name: str) -> ModelError:
+def _undetermined_error(left: set[sp.Symbol], name: str) -> ModelError:
     some = ", ".join(sorted(s.name for s in left))
     return ModelError(f"{name}: the wiring does not determine {some}")
 
 
-def _gathered(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
+def _gather(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
     here = sorted(unknown & row.free_symbols, key=str)
     factors = {x: sp.diff(row, x) for x in here}
     if any(unknown & f.free_symbols for f in factors.values()):
@@ -108,7 +108,7 @@ class _Named:
         return bool(value.is_finite and value != 0)
 
 
-def _joined(
+def _solve_rest(
     rows: list[sp.Expr], left: set[sp.Symbol], name: str
 ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
     """Solution of what is left by Gaussian elimination, every step under a separate name."""
@@ -119,8 +119,8 @@ def _joined(
         group = _group(rows, todo[0], left)
         of_group = [r for r in rows if r.free_symbols & group]
         if len(of_group) < len(group):
-            raise _undetermined(group, name)
-        values |= _eliminated(of_group, sorted(group, key=str), named, name)
+            raise _undetermined_error(group, name)
+        values |= _eliminate(of_group, sorted(group, key=str), named, name)
         todo = [x for x in todo if x not in group]
     return values, named.steps
 
@@ -135,7 +135,7 @@ def _group(rows: list[sp.Expr], first: sp.Symbol, left: set[sp.Symbol]) -> set[s
     return group
 
 
-def _eliminated(
+def _eliminate(
     rows: list[sp.Expr], unknown: list[sp.Symbol], named: _Named, name: str
 ) -> dict[sp.Symbol, sp.Expr]:
     zero, unknown = dict.fromkeys(unknown, sp.S(0)), list(unknown)
@@ -145,7 +145,7 @@ def _eliminated(
     for i in range(n):
         at, column = _pivot(a, i, named)
         if at is None:
-            raise _undetermined({unknown[i]}, name)
+            raise _undetermined_error({unknown[i]}, name)
         a[i], a[at], b[i], b[at] = a[at], a[i], b[at], b[i]
         unknown[i], unknown[column] = unknown[column], unknown[i]
         for row in a:

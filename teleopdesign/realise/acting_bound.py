@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..blocks import Body
-from ..effects import SIGNALS, delayed, ordered
+from ..effects import SIGNALS, delayed, sort_by_action
 from ..errors import ModelError
 from .friction_interval import lowest_of, parameter_box, stays_within
 from .reach import Reach, signal_ranges
@@ -22,7 +22,7 @@ def largest_acting_force(
     body = without_absent(body, surely=True)
     box = signal_ranges(reach) | parameter_box(body, errors=errors)
     largest = command
-    for effect in ordered(body.effects, "actuation"):
+    for effect in sort_by_action(body.effects, "actuation"):
         # what acted a while ago lay in the same range; a state of the stage may be held in it
         law = effect.expression().replace(delayed, lambda signal, _: signal)
         states = effect.state_symbols().values()

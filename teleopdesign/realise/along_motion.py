@@ -19,14 +19,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blocks import Body
-from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
+from ..effects import SIGNALS, UNEXPLAINED, Effect, make_rubbing_structure, make_touching_structure
 from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
 from .stages_along import COMMAND_LATE, RECORD_SHIFT, acting_along
-from .traced import Along, LinkParameter, Probe, Traced, through
+from .traced import Along, LinkParameter, Probe, Traced, filter_traced
 
 #: signals of a law -> what a motion calls them, where they are known from the records alone
 _MEASURED = {
@@ -71,16 +71,16 @@ def residual_along(
     inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
     forces = [_force(effect, along) for effect in along.present(body.effects, "force")]
     if motion.carried is not None:
-        forces = [_carried(motion, motion.carried, along), *forces]
+        forces = [_force_of_links(motion, motion.carried, along), *forces]
     needed = (acting + interaction).less([inertia, *forces])
     contact = body.contact()
     structures = along.present(body.effects, "structure")
     if contact != 0 and structures:
-        structures = [touching(effect, contact) for effect in structures]
+        structures = [make_touching_structure(effect, contact) for effect in structures]
     elif contact != 0:
         needed = needed - along.evaluate(contact)
     if (held := body.tip_level()) != 0:
-        structures = [rubbing(effect, held) for effect in structures]
+        structures = [make_rubbing_structure(effect, held) for effect in structures]
     level, along = level_along(body, along)
     low, high = bound_friction(body, level, motion, along)
     for effect in structures:
@@ -88,12 +88,12 @@ def residual_along(
     friction = balance_friction(motion, needed, low, high)
     residual = needed - friction
     for effect in structures:
-        residual = residual - _led(effect, motion, along, residual)
+        residual = residual - _leading_force(effect, motion, along, residual)
     moving = acting - friction_of_acting_force(level, friction, along)
     return Residual(motion, residual, friction, acting, moving)
 
 
-def _carried(motion: Motion, force: Array, along: Along) -> Traced:
+def _force_of_links(motion: Motion, force: Array, along: Along) -> Traced:
     """The force (n,) that the links of an arm need, with its tangents by their base parameters."""
     places = [(j, c.index) for j, c in enumerate(along.columns) if isinstance(c, LinkParameter)]
     if not places or motion.links is None:
@@ -136,11 +136,11 @@ def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
     return along.evaluate(effect.expression())
 
 
-def _led(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> Traced:
+def _leading_force(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> Traced:
     """Force that it takes to lead a hidden body as its position is corrected."""
     momentum = effect.led_momentum()
     if momentum == 0:
         return along.constant(np.zeros_like(unexplained.value))
     slope = motion.spectrum.derivative(1) * motion.smoothing
     led = along.with_signals({UNEXPLAINED: unexplained}).evaluate(momentum)
-    return through(lambda y: motion.spectrum.multiply(y, slope), led)
+    return filter_traced(lambda y: motion.spectrum.multiply(y, slope), led)

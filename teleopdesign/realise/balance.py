@@ -12,11 +12,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..machine_code import kept
+from ..machine_code import compile_and_keep
 from ..measurement.filtering import Array
-from ..measurement.zero_phase import both_ways, lanes, margin, sections
+from ..measurement.zero_phase import filter_both_ways, lanes, margin, sections
 from ..measurement.zero_phase_spans import (
-    between,
+    connect_spans,
     crossings,
     filter_spans,
     reach,
@@ -30,7 +30,7 @@ from .traced import Traced
 STEPS = 8
 
 
-@kept
+@compile_and_keep
 def _balance(
     left: Array,
     rows: NDArray[np.intp],
@@ -55,7 +55,7 @@ def _balance(
     momentum, carried = 1.0, 0.0
     for turn in range(STEPS + 1):
         if turn == 1:
-            both_ways(left, extended, sos, steady)
+            filter_both_ways(left, extended, sos, steady)
             for k in range(n):  # from here on: by what it changes from one step to the next
                 for j in range(r):
                     left[k, j] = 0.0
@@ -99,7 +99,7 @@ def side_by_side(signal: Traced, at: slice | NDArray[np.intp] = slice(None)) -> 
     return beside
 
 
-def balanced(
+def balance_within_bounds(
     needed: Traced, low: Traced, high: Traced, *, bandwidth: float, sample_time: float
 ) -> Traced:
     """Friction between its bounds, with its tangents; bandwidth: Hz;  sample_time: s."""
@@ -114,7 +114,7 @@ def balanced(
     friction = low.rows()
     for first, last in windows(rows, n, m, reach(bandwidth, sample_time)):
         here, mine = slice(first, last), rows[(rows >= first) & (rows < last)] - first
-        friction[:, first + mine] = _at_open_rows(
+        friction[:, first + mine] = _friction_at_open_rows(
             needed.between(here),
             low.between(here),
             high.between(here),
@@ -126,7 +126,7 @@ def balanced(
     return Traced(friction[0], friction[1:])
 
 
-def _at_open_rows(
+def _friction_at_open_rows(
     needed: Traced,
     low: Traced,
     high: Traced,
@@ -143,5 +143,5 @@ def _at_open_rows(
     m = min(m, len(left) - 1)
     bandwidth, sample_time = of_filter
     spans = spans_of(rows, len(left), m, bandwidth * sample_time)
-    filters = (*sections(*of_filter), *between(spans, *crossings(*of_filter)))
+    filters = (*sections(*of_filter), *connect_spans(spans, *crossings(*of_filter)))
     return _balance(left, rows, there, spans, m, filters)[:, : 1 + len(needed.tangent)].T

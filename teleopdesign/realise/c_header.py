@@ -15,7 +15,7 @@ import sympy as sp
 
 from ..controllers import SIGNALS, Controller, parameter_symbol
 from ..errors import ModelError
-from .delays import late_samples
+from .delays import delay_in_samples
 from .late_signals import LateSignals, without_delays
 from .simulated import without_no_delay
 
@@ -107,7 +107,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
     fields = {x: sp.Symbol(f"s->x{i}") for i, x in enumerate(states)}
     fields |= {x: sp.Symbol(f"late{i}") for i, x in enumerate(late)}
     rings = [
-        _Ring(i, code_of, late_samples(float(delay.subs(values)), period, what="as_c_header"))
+        _Ring(i, code_of, delay_in_samples(float(delay.subs(values)), period, what="as_c_header"))
         for i, (code_of, delay) in enumerate(late.values())
     ]
 

@@ -80,7 +80,7 @@ def _temporary_folder() -> Path | None:
 _EXECUTING = Lock()
 
 
-def compiled(source: str, function: str) -> Callable[..., Any]:
+def compile_source(source: str, function: str) -> Callable[..., Any]:
     """The function of that name in the source (a module that uses numba), from the cache folder."""
     kernel: Callable[..., Any] = compiled_module(source, function)[function]
     return kernel

@@ -40,7 +40,10 @@ def damping_interval(body: Body, reach: Reach | None = None, *, errors: float) -
     forces = [e for e in body.effects if e.role == "force" and e.energy != "stores"]
     plain = [e for e in forces if not e.states]
     open_ones = [e for e in forces if e.energy == "supplies"]
-    for counted in ([e for e in plain if least_damping(body, [e], reach, errors)], _taking(plain)):
+    for counted in (
+        [e for e in plain if least_damping(body, [e], reach, errors)],
+        _dissipating_effects(plain),
+    ):
         least = least_damping(body, counted, reach, errors)
         if least is not None and least.low >= 0:
             left = tuple(e.name for e in open_ones if e not in counted)
@@ -59,7 +62,7 @@ def small_motion_damping(body: Body, *, errors: float) -> float:
     return damping
 
 
-def _taking(effects: Sequence[Effect]) -> list[Effect]:
+def _dissipating_effects(effects: Sequence[Effect]) -> list[Effect]:
     return [e for e in effects if e.energy == "dissipates"]
 
 

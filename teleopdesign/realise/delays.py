@@ -13,7 +13,7 @@ def is_whole(count: float) -> bool:
     return abs(count - round(count)) <= _WHOLE * max(count, 1.0)
 
 
-def late_samples(delay: float, period: float, *, what: str) -> float:
+def delay_in_samples(delay: float, period: float, *, what: str) -> float:
     """The delay of a computer's signal in samples, at least one.
 
     delay, period: s;  what: begins the error

@@ -102,7 +102,7 @@ def _operation(node: sp.Basic, smooth: bool) -> Callable[..., Any]:
         return lambda x: _logarithm(x, smooth)
     if isinstance(node, sp.tan):
         return lambda x: multiply(
-            _within_one(iv.sin(x)), _reciprocal(_within_one(iv.cos(x)), smooth)
+            _enclose_sine(iv.sin(x)), _reciprocal(_enclose_sine(iv.cos(x)), smooth)
         )
     operation = _OPERATIONS.get(node.func)
     if operation is None:
@@ -150,14 +150,14 @@ def _power(node: sp.Pow, smooth: bool) -> Callable[..., Enclosure]:
                 raise Singular
             if x.a < 0:
                 return WHOLE
-            x = iv.sqrt(x) if root == 2 else _rooted(x, root)
+            x = iv.sqrt(x) if root == 2 else _enclose_root(x, root)
         x = x**whole
         return _reciprocal(x, smooth) if exponent < 0 else x
 
     return power
 
 
-def _rooted(x: Enclosure, root: int) -> Enclosure:
+def _enclose_root(x: Enclosure, root: int) -> Enclosure:
     """The root of an interval that is not negative."""
     zero = x.a == 0
     power = _exponential(_logarithm(x, False) / root)
@@ -181,7 +181,7 @@ def _exponential(x: Enclosure) -> Enclosure:
     return iv.mpf([max(hull.a, _ONE), hull.b]) if x.a >= 0 else hull
 
 
-def _within_one(x: Enclosure) -> Enclosure:
+def _enclose_sine(x: Enclosure) -> Enclosure:
     """The range of a sine, guarded."""
     guarded = x * _GUARD
     return iv.mpf([max(guarded.a, -_ONE), min(guarded.b, _ONE)])
@@ -191,7 +191,7 @@ def _hull(*parts: Enclosure) -> Enclosure:
     return iv.mpf([min(p.a for p in parts), max(p.b for p in parts)])
 
 
-def _rising(function: Callable[..., Any]) -> Callable[[Enclosure], Enclosure]:
+def _enclose_rising(function: Callable[..., Any]) -> Callable[[Enclosure], Enclosure]:
     """The interval of a function that rises everywhere, from its values at both ends."""
 
     def enclose(x: Enclosure) -> Enclosure:
@@ -222,7 +222,7 @@ def _multiply_all(*parts: Enclosure) -> Enclosure:
     return reduce(multiply, parts)
 
 
-def _least(*parts: Enclosure) -> Enclosure:
+def _enclose_minimum(*parts: Enclosure) -> Enclosure:
     return iv.mpf([min(p.a for p in parts), min(p.b for p in parts)])
 
 
@@ -241,19 +241,19 @@ def _pieces(*parts: Any) -> Enclosure:
     return WHOLE  # undefined where no condition is true
 
 
-def _below(x: Enclosure, y: Enclosure) -> Possible:
+def _compare_below(x: Enclosure, y: Enclosure) -> Possible:
     return bool(x.a < y.b), bool(x.b >= y.a)
 
 
-def _not_above(x: Enclosure, y: Enclosure) -> Possible:
+def _compare_not_above(x: Enclosure, y: Enclosure) -> Possible:
     return bool(x.a <= y.b), bool(x.b > y.a)
 
 
-def _equal(x: Enclosure, y: Enclosure) -> Possible:
+def _compare_equal(x: Enclosure, y: Enclosure) -> Possible:
     return bool(x.a <= y.b and y.a <= x.b), not (x.a == x.b == y.a == y.b)
 
 
-def _not(x: Possible) -> Possible:
+def _negate(x: Possible) -> Possible:
     return x[1], x[0]
 
 
@@ -266,26 +266,26 @@ _OPERATIONS: Mapping[Any, Callable[..., Any]] = {
     sp.Add: _add,
     sp.Mul: _multiply_all,
     sp.exp: _exponential,
-    sp.sin: lambda x: _within_one(iv.sin(x)),
-    sp.cos: lambda x: _within_one(iv.cos(x)),
-    sp.tanh: lambda x: _within_one(_rising(libmp.mpf_tanh)(x)),
-    sp.atan: _rising(libmp.mpf_atan),
+    sp.sin: lambda x: _enclose_sine(iv.sin(x)),
+    sp.cos: lambda x: _enclose_sine(iv.cos(x)),
+    sp.tanh: lambda x: _enclose_sine(_enclose_rising(libmp.mpf_tanh)(x)),
+    sp.atan: _enclose_rising(libmp.mpf_atan),
     sp.sinh: lambda x: (_exponential(x) - _exponential(-x)) / 2,
     sp.cosh: lambda x: (_exponential(abs(x)) + _exponential(-abs(x))) / 2,
     sp.Abs: abs,
     sp.sign: _sign,
     sp.Heaviside: _step,
-    sp.Min: _least,
+    sp.Min: _enclose_minimum,
     sp.Max: _largest,
     sp.Piecewise: _pieces,
-    sp.StrictLessThan: _below,
-    sp.StrictGreaterThan: lambda x, y: _below(y, x),
-    sp.LessThan: _not_above,
-    sp.GreaterThan: lambda x, y: _not_above(y, x),
-    sp.Equality: _equal,
-    sp.Unequality: lambda x, y: _not(_equal(x, y)),
+    sp.StrictLessThan: _compare_below,
+    sp.StrictGreaterThan: lambda x, y: _compare_below(y, x),
+    sp.LessThan: _compare_not_above,
+    sp.GreaterThan: lambda x, y: _compare_not_above(y, x),
+    sp.Equality: _compare_equal,
+    sp.Unequality: lambda x, y: _negate(_compare_equal(x, y)),
     sp.And: lambda *all_of: (all(x[0] for x in all_of), any(x[1] for x in all_of)),
     sp.Or: lambda *any_of: (any(x[0] for x in any_of), all(x[1] for x in any_of)),
-    sp.Not: _not,
+    sp.Not: _negate,
     sp.ITE: _if,
 }

@@ -21,16 +21,16 @@ from ..effects import SIGNALS, Effect
 from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
 from .computer import ComputerEquations, computer_signals, held_signals, sensor_signals
-from .late_signals import LateSignals, undelayed, without_delays
+from .late_signals import LateSignals, replace_delays, without_delays
 from .signal_symbols import (
     PERIOD,
     TIME,
     acceleration,
     estimate,
-    measured,
     motion_of,
     parameter_names,
     rate_of,
+    reading_symbol,
     signal,
     travel_rate,
     velocity,
@@ -183,12 +183,12 @@ class _Builder:
                 known = self.diagram.is_position(part.input)
                 source = self.diagram.position(part.input) if known else signal(part.input)
                 others = tuple(map(signal, part.others))
-                equation = _placed(part, source, v, v, others=others, late=self.late)
+                equation = _place_controller(part, source, v, v, others=others, late=self.late)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates
             elif isinstance(part, Junction | Kinematics) and part.output not in self.digital:
-                rows.append(signal(part.output) - summed(part, signal))
+                rows.append(signal(part.output) - sum_inputs(part, signal))
                 unknown.append(signal(part.output))
         return rows, unknown
 
@@ -233,14 +233,14 @@ class _Builder:
             SIGNALS["time"]: TIME,
             SIGNALS["command"]: command,
         }
-        acting = undelayed(part.name, equation.acting.xreplace(here), self.late)
+        acting = replace_delays(part.name, equation.acting.xreplace(here), self.late)
         if sp.diff(acting, command).has(command):  # known once the command is
             force = sp.Symbol(f"{part.name}_acting", real=True)
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting
         total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
         for state, rate in equation.rates.items():
-            self.rates[hidden[state]] = undelayed(part.name, rate.xreplace(here), self.late)
+            self.rates[hidden[state]] = replace_delays(part.name, rate.xreplace(here), self.late)
         if equation.friction != 0:
             self.friction[f"{part.name}_friction"] = equation.friction.xreplace(here)
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
@@ -268,7 +268,7 @@ class _Builder:
                     readings = {x: of(x.name) for x in moved.free_symbols}
                     travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
                 others = tuple(map(of, part.others))
-                equation = _placed(
+                equation = _place_controller(
                     part, of(part.input), travel, known, period, others=others, late=late
                 )
                 rows.append(signal(part.output) - equation.output)
@@ -276,7 +276,7 @@ class _Builder:
                 steps |= equation.steps
                 before |= equation.before
             elif isinstance(part, Junction | Kinematics) and part.output in self.digital:
-                rows.append(signal(part.output) - summed(part, of))
+                rows.append(signal(part.output) - sum_inputs(part, of))
             else:
                 continue
             names += part.outputs
@@ -286,7 +286,7 @@ class _Builder:
         sensors = sensor_signals(self.diagram)
 
         def of(name: str) -> sp.Symbol:
-            return measured(name) if name in sensors else signal(name)
+            return reading_symbol(name) if name in sensors else signal(name)
 
         late: LateSignals = {}
         listed, names = self._computer_rows(of, travel_rate, estimate, late, PERIOD)
@@ -316,7 +316,7 @@ def _check_inputs(diagram: Diagram, motions: list[str]) -> None:
             )
 
 
-def _placed(
+def _place_controller(
     part: Control,
     input: sp.Expr,
     rate: sp.Expr,
@@ -339,7 +339,7 @@ def _placed(
     return equation
 
 
-def summed(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
+def sum_inputs(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
     """Output of a junction or kinematics;  of: signal -> symbol that stands for it."""
     if isinstance(part, Kinematics):
         return _read(part.expression, of)

@@ -9,9 +9,9 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body
-from ..effects import SIGNALS, ordered
+from ..effects import SIGNALS, sort_by_action
 from ..measurement.motion import Motion
-from .balance import balanced
+from .balance import balance_within_bounds
 from .scan import driven_scan
 from .shape_scan import shape_bounds
 from .traced import Along, Traced, constant
@@ -22,7 +22,7 @@ _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
 def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
     """The friction level on symbols; along: with the hidden speeds that the level follows."""
     level = body.level()
-    for effect in ordered(body.effects, "friction_speed"):
+    for effect in sort_by_action(body.effects, "friction_speed"):
         if effect.is_absent(along.values):
             level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
         else:
@@ -75,7 +75,7 @@ def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) 
     if low is high:
         return low
     bandwidth, sample_time = motion.bandwidth, motion.sample_time
-    return balanced(needed, low, high, bandwidth=bandwidth, sample_time=sample_time)
+    return balance_within_bounds(needed, low, high, bandwidth=bandwidth, sample_time=sample_time)
 
 
 def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> Traced:

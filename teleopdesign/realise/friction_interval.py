@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..blocks import Body, Value
-from ..effects import SIGNALS, Effect, ordered
+from ..effects import SIGNALS, Effect, sort_by_action
 from ..errors import ModelError
 from .extremes import Least, Ranges, least_value
 from .reach import ANY_MOTION, Reach, largest_speed, signal_ranges, words_of
@@ -86,8 +86,8 @@ def friction_interval(
     negative, _ = lowest_of(present, -level, reach, errors=errors)
     highest = Interval(-negative.estimate, -negative.high, -negative.low)
     if not math.isfinite(lowest.low):
-        raise ModelError(_unbounded(level, reach))
-    follows = level.has(SIGNALS["velocity"], *_lagging(present))
+        raise ModelError(_explain_unbounded(level, reach))
+    follows = level.has(SIGNALS["velocity"], *_list_lagging_speeds(present))
     stiffness = present.parameters.get("presliding.stiffness")
     return FrictionInterval(
         lowest,
@@ -175,7 +175,7 @@ def _signals(
     """Ranges of signals, and of speeds that lag, which must stay within those of the motion."""
     speeds = 0.0, largest_speed(reach)
     known = signal_ranges(reach) | {SPEED: speeds}
-    lagging = _lagging(body)
+    lagging = _list_lagging_speeds(body)
     every = known | dict.fromkeys(lagging, speeds) | parameter_box(body, errors=errors)
     for state, effect in lagging.items():
         if not stays_within(effect, state, every):
@@ -218,20 +218,20 @@ def _uncertain(value: Value) -> bool:
     return not value.fixed and math.isfinite(value.stderr)
 
 
-def _lagging(body: Body) -> dict[sp.Symbol, Effect]:
+def _list_lagging_speeds(body: Body) -> dict[sp.Symbol, Effect]:
     """Hidden speeds that the level follows -> their effect."""
-    speeds = ordered(body.effects, "friction_speed")
+    speeds = sort_by_action(body.effects, "friction_speed")
     return {s: e for e in speeds for s in e.state_symbols().values()}
 
 
 def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
     """The signals of a point, in words; parameters left out."""
-    said = {SPEED: "speed"} | dict.fromkeys(_lagging(body), "speed")
+    said = {SPEED: "speed"} | dict.fromkeys(_list_lagging_speeds(body), "speed")
     said |= {s: n for n, s in SIGNALS.items()}
     return ", ".join(f"{said[s]} {x:.3g}" for s, x in point.items() if s in said) or ANY_MOTION
 
 
-def _unbounded(level: sp.Expr, reach: Reach | None) -> str:
+def _explain_unbounded(level: sp.Expr, reach: Reach | None) -> str:
     """What to state where a level has no lower bound."""
     names = sorted(
         n for n, s in SIGNALS.items() if level.has(s) and n not in ("direction", "position")

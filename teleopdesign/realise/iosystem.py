@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
 from ..errors import ModelError
 from ._codegen import needed_steps
-from .equations import Equations, equations, summed
+from .equations import Equations, equations, sum_inputs
 from .private_names import PrivateNames, private_names
 from .sampled_iosystem import sampled_iosystem
 from .signal_symbols import TIME, motion_of, signal, velocity
-from .simulated import simulated
+from .simulated import prepare_for_simulation
 
 if TYPE_CHECKING:
     import control
@@ -41,7 +41,7 @@ class SymbolValues:
     fixed: dict[sp.Symbol, float]
 
 
-@checked
+@check_types
 def to_iosystem(
     diagram: Diagram,
     *,
@@ -70,19 +70,19 @@ def to_iosystem(
     raises ModelError: a block without laws, a delay block without `delay_order` (sampled: an analog
         one), or a dead time of an actuator; sampled: prescribed motions, which cannot be held
     """
-    diagram = simulated(diagram, give, prescribed)
+    diagram = prepare_for_simulation(diagram, give, prescribed)
     if dt is not None:
-        return _sampled(diagram, prescribed, delay_order, dt, step)
-    diagram = with_shared_states(_approximated(diagram, delay_order))
+        return _build_sampled(diagram, prescribed, delay_order, dt, step)
+    diagram = with_shared_states(_approximate_delays(diagram, delay_order))
     blocks = tuple(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
     names = private_names(replace(diagram, blocks=blocks))
     with names.in_errors():
-        return _joined(names, tuple(names.private.get(motion, motion) for motion in prescribed))
+        return _join_parts(names, tuple(names.private.get(motion, motion) for motion in prescribed))
 
 
-def _sampled(
+def _build_sampled(
     diagram: Diagram, prescribed: tuple[str, ...], order: int | None, dt: float, step: float
 ) -> control.NonlinearIOSystem:
     for name, value in (("dt", dt), ("step", step)):
@@ -93,10 +93,12 @@ def _sampled(
             f"to_iosystem: {prescribed[0]} cannot be prescribed with dt: a motion that is held "
             "over a step has no velocity; leave dt away"
         )
-    return sampled_iosystem(_approximated(diagram, order, analog_alone=True), dt, step)
+    return sampled_iosystem(_approximate_delays(diagram, order, analog_alone=True), dt, step)
 
 
-def _approximated(diagram: Diagram, order: int | None, *, analog_alone: bool = False) -> Diagram:
+def _approximate_delays(
+    diagram: Diagram, order: int | None, *, analog_alone: bool = False
+) -> Diagram:
     """The diagram with a Pade approximation of that order in the place of each dead time.
 
     analog_alone: those of the computer stay, which keeps samples
@@ -124,12 +126,12 @@ def _approximated(diagram: Diagram, order: int | None, *, analog_alone: bool = F
     return diagram
 
 
-def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
+def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
     """The parts of the diagram, built on private names, joined by the user's."""
     import control
 
     diagram = names.diagram
-    parts = equations(_known(diagram), prescribed=prescribed)
+    parts = equations(_replace_code_by_wires(diagram), prescribed=prescribed)
     if parts.late:
         raise ModelError(
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
@@ -141,7 +143,7 @@ def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Interco
     every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
     static = [p for p in every if p.output in parts.computer.signals]
     # python-control has no system without inputs: what never changes is an output of the mechanics
-    idle = {signal(p.output): float(summed(p, signal)) for p in static if not p.inputs}
+    idle = {signal(p.output): float(sum_inputs(p, signal)) for p in static if not p.inputs}
     numbers.fixed.update(idle)
     systems = [_mechanics(parts, numbers, idle, names)]
     for part in diagram.controls:
@@ -181,7 +183,7 @@ def _mechanics(
     )
 
 
-def _known(diagram: Diagram) -> Diagram:
+def _replace_code_by_wires(diagram: Diagram) -> Diagram:
     """Systems that are known as code only become a wire: the mechanics do not see them."""
     for part in diagram.controls:
         if _code(part) is not None:
@@ -199,7 +201,7 @@ def _code(part: Control) -> Any:
 
 def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> Any:
     if (system := _code(part)) is not None:
-        return _renamed(system, part, names)
+        return _rename_signals(system, part, names)
     assert isinstance(part.controller, Controller)
     v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
@@ -221,12 +223,12 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
 def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
     """A sum or a position without states."""
     inputs = [signal(s) for s in part.inputs]
-    value = summed(part, signal)
+    value = sum_inputs(part, signal)
     name = f"sum_{names.public_name(part.output)}"
     return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers=SymbolValues({}, {}))
 
 
-def _renamed(system: Any, part: Control, names: PrivateNames) -> Any:
+def _rename_signals(system: Any, part: Control, names: PrivateNames) -> Any:
     """A python-control system under the block's name, on its signals."""
     import control
 

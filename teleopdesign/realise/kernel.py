@@ -197,6 +197,6 @@ def refine_factor(measure: float, bound: float, power: float) -> int:
     return math.ceil(math.pow(measure / bound, 1 / power) * 1.0001)
 
 
-def too_long(step: float, use: float, why: str) -> ModelError:
+def long_step_error(step: float, use: float, why: str) -> ModelError:
     """The error for a step that is refused, with the step to use."""
     return ModelError(f"simulate: step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")

@@ -19,17 +19,17 @@ def without_delays(
     """The equation with a symbol for each signal that is late, which is put into `late`."""
 
     def replaced(changes: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
-        return {x: undelayed(name, change, late) for x, change in changes.items()}
+        return {x: replace_delays(name, change, late) for x, change in changes.items()}
 
     return ControllerEquation(
-        undelayed(name, equation.output, late),
+        replace_delays(name, equation.output, late),
         replaced(equation.rates),
         replaced(equation.steps),
         equation.before,
     )
 
 
-def undelayed(name: str, expression: sp.Expr, late: LateSignals) -> sp.Expr:
+def replace_delays(name: str, expression: sp.Expr, late: LateSignals) -> sp.Expr:
     """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
     while calls := expression.atoms(delayed):
         innermost = (c for c in calls if not any(x.has(delayed) for x in c.args))

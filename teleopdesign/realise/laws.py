@@ -15,7 +15,7 @@ from sympy.core.function import AppliedUndef
 from sympy.printing.pycode import PythonCodePrinter
 
 from ..controllers import is_call
-from ..errors import ModelError, quoted
+from ..errors import ModelError, quote
 
 #: symbol -> its private name in the source
 Names = Mapping[sp.Symbol, str]
@@ -33,7 +33,7 @@ class _Printer(PythonCodePrinter):
 
     def _print_Symbol(self, expr: sp.Symbol) -> str:
         if expr not in self.names:
-            raise ModelError(f"a law holds {quoted(expr.name)}, which nothing gives: no source")
+            raise ModelError(f"a law holds {quote(expr.name)}, which nothing gives: no source")
         return self.names[expr]
 
 
@@ -44,10 +44,10 @@ def source_of(expression: sp.Expr, names: Names) -> str:
     """
     functions = (f for f in expression.atoms(AppliedUndef) if not is_call(f))
     if strangers := sorted(str(f.func) for f in functions):
-        raise ModelError(f"a law holds the function {quoted(strangers[0])}, which has no source")
+        raise ModelError(f"a law holds the function {quote(strangers[0])}, which has no source")
     text = str(_Printer(names).doprint(expression))
     if "\n" in text or "#" in text:  # how sympy marks what it cannot print
-        raise ModelError(f"a law holds {quoted(text.splitlines()[-1])}, which has no source")
+        raise ModelError(f"a law holds {quote(text.splitlines()[-1])}, which has no source")
     return text
 
 
@@ -66,6 +66,6 @@ def assignments(results: Mapping[str, sp.Expr], names: Names, *, shared: str = "
     return [*lines, *(f"{name} = {source_of(e, known)}" for name, e in pairs)]
 
 
-def indented(lines: Sequence[str], depth: int) -> str:
+def indent(lines: Sequence[str], depth: int) -> str:
     """Lines of source at a depth."""
     return "\n".join(" " * depth + line for line in lines)

@@ -16,7 +16,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from ..blocks import Body
-from ..controllers import Controller, Stage, as_written, in_exact_numbers, parameter_symbol
+from ..controllers import Controller, Stage, exact_decimal, make_exact, parameter_symbol
 from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.second_input import acts_along_another, without_motion
 from ..errors import ModelError
@@ -64,7 +64,9 @@ def linear_blocks(
     actuation: dict[str, sp.Expr] = {}
     left_out: list[str] = []
     sampled: list[str] = []
-    times = {c.name: as_written(c.dead_time) for c in diagram.controls if c.dead_time is not None}
+    times = {
+        c.name: exact_decimal(c.dead_time) for c in diagram.controls if c.dead_time is not None
+    }
     for part in diagram.blocks if not only else (diagram.block(only),):
         if isinstance(part, Control):
             if part.is_code and part.analog and part.output in diagram.measured:
@@ -72,7 +74,7 @@ def linear_blocks(
                     f"{diagram.name}: {part.name} is a plant known as code only, and without it "
                     "nothing is left to derive: simulate, or give it linear (`control.linearize`)"
                 )
-            forms = _of_controller(diagram, part, speed, held)
+            forms = _forms_of_controller(diagram, part, speed, held)
             blocks[part.name] = forms[0] if forms else sp.S(0)
             if len(forms) == 2:
                 along[part.name] = forms[1]
@@ -83,18 +85,17 @@ def linear_blocks(
             continue
         if isinstance(part, Linked):
             blocks |= {
-                part.entry_name(i, j): in_exact_numbers(part.body.entry(i, j, S))
-                for i, j in part.entries
+                part.entry_name(i, j): make_exact(part.body.entry(i, j, S)) for i, j in part.entries
             }
             continue
         if not isinstance(part.body, Body):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
         impedance, gone = part.body.impedance(S)
-        blocks[part.name] = _numbered(impedance, part.body.numbers())
+        blocks[part.name] = _insert_numbers(impedance, part.body.numbers())
         left_out += [f"{part.name}.{name}" for name in gone]
         if isinstance(part, Moving):
             stage, gone = part.body.actuation(S)
-            actuation[part.name] = _numbered(stage, part.body.numbers())
+            actuation[part.name] = _insert_numbers(stage, part.body.numbers())
             left_out += [f"{part.name}.{name}" for name in gone]
     gone, names = tuple(left_out), tuple(sampled)
     return LinearBlocks(blocks, actuation, gone, abs(speed), names, times, along)
@@ -104,28 +105,28 @@ def _stages(part: Control) -> tuple[Stage, ...]:
     return part.controller.stages if isinstance(part.controller, Controller) else ()
 
 
-def _of_controller(
+def _forms_of_controller(
     diagram: Diagram, part: Control, speed: float, held: bool
 ) -> tuple[sp.Expr, ...]:
     """What a controller makes of its input, and of a motion that is not its input; (): no form."""
     if not isinstance(part.controller, Controller):
         raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
-    forms = part.controller.linear_parts(part.name, S, as_written(abs(speed)), held=held)
+    forms = part.controller.linear_parts(part.name, S, exact_decimal(abs(speed)), held=held)
     if forms is None:
         return ()
     if part.controller.sees_velocity and not part.motion:
         raise without_motion(f"{diagram.name}: {part.name}")
     numbers = {parameter_symbol(part.name, n): v for n, v in part.controller.names().items()}
     if acts_along_another(diagram, part):
-        return tuple(_numbered(form, numbers) for form in forms)
+        return tuple(_insert_numbers(form, numbers) for form in forms)
     whole = forms[0] if forms[1] == 0 else sp.simplify(sp.Add(*forms))
-    return (_numbered(whole, numbers),)
+    return (_insert_numbers(whole, numbers),)
 
 
-def _numbered(form: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> sp.Expr:
+def _insert_numbers(form: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> sp.Expr:
     """The form with values in place, as they were written."""
-    exact = {symbol: as_written(value) for symbol, value in numbers.items()}
-    return in_exact_numbers(sp.sympify(form).subs(exact))
+    exact = {symbol: exact_decimal(value) for symbol, value in numbers.items()}
+    return make_exact(sp.sympify(form).subs(exact))
 
 
 def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> control.TransferFunction:
@@ -134,12 +135,12 @@ def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> contro
 
     def rational(power: sp.Expr) -> sp.Expr:
         tau = float(-sp.diff(power, S))
-        above, below = ([as_written(c) for c in side] for side in control.pade(tau, delay_order))
+        above, below = ([exact_decimal(c) for c in side] for side in control.pade(tau, delay_order))
         return sp.Poly(above, S).as_expr() / sp.Poly(below, S).as_expr()
 
     if expression.atoms(AppliedUndef):
         raise ModelError("a measured frequency response is no rational function: fit one to it")
-    exact = in_exact_numbers(expression).replace(sp.exp, lambda power: rational(power))
+    exact = make_exact(expression).replace(sp.exp, lambda power: rational(power))
     above, below = (sp.Poly(p, S) for p in sp.fraction(sp.cancel(sp.together(exact))))
     lead = below.LC()
     return control.tf(*[[float(c / lead) for c in p.all_coeffs()] for p in (above, below)])

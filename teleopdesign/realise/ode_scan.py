@@ -27,9 +27,9 @@ import sympy as sp
 
 from ..effects import SIGNALS, UNEXPLAINED, Effect
 from ..measurement.filtering import Array
-from .compiled import compiled
+from .compiled import compile_source
 from .exponentials import head
-from .laws import Names, assignments, indented, source_of
+from .laws import Names, assignments, indent, source_of
 from .traced import Along, Traced
 
 #: part of a radian of the fastest mode that one sub-step may cover (at half a radian it swings
@@ -228,7 +228,7 @@ def _source(effect: Effect) -> str:
 def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
     n = drive.shape[1]
     s, q = {len(effect.states)}, dout.shape[1]
-{indented(parameters, 4)}
+{indent(parameters, 4)}
     # the last column is a difference that nothing drives: how much it grows
     d = np.zeros((s, q + 1))
     d[:, q] = size
@@ -260,7 +260,7 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
                 here = (step + part) / steps
                 ahead = part * w
                 before = max(stage - 1, 0)
-{indented(stage, 16)}
+{indent(stage, 16)}
             for i in range(s):
                 z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
                 for c in range(q + 1):
@@ -369,7 +369,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
         size = np.array([rate if s.quantity == "velocity" else 1.0 for s in states])
         growth = GROWTH if effect.corrections() and not effect.linear else np.inf
         by_mine = tangent if len(mine) == len(columns) else np.empty((count, len(mine), n))
-        scan = compiled(_source(effect), "scan")
+        scan = compile_source(_source(effect), "scan")
         known = (step, steps, parameters, places, drive, bends, moving)
         scan(*known, size, growth, start, out, by_mine)
         if by_mine is not tangent:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from ..blocks import Body
 from ..diagrams import Diagram
 from .simulated import without_absent
-from .tips import led, linear_tips, with_tips
+from .tips import led_motion, linear_tips, with_tips
 
 
 def linear_parted(diagram: Diagram, motions: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:
@@ -19,7 +19,7 @@ def linear_parted(diagram: Diagram, motions: tuple[str, ...]) -> tuple[Diagram, 
     Backlash has no linear form: there the body stays whole, and its left-out effects name it.
     """
     apart = linear_tips(diagram)
-    there = {name: led(diagram, name) for name in motions}
+    there = {name: led_motion(diagram, name) for name in motions}
     return apart, {name: tip if tip in apart.signals else name for name, tip in there.items()}
 
 
@@ -28,4 +28,4 @@ def simulated_parted(diagram: Diagram, motion: str) -> tuple[Diagram, str]:
     for part in diagram.bodies:
         if isinstance(part.body, Body) and any(e.role == "structure" for e in part.body.effects):
             diagram = diagram.with_block(part.name, without_absent(part.body))
-    return with_tips(diagram), led(diagram, motion)
+    return with_tips(diagram), led_motion(diagram, motion)

@@ -95,7 +95,7 @@ def private_names(diagram: Diagram) -> PrivateNames:
 
     inner = Diagram(
         _TITLE,
-        tuple(_renamed(b, blocks[b.name], signals) for b in diagram.blocks),
+        tuple(_rename_block(b, blocks[b.name], signals) for b in diagram.blocks),
         tuple(
             Junction(signals[j.output], {signals[s]: renamed(w) for s, w in j.terms.items()})
             for j in diagram.junctions
@@ -115,7 +115,7 @@ def private_names(diagram: Diagram) -> PrivateNames:
     return PrivateNames(inner, MappingProxyType(public), MappingProxyType(signals))
 
 
-def _renamed(block: Block, name: str, signals: Mapping[str, str]) -> Block:
+def _rename_block(block: Block, name: str, signals: Mapping[str, str]) -> Block:
     if isinstance(block, Moving):
         loads = {signals[s]: sign for s, sign in block.loads.items()}
         driver = signals.get(block.driver, "")

@@ -89,13 +89,13 @@ def _program(
         generator = Generator(private, observer=observer)
         laws = generator.source()
         calls = generator.calls()
-        plain = _executed(module_source(laws, jit=False))
+        plain = _execute(module_source(laws, jit=False))
         plain.update(calls)
         loop = loop_of(laws, 1) if jit and not calls else _entries(plain, 1)
         _programs[key] = Program(
             generator.equations, generator.layout(), laws, loop, plain, bool(calls)
         )
-    return _in_public(_programs[key], names)
+    return _restore_names(_programs[key], names)
 
 
 def loop_of(laws: str, lanes: int) -> CompiledLoop:
@@ -107,7 +107,7 @@ def _entries(module: Mapping[str, Any], lanes: int) -> CompiledLoop:
     return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
 
 
-def _in_public(private: Program, names: PrivateNames) -> Program:
+def _restore_names(private: Program, names: PrivateNames) -> Program:
     """The program with the user's names of signals, states and parameters."""
     layout = private.layout
     named = (*layout.columns, *layout.states, *layout.computer_states, *layout.inputs)
@@ -123,7 +123,7 @@ def _in_public(private: Program, names: PrivateNames) -> Program:
 
 
 @lru_cache(maxsize=64)
-def _executed(source: str) -> dict[str, Any]:
+def _execute(source: str) -> dict[str, Any]:
     module: dict[str, Any] = {"__name__": "teleopdesign_plain_kernel"}
     exec(compile(source, "<generated>", "exec"), module)
     return module

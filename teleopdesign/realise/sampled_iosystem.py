@@ -17,10 +17,10 @@ import numpy as np
 
 from ..diagrams import Diagram
 from ..errors import GrowsWithoutBound, ModelError
-from .delays import late_samples
-from .kernel import FASTEST, RELOAD, fastest_rate, refine_factor, too_long
+from .delays import delay_in_samples
+from .kernel import FASTEST, RELOAD, fastest_rate, long_step_error, refine_factor
 from .program import Program, program
-from .simulated import in_computer
+from .simulated import realise_in_computer
 
 if TYPE_CHECKING:
     import control
@@ -33,21 +33,21 @@ _MOST_KEPT = 10_000
 
 
 def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.NonlinearIOSystem:
-    """The system of a diagram whose bodies are as they are simulated (`simulated`).
+    """The system of a diagram whose bodies are as they are simulated (`prepare_for_simulation`).
 
     dt: of a step, the computer's period, s;  step: longest inner step, s
     raises ModelError: what is late lies between samples
     """
     import control
 
-    form = in_computer(diagram, dt)
+    form = realise_in_computer(diagram, dt)
     made = program(form, jit=False)
     if made.layout.late:
         raise ModelError(
             f"{diagram.name}: an analog signal that is late has no state of a fixed size between "
             "samples: use `simulate`, or delay_order for a delay block"
         )
-    one = _Sample(made, dt, step, _late(made, form, dt))
+    one = _Sample(made, dt, step, _delays_in_samples(made, form, dt))
     names = (*made.layout.inputs, *made.layout.sampled_inputs)
     inputs = [name for name in diagram.outside if name in names]
     return control.nlsys(
@@ -62,12 +62,12 @@ def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.Nonlin
     )
 
 
-def _late(made: Program, form: Diagram, dt: float) -> tuple[float, ...]:
+def _delays_in_samples(made: Program, form: Diagram, dt: float) -> tuple[float, ...]:
     """By how many samples each late signal of the computer is late."""
     e, values = made.equations, form.values
     at = {x: values[n] for x, n in e.parameters.items()}
     counts = tuple(
-        late_samples(float(d.subs(at)), dt, what=form.name) for _, d in e.computer.late.values()
+        delay_in_samples(float(d.subs(at)), dt, what=form.name) for _, d in e.computer.late.values()
     )
     if max(counts, default=0.0) > _MOST_KEPT:
         raise ModelError(
@@ -162,7 +162,7 @@ class _Sample:
 
     def _check(self, inner: int) -> None:
         if inner > _MOST_DIVIDED * self.least:
-            raise too_long(self.dt / self.least, self.dt / inner, "is far too long")
+            raise long_step_error(self.dt / self.least, self.dt / inner, "is far too long")
 
     def _advanced(
         self,

@@ -17,9 +17,9 @@ import sympy as sp
 from ..effects import SIGNALS, Effect
 from ..errors import ModelError
 from ..measurement.filtering import Array
-from .compiled import compiled
+from .compiled import compile_source
 from .exponentials import PHI, head
-from .laws import Names, assignments, indented
+from .laws import Names, assignments, indent
 from .traced import Along, Traced
 
 HEAD = head("Generated from an effect's law; do not edit.") + PHI
@@ -94,15 +94,15 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
     p, n = dcommand.shape
     dz = np.zeros(p)
     {STATE} = 0.0
-{indented([] if each else step, 4)}
+{indent([] if each else step, 4)}
     for k in range(n):
-{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
-{indented(step if each else [], 8)}
-{indented(assignments({"b": b}, names), 8)}
+{indent([f"u_{n} = {n}_[k]" for n in used], 8)}
+{indent(step if each else [], 8)}
+{indent(assignments({"b": b}, names), 8)}
         starting = k == 0 and a != 0.0
         if starting:
             {STATE} = -b / a  # steady
-{indented(slope_lines("b", b, by, names), 8)}
+{indent(slope_lines("b", b, by, names), 8)}
         z = {STATE}
         mean[k] = z * p1 + b * h * p2
         end[k] = z
@@ -129,7 +129,7 @@ def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
 
 def stage_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
     """State of an actuation stage, as its average over the hold of each row, with tangents."""
-    _, mean = _advanced(effect, along, along.signals[SIGNALS["command"]])
+    _, mean = _advance(effect, along, along.signals[SIGNALS["command"]])
     (symbol,) = effect.state_symbols().values()
     return {symbol: mean}
 
@@ -139,15 +139,15 @@ def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
 
     The motion at a row stands for the sample before it: without a lag the state is in step with it.
     """
-    end, _ = _advanced(effect, along, along.signals[SIGNALS["velocity"]])
+    end, _ = _advance(effect, along, along.signals[SIGNALS["velocity"]])
     (symbol,) = effect.state_symbols().values()
     later = np.minimum(np.arange(1, len(end.value) + 1), len(end.value) - 1)
     return {symbol: Traced(end.value[later], end.tangent[:, later])}
 
 
-def _advanced(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
+def _advance(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
     """The effect's state at the rows and its average over the hold of each."""
-    scan = compiled(_stage_source(effect), "stage")
+    scan = compile_source(_stage_source(effect), "stage")
     tangent = np.ascontiguousarray(command.tangent)
     end, dend = np.empty_like(command.value), np.empty_like(tangent)
     mean, dmean = np.empty_like(command.value), np.empty_like(tangent)

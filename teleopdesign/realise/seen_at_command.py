@@ -80,7 +80,7 @@ def is_between(body: Body) -> bool:
     return (
         any(e.role == "actuation" for e in body.effects)
         or body.level().has(_ACTING, _INTERACTION)
-        or bool(_taking(body, _ACTING) or _taking(body, _INTERACTION))
+        or bool(_effects_that_take(body, _ACTING) or _effects_that_take(body, _INTERACTION))
     )
 
 
@@ -95,17 +95,17 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
     stages = stages_along(body, motion, known)
     known = known.with_signals({_ACTING: known.constant(model.acting.value)})
     ways = [_net(body, motion, known, _ACTING)]
-    ways += [_of_stage(stage, motion, known) for stage in reversed(stages)]
+    ways += [_way_of_stage(stage, motion, known) for stage in reversed(stages)]
     for way in ways:
-        residual, blind = _back(residual, blind, way, motion)
+        residual, blind = _undo_way(residual, blind, way, motion)
     passed = motion.interaction
     if passed.any():
-        passed = _through(passed, _net(body, motion, known, _INTERACTION), motion)
+        passed = _transmit(passed, _net(body, motion, known, _INTERACTION), motion)
     weak = bool(blind.any()) and _is_weak(body, motion, model, known)
     return SeenAtCommand(residual, blind, passed, weak)
 
 
-def _taking(body: Body, signal: sp.Symbol) -> list[Effect]:
+def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
     """Effects that take from the forces that move the body, by laws that depend on this signal."""
     taking = [e for e in body.effects if e.role in ("force", "structure")]
     return [e for e in taking if any(x.has(signal) for x in (e.expression(), *e.rates().values()))]
@@ -170,15 +170,15 @@ def _way(
         out = np.array([at_rows(e) for e in by_state])
         rates = np.array([[at_rows(e) for e in row] for row in between])
         into = np.array([at_rows(e) for e in driven])
-        gain = gain - np.einsum("in,ni->n", out, _solved(np.moveaxis(rates, 2, 0), into.T))
+        gain = gain - np.einsum("in,ni->n", out, _solve_systems(np.moveaxis(rates, 2, 0), into.T))
         frozen = 1j * omega[:, None, None] * np.eye(len(by_state)) - rates.mean(axis=2)
-        reached = _solved(frozen, np.broadcast_to(into.mean(axis=1), frozen.shape[:2]))
+        reached = _solve_systems(frozen, np.broadcast_to(into.mean(axis=1), frozen.shape[:2]))
         over = over + reached @ out.mean(axis=1)
     delay = float(now.mean(axis=1) @ late / over[0].real) if over[0].real and late.any() else 0.0
     return _Way(gain, over, delay)
 
 
-def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
+def _solve_systems(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
     """Solutions (k, m) of k systems of m equations; what has none is not a number."""
     try:
         return np.linalg.solve(matrices, right[..., None])[..., 0]
@@ -186,7 +186,7 @@ def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
         return np.full(right.shape, np.nan)
 
 
-def _of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
+def _way_of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
     at_stage = replace(along, signals=stage.signals)
     delays, parts = stage.delays, stage.parts
     return _way(stage.effect, stage.law, _COMMAND, at_stage, motion, delays=delays, parts=parts)
@@ -195,7 +195,7 @@ def _of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     """The way from a force to the part of it that moves the body, after all forces it causes."""
     gain, over = np.ones(len(motion.time)), np.ones(len(motion.spectrum.frequency), dtype=complex)
-    for effect in _taking(body, signal):
+    for effect in _effects_that_take(body, signal):
         if effect.states and effect.is_absent(along.values):
             continue
         way = _way(effect, effect.expression(), signal, along, motion)
@@ -207,7 +207,7 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     return _Way(gain, over, 0.0)
 
 
-def _back(
+def _undo_way(
     residual: Array, blind: NDArray[np.bool_], way: _Way, motion: Motion
 ) -> tuple[Array, NDArray[np.bool_]]:
     """A residual behind a way as one before it, with the samples that are blind there."""
@@ -235,7 +235,7 @@ def _from_rest(way: _Way) -> NDArray[np.complex128]:
     return way.dynamics / way.dynamics[0] if way.dynamics[0] != 0 else way.dynamics
 
 
-def _through(force: Array, way: _Way, motion: Motion) -> Array:
+def _transmit(force: Array, way: _Way, motion: Motion) -> Array:
     """The part of a force that a way transmits; a resonance does not amplify it."""
     # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
     gain = np.where(np.isfinite(way.gain), way.gain, 1.0)

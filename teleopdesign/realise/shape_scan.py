@@ -14,8 +14,8 @@ import sympy as sp
 from ..effects import SIGNALS, Effect
 from ..errors import ModelError
 from ..measurement.motion import Motion
-from .compiled import compiled
-from .laws import Names, assignments, indented
+from .compiled import compile_source
+from .laws import Names, assignments, indent
 from .scan import (
     HEAD,
     STATE,
@@ -30,7 +30,7 @@ from .scan import (
 from .traced import Along, Traced
 
 
-def _used_by_shape(effect: Effect) -> list[str]:
+def _signals_of_shape(effect: Effect) -> list[str]:
     """Signals of a shape's laws besides those that its scan has in any case."""
     return [n for n in signals_in(effect) if n not in ("velocity", "level")]
 
@@ -52,7 +52,7 @@ def _shape_module(
     weights: slopes of the force by the states, once for all columns
     tangents: how column j of the states' tangents moves on;  moved: what they change of the force
     """
-    law, used = effect.expression(), _used_by_shape(effect)
+    law, used = effect.expression(), _signals_of_shape(effect)
     by = slopes_by(effect, "level")
     arguments = [*(names[s] for s in effect.symbols().values()), *(f"{n}_" for n in used)]
     return f"""{HEAD}
@@ -61,17 +61,17 @@ def _shape_module(
 def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
           forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape
-{indented(start, 4)}
+{indent(start, 4)}
     for k in range(n):
         u_velocity = (position[k] - position[max(k - 1, 0)]) / h
         ahead = u_velocity >= 0.0
         u_level = max(forward[k] if ahead else backward[k], 1e-12)
-{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
-{indented(advance, 8)}
+{indent([f"u_{n} = {n}_[k]" for n in used], 8)}
+{indent(advance, 8)}
         u_velocity = velocity[k]
-{indented(assignments({"force": law, "slope": slope}, names), 8)}
-{indented(weights, 8)}
-{indented(slope_lines("f", law, by, names) + slope_lines("g", slope, by, names), 8)}
+{indent(assignments({"force": law, "slope": slope}, names), 8)}
+{indent(weights, 8)}
+{indent(slope_lines("f", law, by, names) + slope_lines("g", slope, by, names), 8)}
         # where the reading cannot tell a motion, the position is open by half a step
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
@@ -80,7 +80,7 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
         high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
-{indented(tangents, 12)}
+{indent(tangents, 12)}
             df = {moved} + f_level * dlevel + {slope_of_column(effect, "f")}
             dg = free * copysign(1.0, slope) * (g_level * dlevel + {slope_of_column(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
@@ -177,7 +177,7 @@ def _stopped_source(effect: Effect) -> str:
 def _shape_of(effect: Effect) -> tuple[str, tuple[str, ...]]:
     """Source of a shape's bounds, and the signals besides that it is called with."""
     source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
-    return source, tuple(_used_by_shape(effect))
+    return source, tuple(_signals_of_shape(effect))
 
 
 def shape_bounds(
@@ -192,7 +192,7 @@ def shape_bounds(
     the position means to the bristle, and no further than the level.
     """
     source, used = _shape_of(effect)
-    scan = compiled(source, "shape")
+    scan = compile_source(source, "shape")
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
     dlow, dhigh = np.empty(forward.tangent.shape), np.empty(forward.tangent.shape)
     scan(

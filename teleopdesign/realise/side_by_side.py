@@ -86,7 +86,9 @@ def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, n
     if not made.layout.states:
         return np.zeros(len(parameters)), np.zeros(len(parameters), dtype=int)
     blocks = [
-        fastest_rates(slopes_at_rest(made, loop, _in_lanes(parameters[first : first + LANES])))
+        fastest_rates(
+            slopes_at_rest(made, loop, _arrange_in_lanes(parameters[first : first + LANES]))
+        )
         for first in range(0, len(parameters), LANES)
     ]
     rates, states = (np.concatenate(part)[: len(parameters)] for part in zip(*blocks, strict=True))
@@ -131,7 +133,7 @@ def execute_many(
         loop.run(
             *grid(made, timing, LANES),
             False,
-            _in_lanes(parameters[here]),
+            _arrange_in_lanes(parameters[here]),
             inputs,
             sampled,
             memory,
@@ -147,13 +149,13 @@ def execute_many(
         outcome.worst[here] = table[worst_rows].max(axis=0, initial=0.0)
         outcome.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
 
-    _over_threads(block, range(0, cases, LANES))
+    _spread_over_threads(block, range(0, cases, LANES))
     for i, reduction in enumerate(reductions):
-        outcome.reduced[:, i] = _scaled(reduction.kind, outcome.reduced[:, i], rows - begin, timing)
+        outcome.reduced[:, i] = _scale(reduction.kind, outcome.reduced[:, i], rows - begin, timing)
     return outcome
 
 
-def _over_threads(block: Callable[[int], None], firsts: Sequence[int]) -> None:
+def _spread_over_threads(block: Callable[[int], None], firsts: Sequence[int]) -> None:
     if len(firsts) == 1 or workers() == 1:
         for first in firsts:
             block(first)
@@ -170,13 +172,13 @@ def _reduction_arrays(first: int, reductions: Sequence[Reduction]) -> tuple[np.n
     return tuple(np.array(x, dtype=np.int64) for x in (kinds, columns, others))
 
 
-def _in_lanes(parameters: np.ndarray) -> np.ndarray:
+def _arrange_in_lanes(parameters: np.ndarray) -> np.ndarray:
     """Parameters of at most a block of cases, row by row; empty lanes repeat the last case."""
     lanes = np.minimum(np.arange(LANES), len(parameters) - 1)
     return np.ascontiguousarray(parameters[lanes].T).reshape(-1)
 
 
-def _scaled(kind: str, sums: np.ndarray, rows: int, timing: Timing) -> np.ndarray:
+def _scale(kind: str, sums: np.ndarray, rows: int, timing: Timing) -> np.ndarray:
     if kind == "mean":
         return sums / rows
     if kind == "rms":

@@ -28,7 +28,7 @@ def acceleration(motion: str) -> sp.Symbol:
     return sp.Symbol(f"{motion}_acceleration", real=True)
 
 
-def measured(name: str) -> sp.Symbol:
+def reading_symbol(name: str) -> sp.Symbol:
     """The reading of a sensor at a sample."""
     return sp.Symbol(f"{name}_measured", real=True)
 

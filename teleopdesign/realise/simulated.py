@@ -125,7 +125,7 @@ def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any
     return levels
 
 
-def in_computer(diagram: Diagram, period: float) -> Diagram:
+def realise_in_computer(diagram: Diagram, period: float) -> Diagram:
     """The diagram with controllers as a computer of that period (s) realises them.
 
     States that several controllers share are there once.
@@ -162,7 +162,9 @@ def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) ->
     return replace(diagram, blocks=blocks) if changed else diagram
 
 
-def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()) -> Diagram:
+def prepare_for_simulation(
+    diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()
+) -> Diagram:
     """The diagram with bodies as they are simulated: absent effects out, ideal friction with a
     bristle.
 

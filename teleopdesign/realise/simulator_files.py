@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 from ..blocks import Body
 from ..errors import ModelError, did_you_mean
 from ..model import Model
-from ..quantity import after_number
+from ..quantity import unit_after_number
 
 #: kg and kg m^2 of what a link must have beside what was identified: simulators refuse less. It
 #: turns or moves with no joint that was identified
@@ -113,7 +113,7 @@ def _mjcf(model: Model, name: str) -> SimulatorFile:
             motor |= {"forcelimited": "true", "forcerange": f"{_number(-limit)} {_number(limit)}"}
             holds.append((f"{place}.{_LIMIT}", limit, body.unit(_LIMIT), "forcerange"))
         ElementTree.SubElement(motors, "motor", motor)
-    return SimulatorFile(_text(root), tuple(holds), _left_out(model, (*_MJCF, _LIMIT)))
+    return SimulatorFile(_text(root), tuple(holds), _list_left_out(model, (*_MJCF, _LIMIT)))
 
 
 def _urdf(model: Model, name: str) -> SimulatorFile:
@@ -159,7 +159,7 @@ def _urdf(model: Model, name: str) -> SimulatorFile:
             "effort": _number(URDF_EFFORT if limit is None else limit),
         }
         ElementTree.SubElement(joint, "limit", limits)
-    return SimulatorFile(_text(root), tuple(holds), _left_out(model, (*_URDF, _LIMIT)))
+    return SimulatorFile(_text(root), tuple(holds), _list_left_out(model, (*_URDF, _LIMIT)))
 
 
 def _inertia(body: Body) -> float:
@@ -175,7 +175,7 @@ def _value(body: Body, parameter: str) -> float | None:
     return None if value == body.effect(effect).absent.get(local_name) else value
 
 
-def _left_out(model: Model, held: tuple[str, ...]) -> tuple[str, ...]:
+def _list_left_out(model: Model, held: tuple[str, ...]) -> tuple[str, ...]:
     there = {parameter.partition(".")[0] for parameter in held}
     return tuple(f"{name} at {place}" for name, place in model.effects if name not in there)
 
@@ -185,9 +185,10 @@ def _explain(
 ) -> None:
     """Put a comment first: the model's parameters, and what the form has no place for."""
     lines = [
-        f"{n} = {v.value:.5g}{after_number(model.unit(n))}" for n, v in model.parameters.items()
+        f"{n} = {v.value:.5g}{unit_after_number(model.unit(n))}"
+        for n, v in model.parameters.items()
     ]
-    left = ", ".join(_left_out(model, held)) or "nothing"
+    left = ", ".join(_list_left_out(model, held)) or "nothing"
     text = (
         f" Identified by teleopdesign; SI units.\n  {of_form}\n  "
         + "\n  ".join(lines)

@@ -17,7 +17,7 @@ from ..effects import SIGNALS, Effect, delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .scan import stage_scan
-from .traced import Along, Traced, through
+from .traced import Along, Traced, filter_traced
 
 #: what a stage may use of the motion
 _MOTION = ("time", "position", "velocity", "acceleration")
@@ -51,7 +51,7 @@ class ActuationStage:
 def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
     """Acting force at the rows; along: at the rows, the command among its signals."""
     stages = stages_along(body, motion, along)
-    acting = through(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
+    acting = filter_traced(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
     if COMMAND_LATE in along.columns:
         slope = motion.spectrum.multiply(acting.value, motion.spectrum.derivative(1))
         tangent = acting.tangent.copy()
@@ -71,7 +71,7 @@ def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStag
     laws = [law for e in effects for law in (e.expression(), *e.rates().values())]
     late = any(e.states or e.expression().has(delayed) for e in effects)
     parts = min(PARTS * motion.merged, MOST_PARTS) if late else 1
-    signal = through(lambda y: np.repeat(y, parts, axis=-1), along.signals[_COMMAND])
+    signal = filter_traced(lambda y: np.repeat(y, parts, axis=-1), along.signals[_COMMAND])
     signals = {
         SIGNALS[name]: along.constant(np.repeat(getattr(motion, name), parts))
         for name in _MOTION
@@ -107,7 +107,9 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     tau = float(delay.subs(along.values))
     whole, part = divmod(max(tau, 0.0) / step, 1.0)
     late, later = int(whole), int(whole) + 1
-    shifted = through(lambda y: (1 - part) * _later(y, late) + part * _later(y, later), signal)
+    shifted = filter_traced(
+        lambda y: (1 - part) * _later(y, late) + part * _later(y, later), signal
+    )
     tangent = shifted.tangent.copy()
     slope = (_later(signal.value, later) - _later(signal.value, late)) / step
     for i, column in enumerate(along.columns):

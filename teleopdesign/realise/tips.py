@@ -32,7 +32,7 @@ def tip(motion: str) -> str:
     return f"{motion}_tip"
 
 
-def led(diagram: Diagram, motion: str) -> str:
+def led_motion(diagram: Diagram, motion: str) -> str:
     """The motion that a hand leads: the tip's where a structure lies between, else itself."""
     for part in diagram.blocks:
         if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):
@@ -57,7 +57,7 @@ def linear_tips(diagram: Diagram) -> Diagram:
             body = part.body.without_effect(structure.name)
             diagram = diagram.with_block(part.name, body)
         else:
-            diagram = _parted(diagram, part, part.body, structure)
+            diagram = _part_body(diagram, part, part.body, structure)
     return diagram
 
 
@@ -79,11 +79,11 @@ def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
                 f"{diagram.name}: {part.motion} is the actuator's side of {structure.name}, which "
                 f"no hand leads: give the motion {tip(part.motion)}"
             )
-        diagram = _parted(diagram, part, part.body, structure)
+        diagram = _part_body(diagram, part, part.body, structure)
     return diagram
 
 
-def _parted(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> Diagram:
+def _part_body(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> Diagram:
     device, end = _sides(diagram, part, body, structure)
     values = body.parameters
     law = transmission(structure)
@@ -140,14 +140,14 @@ def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tup
         device = device.without_effect(effect.name)
     for effect in held:
         end = end.with_effect(
-            of_a_body(effect),
+            move_to_tip_body(effect),
             {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters},
         )
     return device, end
 
 
 @lru_cache(maxsize=8)  # laws compare by identity
-def of_a_body(effect: Effect) -> Effect:
+def move_to_tip_body(effect: Effect) -> Effect:
     """Friction of a tip as the friction level that it is of the tip as a separate body."""
     return replace(effect, role="friction_level", needs=frozenset())
 

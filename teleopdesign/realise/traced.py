@@ -14,7 +14,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from ..effects import SIGNALS, Effect, Role, ordered
+from ..effects import SIGNALS, Effect, Role, sort_by_action
 from ..measurement.filtering import Array
 
 
@@ -81,15 +81,15 @@ class Traced:
 
 def constant(value: Array, parameters: int) -> Traced:
     """A signal (n,) that none of so many parameters changes: its tangents take no memory."""
-    return Traced(value, _nothing(parameters, len(value)))
+    return Traced(value, _zero_signal(parameters, len(value)))
 
 
 @lru_cache(maxsize=256)
-def _nothing(parameters: int, n: int) -> Array:
+def _zero_signal(parameters: int, n: int) -> Array:
     return np.broadcast_to(0.0, (parameters, n))
 
 
-def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
+def filter_traced(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     """A signal and its tangents through a linear filter; tangents that are zero stay so."""
     if signal.is_constant:
         return constant(filtered(signal.value), len(signal.tangent))
@@ -154,7 +154,9 @@ class Along:
     def present(self, effects: Sequence[Effect], role: Role) -> list[Effect]:
         """Effects of a role, without absent ones that have states: their laws may divide by 0."""
         return [
-            e for e in ordered(tuple(effects), role) if not (e.states and e.is_absent(self.values))
+            e
+            for e in sort_by_action(tuple(effects), role)
+            if not (e.states and e.is_absent(self.values))
         ]
 
 

@@ -17,14 +17,14 @@ from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.ladder_text import sentence
 from ..finding import Finding
 from ..measurement.reading import ReadingStep
-from ..plain_data import plain, write_text
+from ..plain_data import make_plain, write_text
 from .candidate_table import LadderRow
 from .figures import ladder_figure
-from .page import DIGITS, Page, bounded, page_of, version
+from .page import DIGITS, Page, limit_size, page_of, version
 from .parameter_table import AddedEffect
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
-from .words import judged_on, listed, percent, sentence_of
-from .write import Figures, figures_of, rendered
+from .words import describe_judgement, join_names, percent, sentence_of
+from .write import Figures, figures_of, render_page
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def arm_page_of(
         folder=experiment.folder.name,
         verdict=_verdict(diagnosis),
         named=tuple(sorted({c.effect.name for c in diagnosis.missing})),
-        judged_on=judged_on(experiment),
+        judged_on=describe_judgement(experiment),
         before=diagnosis.before.check_error,
         after=diagnosis.after.check_error,
         floor=diagnosis.floor,
@@ -116,10 +116,10 @@ def arm_page_of(
             _joint(diagnosis, j, one, left.get(j, ())) for j, one in diagnosis.joints.items()
         ),
         links=tuple(
-            LinkRow(name, unit, value, plain(error))
+            LinkRow(name, unit, value, make_plain(error))
             for name, (value, error, unit) in diagnosis.base_parameters.items()
         ),
-        soundness=bounded(soundness),
+        soundness=limit_size(soundness),
         records=record_rows(experiment),
         reading=experiment.reading,
         channels=channel_rows(experiment),
@@ -160,18 +160,18 @@ def _ladder(diagnosis: ArmDiagnosis) -> tuple[LadderRow, ...]:
 def _verdict(diagnosis: ArmDiagnosis) -> str:
     """The verdict on the arm in a sentence or two."""
     before, after = percent(diagnosis.before.check_error), percent(diagnosis.after.check_error)
-    where = judged_on(diagnosis.experiment)
+    where = describe_judgement(diagnosis.experiment)
     if diagnosis.verdict == "model_adequate":
         return (
             f"Your model of the arm is adequate: it leaves {after} of the forces unexplained on "
             f"{where}."
         )
-    names = listed([str(c) for c in diagnosis.missing])
+    names = join_names([str(c) for c in diagnosis.missing])
     fell = f"the force error on {where} falls from {before} to {after}"
     if diagnosis.verdict == "effects_missing":
         return f"Your model of the arm lacks {names}. With all that was added {fell}."
     if len(diagnosis.rungs) > 1:
-        added = listed([r.said for r in diagnosis.rungs[1:]])
+        added = join_names([r.said for r in diagnosis.rungs[1:]])
         return f"Undecided: with {added} {fell}, but these records do not tell what is missing."
     return f"Undecided: something is missing, but no effect that was tried explains the {after}."
 
@@ -189,9 +189,9 @@ def write_arm_report(
     """
     page = arm_page_of(diagnosis, soundness=soundness, unexplained=unexplained)
     data: dict[str, Any] = {
-        "answer": plain(arm_answer(diagnosis)),
-        "report": plain(page, digits=DIGITS),
+        "answer": make_plain(arm_answer(diagnosis)),
+        "report": make_plain(page, digits=DIGITS),
     }
     whole = Figures(ladder_figure(page.ladder, page.floor), (), (), (), (), {})
     figures = ArmFigures(whole, tuple(figures_of(joint.page) for joint in page.joints))
-    write_text(Path(path), rendered("arm.html.jinja", page, figures, data))
+    write_text(Path(path), render_page("arm.html.jinja", page, figures, data))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..finding import Array, Graph, Series
 from ..quantity import unit_of
-from .scaled import Scaled, scaled, size_of
+from .scaled import Scaled, choose_prefix, size_of
 
 #: points of a profile over velocity in each direction, and samples that each needs
 PROFILE, FEWEST = 24, 3
@@ -43,9 +43,9 @@ class BodySamples:
         return replace(self, residual=tuple(self.residual[i] for i in rungs))
 
 
-def over_velocity(rows: BodySamples, axis: str, force: Scaled) -> Graph:
+def plot_over_velocity(rows: BodySamples, axis: str, force: Scaled) -> Graph:
     """Mean residual over velocity on the first and the last rung, with the band of most samples."""
-    speed = scaled(unit_of("velocity", axis), size_of(rows.velocity))
+    speed = choose_prefix(unit_of("velocity", axis), size_of(rows.velocity))
     series = [
         Series(
             name=name,
@@ -88,7 +88,7 @@ def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
     """Measured and modelled force where the residual fell most (or is largest)."""
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
-    force = scaled(unit_of("force", axis), size_of(rows.measured[window]))
+    force = choose_prefix(unit_of("force", axis), size_of(rows.measured[window]))
     series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept])]
     for name, r in _first_and_last(rows.residual):
         model = force.factor * (rows.measured[kept] - r[kept])
@@ -109,14 +109,16 @@ def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
         length = max(2, int(min(PERIODS / bandwidth, PART * len(of_stretch) * step) / step))
         if len(of_stretch) < length:
             continue
-        share = _moving(gain[of_stretch], length) / (_moving(force[of_stretch], length) + least)
+        share = _moving_mean(gain[of_stretch], length) / (
+            _moving_mean(force[of_stretch], length) + least
+        )
         if share.max() > best:
             start = int(np.argmax(share))
             best, window = float(share.max()), of_stretch[start : start + length]
     return window
 
 
-def _moving(values: Array, length: int) -> Array:
+def _moving_mean(values: Array, length: int) -> Array:
     """Mean of each window of that length."""
     sums = np.concatenate([[0.0], np.cumsum(values)])
     return np.asarray((sums[length:] - sums[:-length]) / length)

@@ -15,7 +15,7 @@ from ..diagnose.record_shift import shifts_of
 from ..diagnose.rung import Rung
 from ..effects import CONTACT_ROLES
 from ..finding import Finding
-from .words import listed, number, percent, unit_text, with_error
+from .words import join_names, number, percent, unit_text, with_error
 
 #: correlation of two estimates from which they are called known only together: the standard error
 #: of either is then 1/sqrt(1 - r^2) = 3.2 times what it would be if the other were known
@@ -30,14 +30,14 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     rest = [
         *_untold(diagnosis),
         *_set_aside(diagnosis),
-        *_at_bound(diagnosis),
+        *_findings_at_bound(diagnosis),
         *_clock(diagnosis),
         *_open_parameters(diagnosis),
         *_together(diagnosis.after),
         *_open_candidates(diagnosis),
         *_excluded_effects(diagnosis),
-        *_left_out(diagnosis),
-        *_unchecked(diagnosis),
+        *_findings_on_exclusions(diagnosis),
+        *_findings_unchecked(diagnosis),
     ]
     return (*groups, *rest)
 
@@ -82,21 +82,21 @@ def _group(rung: Rung) -> Finding:
         return Finding(
             topic="effects that look alike",
             concern="warning",
-            sentence=f"{listed([str(c) for c in (rung.added, *rung.alternatives)])} explain these "
-            "records equally well, as the answer says.",
+            sentence=f"{join_names([str(c) for c in (rung.added, *rung.alternatives)])} explain "
+            "these records equally well, as the answer says.",
         )
     ranked = {r.candidate.key: r for r in rung.ranking.ranked}
     names = [str(c) for c in (rung.added, *rung.alternatives)]
     group = [ranked[c.key] for c in (rung.added, *rung.alternatives)]
     likeness = min(_likeness(rung.ranking.base, group[0], r) for r in group[1:])
     apart = max(abs(whole_score(r.fit, group[0].fit)) for r in group[1:])
-    errors = listed([percent(r.fit.check_error) for r in group])
+    errors = join_names([percent(r.fit.check_error) for r in group])
     numbers = {f"check_error of {n}": r.fit.check_error for n, r in zip(names, group, strict=True)}
     return Finding(
         topic="effects that look alike",
         concern="warning",
         sentence=(
-            f"{listed(names)} explain these records equally well: added at the same step they "
+            f"{join_names(names)} explain these records equally well: added at the same step they "
             f"leave {errors}, at most {number(apart, 2)} standard deviations of chance apart (from "
             f"{CRITERIA.close:g} on they would be told apart). Along this motion they change the "
             f"model's force in the same way: the correlation is {number(likeness, 4)}."
@@ -113,7 +113,7 @@ def _likeness(base: Fit, one: Ranked, other: Ranked) -> float:
     return float(a @ b) / size if size > 0 else float("nan")
 
 
-def _at_bound(diagnosis: Diagnosis) -> list[Finding]:
+def _findings_at_bound(diagnosis: Diagnosis) -> list[Finding]:
     findings = []
     for name in diagnosis.after.at_bound:
         value = diagnosis.model.parameters[name].value
@@ -199,9 +199,9 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
             topic="effects that may be there unseen",
             concern="note",
             sentence=(
-                f"These records do not determine {listed(names, 'or')}: with such an effect added, "
-                "its parameters could take many values, or others of the model would make up for "
-                "it."
+                f"These records do not determine {join_names(names, 'or')}: with such an effect "
+                "added, its parameters could take many values, or others of the model would make "
+                "up for it."
             ),
         )
     ]
@@ -221,7 +221,7 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
             if elsewhere or body.has(name) or (name, place) in fitted:
                 continue
             needs = list(body.lacks(effect))
-            because = f" (needs {listed(needs)} beside it)" if needs else ""
+            because = f" (needs {join_names(needs)} beside it)" if needs else ""
             reasons.append(f"{name} at {place}{because}")
     if not reasons:
         return []
@@ -230,7 +230,7 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
             topic="effects that were not tried",
             concern="note",
             sentence=(
-                f"Not tried on the last step: {listed(reasons)}. An effect is left out where "
+                f"Not tried on the last step: {join_names(reasons)}. An effect is left out where "
                 "another stands in its place, where it needs one that the model lacks, or where "
                 "the motion never comes back to a place and so cannot tell place from time."
             ),
@@ -238,7 +238,7 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
     ]
 
 
-def _left_out(diagnosis: Diagnosis) -> list[Finding]:
+def _findings_on_exclusions(diagnosis: Diagnosis) -> list[Finding]:
     """What the user kept from being searched."""
     if not diagnosis.left_out:
         return []
@@ -246,7 +246,7 @@ def _left_out(diagnosis: Diagnosis) -> list[Finding]:
     return [Finding("left out of the search", "warning", f"{said[0].upper()}{said[1:]}.")]
 
 
-def _unchecked(diagnosis: Diagnosis) -> list[Finding]:
+def _findings_unchecked(diagnosis: Diagnosis) -> list[Finding]:
     if diagnosis.experiment.check_records:
         return []
     return [

@@ -27,7 +27,7 @@ PANEL, WIDE = 3.4, 4.0
 GREY, RULE = "0.55", "#D9D9D9"
 
 
-def diverging() -> Colormap:
+def make_diverging_colormap() -> Colormap:
     """Blue for less force than the model needs, grey for none, orange for more; clear to all eyes.
 
     The middle is grey, not white, so that cells without data stand out on light and dark pages.
@@ -99,7 +99,7 @@ def _map(view: BodyView, step: RungResidual, axes: Axes) -> None:
         origin="lower",
         aspect="auto",
         interpolation="none",
-        cmap=diverging(),
+        cmap=make_diverging_colormap(),
         vmin=-view.limit,
         vmax=view.limit,
         extent=(
@@ -138,7 +138,11 @@ def colour_scale(view: BodyView) -> Markup:
         end = view.force_scale.factor * view.limit
         ramp = np.linspace(-1, 1, 128)[None, :]
         axes.imshow(
-            ramp, aspect="auto", cmap=diverging(), extent=(-end, end, 0, 1), interpolation="none"
+            ramp,
+            aspect="auto",
+            cmap=make_diverging_colormap(),
+            extent=(-end, end, 0, 1),
+            interpolation="none",
         )
         axes.set_yticks([])
         axes.spines[:].set_visible(False)

@@ -12,7 +12,7 @@ from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
 from ..finding import Finding, Graph
 from ..measurement.reading import ReadingStep
-from ..plain_data import plain
+from ..plain_data import make_plain
 from ..plot.graph import thin_series
 from .candidate_table import (
     CandidateRow,
@@ -26,7 +26,7 @@ from .cannot_tell import cannot_tell
 from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
 from .residuals import BodyView, body_views
-from .words import judged_on, sentence_of, verdict
+from .words import describe_judgement, sentence_of, verdict
 
 #: most points of one series of a finding's graph, drawn and in the page's data
 POINTS = 400
@@ -86,7 +86,7 @@ def page_of(
         title=experiment.title,
         folder=experiment.folder.name,
         verdict=verdict(diagnosis),
-        judged_on=judged_on(experiment),
+        judged_on=describe_judgement(experiment),
         shown="check records" if experiment.check_records else "fit records",
         before=diagnosis.before.check_error,
         after=diagnosis.after.check_error,
@@ -102,9 +102,9 @@ def page_of(
         candidate_steps=candidate_steps(diagnosis),
         candidates=candidate_rows(diagnosis),
         cannot_tell=cannot_tell(diagnosis),
-        soundness=bounded(soundness),
-        unexplained=bounded(unexplained),
-        next_steps=bounded(next_steps),
+        soundness=limit_size(soundness),
+        unexplained=limit_size(unexplained),
+        next_steps=limit_size(next_steps),
         records=record_rows(experiment),
         reading=experiment.reading,
         channels=channel_rows(experiment),
@@ -122,18 +122,18 @@ def version() -> str:
         return "(not installed)"
 
 
-def bounded(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+def limit_size(findings: Sequence[Finding]) -> tuple[Finding, ...]:
     """The findings with graphs of so few points that the page stays small."""
     return tuple(
-        f if f.graph is None else dataclasses.replace(f, graph=_thinned(f.graph)) for f in findings
+        f if f.graph is None else dataclasses.replace(f, graph=_thin(f.graph)) for f in findings
     )
 
 
-def _thinned(graph: Graph) -> Graph:
+def _thin(graph: Graph) -> Graph:
     series = tuple(thin_series(s, POINTS) for s in graph.series)
     return dataclasses.replace(graph, series=series)
 
 
 def page_data(page: Page, diagnosis: Diagnosis) -> dict[str, Any]:
     """What is embedded in the page: the answer, and every number that the page shows."""
-    return {"answer": plain(answer(diagnosis)), "report": plain(page, digits=DIGITS)}
+    return {"answer": make_plain(answer(diagnosis)), "report": make_plain(page, digits=DIGITS)}

@@ -11,7 +11,7 @@ from ..diagnose import Diagnosis
 from ..effects import EFFECTS
 from ..errors import ExperimentError
 from ..model import Model
-from ..plain_data import plain
+from ..plain_data import make_plain
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class AddedEffect:
 
 def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
     """Every parameter of the user's model and of the one that the diagnosis ends with."""
-    stated, before = _stated(diagnosis), diagnosis.before.model.parameters
+    stated, before = _stated_values(diagnosis), diagnosis.before.model.parameters
     added = {r.added.key for r in diagnosis.rungs if r.added is not None}
     rows = []
     for name, value in diagnosis.model.parameters.items():
@@ -75,9 +75,9 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
                 unit=diagnosis.model.unit(name),
                 stated=stated.get(name),
                 before=None if first is None else first.value,
-                before_stderr=None if first is None else plain(first.stderr),
+                before_stderr=None if first is None else make_plain(first.stderr),
                 after=value.value,
-                stderr=None if value.fixed else plain(value.stderr),
+                stderr=None if value.fixed else make_plain(value.stderr),
                 low=low,
                 high=high,
                 fixed=value.fixed,
@@ -108,7 +108,7 @@ def _rows_removed(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[Par
                 unit=model.unit(name),
                 stated=stated.get(name),
                 before=value.value,
-                before_stderr=plain(value.stderr),
+                before_stderr=make_plain(value.stderr),
                 after=None,
                 stderr=None,
                 low=None,
@@ -146,7 +146,7 @@ def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple
     )
 
 
-def _stated(diagnosis: Diagnosis) -> dict[str, float]:
+def _stated_values(diagnosis: Diagnosis) -> dict[str, float]:
     """Values of the experiment's file, by full name (SI)."""
     experiment = diagnosis.experiment
     try:

@@ -18,8 +18,8 @@ from ..diagnose.comparison import residual_data
 from ..diagnose.evidence import SAME
 from ..finding import Array, Graph
 from ..quantity import unit_of
-from .before_and_after import BodySamples, excerpt, over_velocity
-from .scaled import Scaled, scaled, size_of
+from .before_and_after import BodySamples, excerpt, plot_over_velocity
+from .scaled import Scaled, choose_prefix, size_of
 
 #: cells of a map along the travel and along velocity, and samples from which a cell shows a mean
 CELLS, FEWEST = (40, 25), 3
@@ -80,14 +80,14 @@ def body_views(diagnosis: Diagnosis, names: tuple[str, ...]) -> tuple[BodyView, 
     views = []
     for body in diagnosis.experiment.bodies:
         rows = _rows(data, body)
-        rungs = _changed(rows.residual)
+        rungs = _list_changed_rungs(rows.residual)
         errors = [diagnosis.rungs[i].fit.check_error for i in rungs]
         steps = [(names[i], error) for i, error in zip(rungs, errors, strict=True)]
         views.append(_view(body, diagnosis, steps, rows.only(rungs)))
     return tuple(views)
 
 
-def _changed(residual: tuple[Array, ...]) -> list[int]:
+def _list_changed_rungs(residual: tuple[Array, ...]) -> list[int]:
     """The first rung, and those that changed the residual of this body by more than rounding."""
     scale = float(np.sqrt(np.mean(residual[0] ** 2)))
     moved = [float(np.sqrt(np.mean((b - a) ** 2))) for a, b in pairwise(residual)]
@@ -120,9 +120,9 @@ def _view(
     means = [_mean(rows, r, position, velocity) for r in rows.residual]
     largest = [float(np.quantile(np.abs(m[np.isfinite(m)]), 0.98)) for m in means if m.size]
     noise = _noise(diagnosis)
-    limit = _rounded_up(max(*largest, OUTSIDE * noise))
+    limit = _round_up(max(*largest, OUTSIDE * noise))
     buckets = np.array_split(np.arange(len(rows.time)), min(BUCKETS, len(rows.time)))
-    force = scaled(unit_of("force", axis), size_of(rows.residual[0]))
+    force = choose_prefix(unit_of("force", axis), size_of(rows.residual[0]))
     steps = tuple(
         RungResidual(
             name=name,
@@ -137,8 +137,8 @@ def _view(
     joints = np.flatnonzero(np.diff(rows.stretch)) + 1
     return BodyView(
         body=body,
-        position_scale=scaled(unit_of("position", axis), size_of(rows.position)),
-        velocity_scale=scaled(unit_of("velocity", axis), size_of(rows.velocity)),
+        position_scale=choose_prefix(unit_of("position", axis), size_of(rows.position)),
+        velocity_scale=choose_prefix(unit_of("velocity", axis), size_of(rows.velocity)),
         force_scale=force,
         position=position,
         velocity=velocity,
@@ -148,7 +148,7 @@ def _view(
         limit=limit,
         steps=steps,
         excerpt=excerpt(rows, axis, diagnosis.prepared.bandwidth),
-        over_velocity=over_velocity(rows, axis, force),
+        over_velocity=plot_over_velocity(rows, axis, force),
     )
 
 
@@ -159,7 +159,7 @@ def _noise(diagnosis: Diagnosis) -> float:
     return diagnosis.floor.value * float(np.sqrt(sum(s.measured for s in shown) / rows))
 
 
-def _rounded_up(value: float) -> float:
+def _round_up(value: float) -> float:
     """The next value of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten: the end of a scale."""
     if value <= 0:
         return 1.0

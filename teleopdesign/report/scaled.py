@@ -28,7 +28,7 @@ class Scaled:
     factor: float
 
 
-def scaled(unit: str, size: float) -> Scaled:
+def choose_prefix(unit: str, size: float) -> Scaled:
     """The prefix in which values up to `size` (SI) are at least 0.5, or the smallest there is."""
     choices = _SHOWN.get(unit, ((unit_text(unit), 1.0),))
     for shown, factor in reversed(choices):

@@ -81,7 +81,7 @@ def typeset(sentence: str) -> str:
     return _POWER.sub(lambda power: "²" if power[1] == "2" else "³", sentence)
 
 
-def listed(names: list[str], last: str = "and") -> str:
+def join_names(names: list[str], last: str = "and") -> str:
     """Names as a person lists them: a, b and c."""
     if len(names) < 2:
         return "".join(names)
@@ -95,7 +95,7 @@ def step_name(rung: Rung) -> str:
     return " or ".join((rung.said, *map(str, rung.alternatives)))
 
 
-def judged_on(experiment: Experiment) -> str:
+def describe_judgement(experiment: Experiment) -> str:
     """What the errors are reported on."""
     if experiment.check_records:
         return "records that were not fitted"
@@ -106,8 +106,8 @@ def verdict(diagnosis: Diagnosis) -> str:
     """The verdict in a sentence or two."""
     before, after = diagnosis.before.check_error, diagnosis.after.check_error
     floor, left = percent(diagnosis.floor.value), number(diagnosis.left, 2)
-    fell = f"the force error on {judged_on(diagnosis.experiment)} falls from {percent(before)}"
-    fell += f" to {percent(after)}"
+    fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "
+    fell += f"{percent(before)} to {percent(after)}"
     added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
     more = diagnosis.more_is_missing
     rest = (
@@ -129,9 +129,11 @@ def verdict(diagnosis: Diagnosis) -> str:
         named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
         less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
         others = (
-            f" {listed(less)} helps, but is less likely than not what is missing." if less else ""
+            f" {join_names(less)} helps, but is less likely than not what is missing."
+            if less
+            else ""
         )
-        return f"Your model lacks {listed(named)}. With {_it(added)}, {fell}.{others} {rest}"
+        return f"Your model lacks {join_names(named)}. With {_it(added)}, {fell}.{others} {rest}"
     if not added:
         return (
             f"Undecided: something is missing, but no effect that was tried explains it. The force "
@@ -140,14 +142,16 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.unlikely:
         each = "it is" if len(added) == 1 else "each is"
         return (
-            f"Undecided: with {listed(added)} {fell}, but {each} less likely than not what is "
+            f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not what is "
             f"missing. {rest}"
         )
     if all(r.alternatives for r in diagnosis.rungs[1:]):
-        names = listed(added)
+        names = join_names(added)
         return f"Undecided between {names}: these records cannot tell. Either way {fell}. {rest}"
     helps = "helps, but explains" if len(added) == 1 else "help, but explain"
-    return f"Undecided: {listed(added)} {helps} less than half of what is missing: {fell}. {rest}"
+    return (
+        f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"
+    )
 
 
 def _it(added: list[str]) -> str:

@@ -58,10 +58,10 @@ def write_report(
 
 def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
     """The page as HTML; every text of it is escaped."""
-    return rendered("report.html.jinja", page, figures, data)
+    return render_page("report.html.jinja", page, figures, data)
 
 
-def rendered(name: str, page: object, figures: object, data: dict[str, Any]) -> str:
+def render_page(name: str, page: object, figures: object, data: dict[str, Any]) -> str:
     """A page by the template of that name, with what is embedded in it; its texts are escaped."""
     template = _environment().get_template(name)
     script = figure_script()
@@ -152,7 +152,7 @@ def _environment() -> Environment:
         "unit": unit_text,
         "finite": math.isfinite,
         "share": _share,
-        "named": _named,
+        "named": _emphasise_names,
         "soft": _soft,
         "typeset": typeset,
     }
@@ -165,7 +165,7 @@ def _soft(text: str) -> Markup:
     return Markup("<wbr>").join(parts)
 
 
-def _named(text: str, names: Iterable[str]) -> Markup:
+def _emphasise_names(text: str, names: Iterable[str]) -> Markup:
     """A sentence, escaped, in which whole words that are these names stand out."""
     known = set(names)
     parts = re.split(r"(\w+)", text)

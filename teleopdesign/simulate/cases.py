@@ -68,7 +68,7 @@ def columns_of(diagram: Diagram, values: Mapping[str, ArrayLike]) -> dict[str, n
     return {name: np.array(np.broadcast_to(a, (cases,))) for name, a in arrays.items()}
 
 
-def refused(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, str]:
+def list_refusals(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, str]:
     """Case -> why the diagram does not take its values."""
     suspect = np.zeros(_cases(columns), dtype=bool)
     for name, column in columns.items():
@@ -78,7 +78,7 @@ def refused(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, st
     reasons = {}
     for case in np.flatnonzero(suspect):
         try:
-            for part in at_case(diagram, columns, int(case)).bodies:
+            for part in set_case(diagram, columns, int(case)).bodies:
                 if isinstance(part.body, Body):
                     check_levels(part.body, f"{diagram.name}: {part.name}")
         except ModelError as error:
@@ -103,7 +103,7 @@ def _slides_by_itself(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> np
     return below
 
 
-def at_case(diagram: Diagram, columns: Mapping[str, np.ndarray], case: int) -> Diagram:
+def set_case(diagram: Diagram, columns: Mapping[str, np.ndarray], case: int) -> Diagram:
     """The diagram with the values of one case."""
     return diagram.with_values({name: float(column[case]) for name, column in columns.items()})
 
@@ -113,14 +113,16 @@ def groups(
 ) -> Iterator[Group]:
     """The cases by structure: by which values leave an effect or an optional parameter out."""
     flags = [
-        column[cases] == off for name, column in columns.items() for off in _off(diagram, name)
+        column[cases] == off
+        for name, column in columns.items()
+        for off in _absent_values(diagram, name)
     ]
     table = np.array(flags, dtype=bool).reshape(len(flags), len(cases))
     _, which = np.unique(table, axis=1, return_inverse=True)
     which = np.broadcast_to(which.reshape(-1), (len(cases),))
     for group in np.unique(which):
         members = cases[which == group]
-        yield Group(members, at_case(diagram, columns, int(members[0])))
+        yield Group(members, set_case(diagram, columns, int(members[0])))
 
 
 def simulated_values(
@@ -142,7 +144,7 @@ def simulated_values(
     for name, column in columns.items():
         if np.ptp(column[group.cases]) == 0.0:
             continue
-        changed = _changed(group.diagram, name)
+        changed = _change_value(group.diagram, name)
         other = form(changed).values
         moved = [n for n in names if other.get(n, base[n]) != base[n]]
         for n in moved:
@@ -174,7 +176,7 @@ def _cases(columns: Mapping[str, np.ndarray]) -> int:
     return len(next(iter(columns.values()))) if columns else 1
 
 
-def _changed(diagram: Diagram, name: str) -> Diagram:
+def _change_value(diagram: Diagram, name: str) -> Diagram:
     """The diagram with one value a little off, within its bounds."""
     value, (lower, upper) = diagram.values[name], bounds_of_value(diagram, name)
     more = value + _CHANGE * (abs(value) or 1.0)
@@ -199,7 +201,7 @@ def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
     return -np.inf, np.inf
 
 
-def _off(diagram: Diagram, name: str) -> list[float]:
+def _absent_values(diagram: Diagram, name: str) -> list[float]:
     """Values of a parameter at which something is left out of the equations."""
     block_name, _, within = name.partition(".")
     block = diagram.block(block_name)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from .case_results import REDUCTIONS, CaseResults
-from .cases import Group, columns_of, groups, refused, simulated_values
+from .cases import Group, columns_of, groups, list_refusals, simulated_values
 from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare, simulated_form
@@ -67,7 +67,7 @@ def simulate_many(
     period = (SAMPLED if isinstance(computer, str) else computer).period
     result = CaseResults(cases)
     result.open_rows(samples_of(duration, period), period, study.keep)
-    result.refuse(refused(diagram, columns))
+    result.refuse(list_refusals(diagram, columns))
     study.run_all(result)
     return result.labelled(diagram, columns, study.wanted_of(result.numbers), duration)
 

@@ -17,7 +17,7 @@ def samples_of(duration: float, period: float) -> int:
     return max(round(duration / period), 1) if 0 < duration < float("inf") else 1
 
 
-def late_steps(delay: float, step: float, *, can_be_between: bool) -> float:
+def delay_in_steps(delay: float, step: float, *, can_be_between: bool) -> float:
     """The delay of an analog signal in steps; between two where the signal changes within them."""
     count = delay / step
     if not can_be_between or is_whole(count):

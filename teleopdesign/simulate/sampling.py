@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..errors import ModelError, did_you_mean
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Sampling:
     """How a computer samples positions and when its commands act.

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..diagrams import Diagram, with_shared_states
 from ..errors import GrowsWithoutBound, ModelError, did_you_mean
-from ..realise.delays import is_whole, late_samples
-from ..realise.simulated import in_computer, simulated
-from .on_grid import Input, input_table, late_steps, samples_of, whole_steps
+from ..realise.delays import delay_in_samples, is_whole
+from ..realise.simulated import prepare_for_simulation, realise_in_computer
+from .on_grid import Input, delay_in_steps, input_table, samples_of, whole_steps
 from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
 
@@ -105,10 +105,10 @@ def simulated_form(
     give: float,
 ) -> Diagram:
     """The diagram as it is simulated; arguments as in `simulate`."""
-    body = simulated(diagram, give, motion)
+    body = prepare_for_simulation(diagram, give, motion)
     if isinstance(computer, str):
         return with_shared_states(body)
-    return in_computer(body, computer.period)
+    return realise_in_computer(body, computer.period)
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,7 @@ class Setup:
         of_blocks, smooth = self._of_blocks, self.program.functions["SMOOTH"]
         analog = len(of_blocks)
         late = [
-            late_steps(d, step, can_be_between=of_block and is_smooth)
+            delay_in_steps(d, step, can_be_between=of_block and is_smooth)
             for d, of_block, is_smooth in zip(delays, of_blocks, smooth, strict=False)
         ]
         return Timing(
@@ -185,7 +185,7 @@ class Setup:
             tuple(late),
             s.encoder_step,
             velocity_smoothing(s.velocity_bandwidth, s.period),
-            tuple(late_samples(d, s.period, what="simulate") for d in delays[analog:]),
+            tuple(delay_in_samples(d, s.period, what="simulate") for d in delays[analog:]),
         )
 
     def arguments(self, timing: Timing) -> dict[str, Any]:
@@ -254,7 +254,7 @@ class Setup:
         delays: default `delays`, s
         raises ModelError: the step is refused, or none would do
         """
-        from ..realise.kernel import FASTEST, JUMP, refine_factor, too_long
+        from ..realise.kernel import FASTEST, JUMP, long_step_error, refine_factor
 
         if rate > JUMP:
             raise ModelError(
@@ -266,7 +266,7 @@ class Setup:
         if rate * step > FASTEST:
             if long_step == "refuse":
                 why = f"is {2 * np.pi / (rate * step):.2g} steps per period of {state}"
-                raise too_long(step, FASTEST / rate, why)
+                raise long_step_error(step, FASTEST / rate, why)
             inner *= refine_factor(rate * step, FASTEST, 1)
         self._check_refined(inner)
         return inner
@@ -283,7 +283,7 @@ class Setup:
         worst: measure of their reload, see `realise.kernel`
         raises ModelError: signals are not finite, the step is refused, or none would do
         """
-        from ..realise.kernel import RELOAD, refine_factor, too_long
+        from ..realise.kernel import RELOAD, long_step_error, refine_factor
 
         if not is_finite:
             raise GrowsWithoutBound(
@@ -295,12 +295,12 @@ class Setup:
         factor = refine_factor(worst, RELOAD, 2)
         if long_step == "refuse":
             why = f"is {np.sqrt(2 / worst):.2g} steps for the bristle's reload after a reversal"
-            raise too_long(timing.step, timing.step / factor, why)
+            raise long_step_error(timing.step, timing.step / factor, why)
         self._check_refined(timing.inner * factor)
         return timing.inner * factor
 
     def _check_refined(self, inner: int) -> None:
-        from ..realise.kernel import too_long
+        from ..realise.kernel import long_step_error
 
         if inner > self.inner() * _MOST_REFINED:
-            raise too_long(self.step, self.sampling.period / inner, "is far too long")
+            raise long_step_error(self.step, self.sampling.period / inner, "is far too long")

@@ -137,7 +137,7 @@ def simulate(
         jit=jit,
     )
     rows, timing = setup.checked(long_step=long_step, every_step=every_step)
-    result = _labelled(setup, rows, timing, every_step)
+    result = _label_rows(setup, rows, timing, every_step)
     if estimate_error:
         columns = setup.program.layout.columns
         errors = _step_errors(setup, rows, timing, every_step)
@@ -162,7 +162,7 @@ def _step_errors(setup: Setup, rows: np.ndarray, timing: Timing, every_step: boo
     return np.asarray(spread.max(axis=0) / size)
 
 
-def _labelled(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
+def _label_rows(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
     """Rows as labelled arrays with units, labelled when they are asked for."""
     result = object.__new__(Simulation)
     make = partial(_dataset, setup, rows, timing, every_step)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..errors import ModelError
 
@@ -18,7 +18,7 @@ _FEWEST = 6  # samples that a quintic spline needs
 TimeFunction = Callable[[np.ndarray], np.ndarray]
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Trajectory:
     """A motion as functions of time (s): position (m or rad) and its two derivatives.

@@ -16,11 +16,11 @@ result.plot.map("force_error")
 from ..arguments import check_arguments
 from .case import SimulatedCase
 from .chosen_measures import Measure, measure
-from .diagnosed import diagnosed
+from .diagnosed import diagnose_recording
 from .from_toml import read_study_file
 from .limits import TuningLimit, limit
 from .measures import MEASURES
-from .onset import growth, least_that_grows
+from .onset import find_onset, growth
 from .outcomes import PointOutcome
 from .point import Amount, Point
 from .progress import Progress
@@ -49,12 +49,12 @@ __all__ = [
     "Samples",
     "SimulationFit",
     "Study",
-    "diagnosed",
+    "diagnose_recording",
     "fit_simulation",
     "growth",
     "latin_hypercube",
     "limit",
-    "least_that_grows",
+    "find_onset",
     "measure",
     "random_samples",
     "read_study",

@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis, unit_of_value
@@ -32,7 +32,7 @@ _SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
 _OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}
 
 
-@checked
+@check_types
 @dataclass(frozen=True, eq=False)
 class SimulatedCase(ByValue):
     """A diagram and how it is simulated; arguments as of `simulate`.
@@ -83,7 +83,7 @@ class SimulatedCase(ByValue):
             if stem == "computer" and isinstance(self.computer, str):
                 raise ModelError(f'study: "{name}": the computer is "continuous"')
             raise ModelError(
-                f'study: no parameter "{name}", has {_listed(known)}{did_you_mean(name, known)}'
+                f'study: no parameter "{name}", has {_join_names(known)}{did_you_mean(name, known)}'
             )
 
     def with_values(self, values: Mapping[str, Any]) -> SimulatedCase:
@@ -176,6 +176,6 @@ def _sine_with(motion: Trajectory, part: str, value: float) -> Trajectory:
     return sine(**{**_sine_parts(motion), part: value})
 
 
-def _listed(known: tuple[str, ...], most: int = 12) -> str:
+def _join_names(known: tuple[str, ...], most: int = 12) -> str:
     more = f", ... ({len(known)} in all)" if len(known) > most else ""
     return ", ".join(known[:most]) + more

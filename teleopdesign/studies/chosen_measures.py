@@ -19,7 +19,7 @@ import numpy as np
 
 from ..by_value import ByValue
 from ..errors import ModelError, did_you_mean
-from ..expectations import described
+from ..expectations import describe_value
 from .measures import MEASURES
 from .point import Amount, Point, PointFunction
 
@@ -98,7 +98,7 @@ def _measure_of(content: Any, name: str = "") -> Measure:
         return replace(content, name=name) if name else content
     if not callable(content):
         raise ModelError(
-            f"study: measures: found {described(content)}, expected a function or a name of "
+            f"study: measures: found {describe_value(content)}, expected a function or a name of "
             f"{', '.join(MEASURES)}"
         )
     label = getattr(content, "__name__", type(content).__name__)
@@ -137,6 +137,7 @@ def _amount(value: Any, where: str) -> Amount:
     if value is None:
         return Amount(float("nan"), "")
     raise ModelError(
-        f"measure {where}: found {described(value)}, expected a number, a text, a mapping of names "
+        f"measure {where}: found {describe_value(value)}, "
+        "expected a number, a text, a mapping of names "
         "to such, or a labelled array"
     )

@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import ExperimentError, ModelError
 from .evaluate import StudyTask
 from .outcomes import PointOutcome
-from .processes import Sink, one_thread, packed
+from .processes import Sink, one_thread, pack_task
 from .side_by_side import Unit, evaluate_unit
 from .versions import versions
 
@@ -42,7 +42,7 @@ def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str)
         raise ExperimentError(f"study: no scheduler answers at {address}: {reason}") from None
     try:
         _check_versions(client, address)
-        payload = packed(task)
+        payload = pack_task(task)
         waiting, seconds_each = deque(units), 0.0
         deaths: dict[Unit, int] = {}
         known: dict[Any, list[Unit]] = {}
@@ -51,8 +51,8 @@ def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str)
         def fill() -> None:
             threads = max(sum(client.nthreads().values()), 1)
             while waiting and len(known) < _AHEAD * threads:
-                batch = _next_batch(waiting, deaths, seconds_each, threads)
-                future = client.submit(_evaluated, payload, batch, pure=False)
+                batch = _take_batch(waiting, deaths, seconds_each, threads)
+                future = client.submit(_evaluate_units, payload, batch, pure=False)
                 known[future.key] = batch
                 every.add(future)
 
@@ -81,7 +81,7 @@ def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str)
         client.close(timeout=5)
 
 
-def _next_batch(
+def _take_batch(
     waiting: deque[Unit], deaths: dict[Unit, int], seconds_each: float, threads: int
 ) -> list[Unit]:
     """Units for one task, taken off those that wait; one that may end a worker goes alone."""
@@ -109,7 +109,7 @@ def _check_versions(client: Any, address: str) -> None:
                 )
 
 
-def _evaluated(payload: bytes, batch: Sequence[Unit]) -> tuple[list[PointOutcome], float]:
+def _evaluate_units(payload: bytes, batch: Sequence[Unit]) -> tuple[list[PointOutcome], float]:
     """In a worker: the outcomes, and the time that they took, s."""
     task, start = _task(payload), time.monotonic()
     with one_thread():

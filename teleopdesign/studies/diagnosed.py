@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from ..diagnose import Diagnosis
 
 
-def diagnosed(experiment: str) -> Diagnosis:
+def diagnose_recording(experiment: str) -> Diagnosis:
     """The diagnosis of the recording in that folder; see `find_missing`.
 
     experiment: path of a folder with experiment.toml;  a model function for `study`

@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import ModelError, TeleopDesignError, did_you_mean
 from ..simulate.cases import bounds_of_value
 from .case import SimulatedCase
-from .side_by_side import alike, simulate_rows
+from .side_by_side import group_alike, simulate_rows
 
 #: differences over the parameter's scale. From 10 %, which looks across the jumps of an encoder,
 #: down to 2e-5, where smooth signals bend by 1e-9 of their slope and rounding (1e-13) is 1e-8 of it
@@ -91,7 +91,7 @@ def _simulate(
     reasons, steps = [""] * many, np.full(many, np.nan)
     time: np.ndarray = np.zeros(0)
     parts: list[tuple[list[int], np.ndarray]] = []
-    for rows, columns, others in alike(case, table):
+    for rows, columns, others in group_alike(case, table):
         try:
             data = simulate_rows(case.with_values(others), columns, signals)
         except TeleopDesignError as error:

@@ -57,14 +57,14 @@ def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointO
                     raise ModelError(f'study: two measures give "{name}"')
                 amounts[name] = amount
     except TeleopDesignError as error:
-        return PointOutcome(index, reason=_shortened(str(error)))
+        return PointOutcome(index, reason=_shorten(str(error)))
     except Exception as error:
-        return PointOutcome(index, reason=_shortened(f"{type(error).__name__}: {error}"))
+        return PointOutcome(index, reason=_shorten(f"{type(error).__name__}: {error}"))
     form = tuple(
         (name, "text" if isinstance(a.value, str) else "number", a.unit, a.text, *(a.over or ()))
         for name, a in amounts.items()
     )
-    return PointOutcome(index, form, tuple(_whole(a.value) for a in amounts.values()))
+    return PointOutcome(index, form, tuple(_list_as_tuple(a.value) for a in amounts.values()))
 
 
 def _content(task: StudyTask, values: Mapping[str, Any]) -> Any:
@@ -98,10 +98,10 @@ def check_parameters(model: Callable[..., Any], points: Points) -> None:
             raise ModelError(f'study: {name}: parameter "{parameter}" has no axis and no value')
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST_REASON else line[: _LONGEST_REASON - 3] + "..."
 
 
-def _whole(value: Any) -> Any:
+def _list_as_tuple(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value

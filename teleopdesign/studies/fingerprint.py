@@ -47,10 +47,10 @@ def _parts(thing: Any, above: set[int]) -> Iterator[str]:
         yield "as before"
     else:
         # what is being described is kept alive by the caller: its id stays unique
-        yield from _of_object(thing, above | {id(thing)})
+        yield from _parts_of_object(thing, above | {id(thing)})
 
 
-def _of_object(thing: Any, above: set[int]) -> Iterator[str]:
+def _parts_of_object(thing: Any, above: set[int]) -> Iterator[str]:
     if isinstance(thing, Mapping):
         yield f"mapping {len(thing)}"
         for key, value in thing.items():
@@ -63,7 +63,7 @@ def _of_object(thing: Any, above: set[int]) -> Iterator[str]:
     elif isinstance(thing, Set):
         yield from sorted(" ".join(_parts(v, above)) for v in thing)
     elif isinstance(thing, types.FunctionType):
-        yield from _of_function(thing, above)
+        yield from _parts_of_function(thing, above)
     elif isinstance(thing, types.MethodType):
         yield from _parts((thing.__func__, thing.__self__), above)
     elif isinstance(thing, type | types.BuiltinFunctionType | types.ModuleType):
@@ -88,7 +88,7 @@ def _of_object(thing: Any, above: set[int]) -> Iterator[str]:
             yield text
 
 
-def _of_function(function: types.FunctionType, above: set[int]) -> Iterator[str]:
+def _parts_of_function(function: types.FunctionType, above: set[int]) -> Iterator[str]:
     name = f"function {function.__qualname__}"
     yield name
     if _is_installed(function.__module__):

@@ -105,7 +105,9 @@ def diagnose_folders(
             clock.count(outcome)
 
         task = StudyTask(
-            model=partial(_answered, files={str(f): a for f, a in answers.items()}, search=chosen),
+            model=partial(
+                _write_answer, files={str(f): a for f, a in answers.items()}, search=chosen
+            ),
             case={},
             points=points_of({"experiment": [str(f) for f in folders]}),
             measures=measures_of("verdict"),
@@ -144,7 +146,7 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
     return names
 
 
-def _answered(
+def _write_answer(
     experiment: str, files: Mapping[str, Path], search: FolderSearch
 ) -> Diagnosis | ArmDiagnosis:
     """The diagnosis of a folder, whose answer is written."""

@@ -178,10 +178,10 @@ def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed
         left = np.maximum(left, _EXACTLY * target.size)
         search = replace(search, weights=1 / _noise(target, left))
         _, best = search.minimise(best)
-    return _judged(search, best, signals[0], (len(ends), agreeing))
+    return _judge(search, best, signals[0], (len(ends), agreeing))
 
 
-def _judged(
+def _judge(
     search: _Search, shares: np.ndarray, at_start: np.ndarray, searches: tuple[int, int]
 ) -> Followed:
     """The values with what is known of them."""

@@ -24,11 +24,11 @@ import numpy as np
 
 from ..diagrams import Diagram, read_diagram
 from ..effects import EFFECTS, Effect
-from ..errors import ExperimentError, ModelError, did_you_mean, quoted
-from ..measurement.toml_table import Table, described, read_toml
+from ..errors import ExperimentError, ModelError, did_you_mean, quote
+from ..measurement.toml_table import Table, describe_toml_value, read_toml
 from ..simulate import Sampling, sine
 from .chosen_measures import Measure, measure
-from .diagnosed import diagnosed
+from .diagnosed import diagnose_recording
 from .measures import MEASURES
 from .samples import (
     Samples,
@@ -82,7 +82,7 @@ def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
     except ModelError as error:
         raise ExperimentError(f"{path.name}: {error}") from error
     if "seed" in head.content:
-        arguments["seed"] = _whole(head, "seed")
+        arguments["seed"] = _read_whole(head, "seed")
     if not arguments["measures"]:
         raise ExperimentError(
             f"{path.name}: measures: found none, expected one of {', '.join(MEASURES)}"
@@ -100,11 +100,12 @@ def _model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str
     content = head.content["experiments"]
     if not isinstance(content, list) or not all(isinstance(g, str) for g in content):
         raise ExperimentError(
-            f"{head.where('experiments')}: found {described(content)}, expected a list of folders, "
+            f"{head.where('experiments')}: found {describe_toml_value(content)}, "
+            "expected a list of folders, "
             'such as ["rod", "runs/*"]'
         )
     folders = _folders(content, folder, head.where("experiments"))
-    return {"model": diagnosed, "axes": [{"experiment": folders}], "measures": ["verdict"]}
+    return {"model": diagnose_recording, "axes": [{"experiment": folders}], "measures": ["verdict"]}
 
 
 def _folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
@@ -114,20 +115,20 @@ def _folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
         matches = sorted(home.glob(text)) if "*" in text and text[0] != "/" else [home / text]
         chosen = [m for m in matches if (m / "experiment.toml").is_file()]
         if not chosen:
-            raise ExperimentError(f"{where}: {quoted(text)}: no folder with an experiment.toml")
+            raise ExperimentError(f"{where}: {quote(text)}: no folder with an experiment.toml")
         folders += [str(m) for m in chosen]
     return list(dict.fromkeys(folders))
 
 
 def _diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagram:
-    from ..diagrams import SHIPPED, shipped
+    from ..diagrams import SHIPPED, load_shipped
 
     name = head.text("model")
     if name in SHIPPED:
-        return shipped(name)
+        return load_shipped(name)
     if not name.endswith(".toml"):
         raise ExperimentError(
-            f"{head.where('model')}: found {quoted(name)}, expected a file NAME.toml or one of "
+            f"{head.where('model')}: found {quote(name)}, expected a file NAME.toml or one of "
             f"{', '.join(SHIPPED)}{did_you_mean(name, SHIPPED)}"
         )
     return read_diagram(folder / name, effects=effects)
@@ -149,7 +150,7 @@ def _axis(table: Table, name: str) -> Any:
     if isinstance(content, dict):
         grid = table.table(name)
         grid.allow(("from", "to", "points", "scale"))
-        low, high, count = grid.number("from"), grid.number("to"), _whole(grid, "points")
+        low, high, count = grid.number("from"), grid.number("to"), _read_whole(grid, "points")
         if not 1 < count <= _MOST_VALUES or low == high:
             raise ExperimentError(
                 f"{grid.where()}: found {count} points from {low:g} to {high:g}, expected at least "
@@ -165,8 +166,8 @@ def _axis(table: Table, name: str) -> Any:
             all(map(_is_number, content)) or all(isinstance(x, str) for x in content)
         ):
             raise ExperimentError(
-                f"{table.where(name)}: found {described(content)}, expected numbers or texts, at "
-                "least one"
+                f"{table.where(name)}: found {describe_toml_value(content)}, "
+                "expected numbers or texts, at least one"
             )
         return content if isinstance(content[0], str) else [float(x) for x in content]
     return content if isinstance(content, str) else table.number(name)
@@ -177,15 +178,15 @@ def _samples(table: Table) -> Samples:
     method = table.text("method")
     if method not in _METHODS:
         raise ExperimentError(
-            f"{table.where('method')}: found {quoted(method)}, expected {', '.join(_METHODS)}"
+            f"{table.where('method')}: found {quote(method)}, expected {', '.join(_METHODS)}"
             f"{did_you_mean(method, _METHODS)}"
         )
     ranges = table.table("ranges")
     if not ranges.content:
         raise ExperimentError(f"{table.where('ranges')}: found none, expected at least one")
-    seed = _whole(table, "seed") if "seed" in table.content else 0
+    seed = _read_whole(table, "seed") if "seed" in table.content else 0
     extents = {name: _range(ranges.table(name)) for name in ranges.content}
-    return _METHODS[method](extents, _whole(table, "points"), seed=seed)
+    return _METHODS[method](extents, _read_whole(table, "points"), seed=seed)
 
 
 def _range(table: Table) -> Any:
@@ -231,7 +232,7 @@ def _computer(table: Table) -> Any:
     if isinstance(content, str):
         if content != "continuous":
             raise ExperimentError(
-                f"{table.where('computer')}: found {quoted(content)}, expected a table or "
+                f"{table.where('computer')}: found {quote(content)}, expected a table or "
                 f'"continuous"{did_you_mean(content, ["continuous"])}'
             )
         return content
@@ -243,7 +244,7 @@ def _computer(table: Table) -> Any:
         if name == "velocity":
             values[name] = computer.text(name)
         elif name == "observer_order":
-            values[name] = _whole(computer, name)
+            values[name] = _read_whole(computer, name)
         else:
             values[name] = computer.number(name)
     return Sampling(**values)
@@ -272,7 +273,7 @@ def _measures(table: Table) -> dict[str, Measure]:
         kind = entry.text("measure", default=name)
         if kind not in MEASURES:
             raise ExperimentError(
-                f"{entry.where()}: no measure {quoted(kind)}, has {', '.join(MEASURES)}"
+                f"{entry.where()}: no measure {quote(kind)}, has {', '.join(MEASURES)}"
                 f"{did_you_mean(kind, MEASURES)}"
             )
         options = {k: v for k, v in entry.content.items() if k != "measure"}
@@ -282,13 +283,13 @@ def _measures(table: Table) -> dict[str, Measure]:
             if isinstance(default, float | int):
                 options[option] = entry.number(option)
                 if isinstance(default, int):
-                    options[option] = _whole(entry, option)
+                    options[option] = _read_whole(entry, option)
             elif isinstance(default, str):
                 options[option] = entry.text(option)
             elif not isinstance(content, str | int | float | list) or isinstance(content, bool):
                 raise ExperimentError(
-                    f"{entry.where(option)}: found {described(content)}, expected a number or a "
-                    "text"
+                    f"{entry.where(option)}: found {describe_toml_value(content)}, "
+                    "expected a number or a text"
                 )
         try:
             measures[name] = measure(kind, **options)
@@ -301,13 +302,13 @@ def _scale(table: Table) -> str:
     scale = table.text("scale", default="linear")
     if scale not in _SCALES:
         raise ExperimentError(
-            f"{table.where('scale')}: found {quoted(scale)}, expected {' or '.join(_SCALES)}"
+            f"{table.where('scale')}: found {quote(scale)}, expected {' or '.join(_SCALES)}"
             f"{did_you_mean(scale, _SCALES)}"
         )
     return scale
 
 
-def _whole(table: Table, key: str) -> int:
+def _read_whole(table: Table, key: str) -> int:
     number = table.number(key)
     if number != int(number) or number < 0:
         raise ExperimentError(f"{table.where(key)}: found {number:g}, expected a whole number")

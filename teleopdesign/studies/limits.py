@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, UnstableLoop
@@ -23,8 +23,8 @@ from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.family import family_of
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
-from ..passivity.ports import judged, nonlinear_parts, without_holding
-from ..quantity import after_number
+from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holding
+from ..quantity import unit_after_number
 from .chosen_measures import Measure, measures_of
 
 #: margins of the loop of a controller, and their units
@@ -59,13 +59,13 @@ class TuningLimit(ByValue):
         return float(excess) if not np.isnan(excess) else -np.inf
 
     def __repr__(self) -> str:
-        unit = after_number(self.unit)
+        unit = unit_after_number(self.unit)
         within = ", ".join(f"{n} {a:g} to {b:g}" for n, (a, b) in self.over.items())
         side = "<=" if self.from_above else ">="
         return f"{self.name} {side} {self.bound:g}{unit}{f', for all {within}' if within else ''}"
 
 
-@checked
+@check_types
 def limit(
     what: Any,
     *,
@@ -132,7 +132,7 @@ def margin_function(
         return lambda v: loop_margin(diagram.with_values(v), limited.name, limited.controller)
     whole = diagram if limited.name == "stable" else without_holding(diagram)
     kept = tuple(n for n in box.names if n in whole.values)
-    if not nonlinear_parts(judged(whole)):
+    if not nonlinear_parts(drop_absent_effects(whole)):
         within = box.only(kept)
         middle = whole.with_values(within.named(within.centre))
         family = family_of(middle, within)

@@ -83,10 +83,10 @@ def measured_signals(data: Any) -> MeasuredSignals:
             'fit_simulation: data: expected a mapping with "time" (s), a Dataset over `time`, or '
             f"a Record, found {type(data).__name__}"
         )
-    return _in_order(time, columns)
+    return _check_signals(time, columns)
 
 
-def _in_order(time: Any, columns: Mapping[str, Any]) -> MeasuredSignals:
+def _check_signals(time: Any, columns: Mapping[str, Any]) -> MeasuredSignals:
     try:
         t = np.asarray(time, dtype=float)
         arrays = {n: np.asarray(x, dtype=float) for n, x in columns.items()}

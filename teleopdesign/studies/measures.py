@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelError
-from ..expectations import described
+from ..expectations import describe_value
 from ..frozen import Catalogue
 from .point import Amount, Kind, Point
 
@@ -114,7 +114,7 @@ def _onset(
 
     by bisection of the logarithm; NaN where the swing grows at low already, or not at high
     """
-    from .onset import growth, least_that_grows
+    from .onset import find_onset, growth
 
     case = point.case
     case.check_names([parameter])
@@ -124,7 +124,7 @@ def _onset(
     def grows(value: float) -> bool:
         return growth(case.with_values({parameter: value}).simulate, signal) > 0
 
-    least = least_that_grows(grows, within=(low, high), steps=steps)
+    least = find_onset(grows, within=(low, high), steps=steps)
     return Amount(least, case.unit(parameter), f"least {parameter} at which {signal} grows")
 
 
@@ -134,12 +134,13 @@ def _claim(point: Point) -> Any:
 
     if not isinstance(point.content, Claim):
         raise ModelError(
-            f"measure claim: found {described(point.content)}, expected a model that gives a Claim"
+            f"measure claim: found {describe_value(point.content)}, "
+            "expected a model that gives a Claim"
         )
-    return _of_claim(point.content, "claim")
+    return _amounts_of_claim(point.content, "claim")
 
 
-def _of_claim(claim: Any, name: str) -> dict[str, Amount]:
+def _amounts_of_claim(claim: Any, name: str) -> dict[str, Amount]:
     verdict = claim.verdict
     margin, unit = getattr(verdict, "margin", float("nan")), getattr(verdict, "unit", "")
     holds = float("nan") if claim.holds is None else float(claim.holds)
@@ -165,7 +166,7 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
     order = ("refuted", "unknown", "evidence", "proved")
     against = [s.claim for s in claims if s.topic.startswith("search") and s.claim.holds is False]
     chosen = min(against or whole, key=lambda claim: order.index(claim.status))
-    return _of_claim(chosen, "passivity")
+    return _amounts_of_claim(chosen, "passivity")
 
 
 def _verdict(point: Point) -> Any:

@@ -35,9 +35,7 @@ def growth_of(samples: Callable[[], np.ndarray]) -> float:
     return last / middle - 1 if middle > 0 else math.inf
 
 
-def least_that_grows(
-    grows: Callable[[float], bool], *, within: tuple[float, float], steps: int
-) -> float:
+def find_onset(grows: Callable[[float], bool], *, within: tuple[float, float], steps: int) -> float:
     """Least value from which a simulation grows; NaN where no such value lies within the ends.
 
     grows: whether the simulation with a value grows;  within: lowest and highest value, > 0

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..by_value import ByValue
 from ..errors import ModelError
-from ..expectations import described
+from ..expectations import describe_value
 from ..simulate import Simulation
 from .case import SimulatedCase
 
@@ -59,7 +59,7 @@ class Point:
     def case(self) -> SimulatedCase:
         """The case; ModelError where the model gave something else."""
         if not isinstance(self.content, SimulatedCase):
-            raise ModelError(f"study: found {described(self.content)}, expected a diagram")
+            raise ModelError(f"study: found {describe_value(self.content)}, expected a diagram")
         return self.content
 
     @cached_property

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelError
-from ..expectations import described
+from ..expectations import describe_value
 from .samples import Samples, distribution_text
 
 #: dimension of points that were drawn together
@@ -57,7 +57,7 @@ class Points:
     def at(self, index: int) -> dict[str, Any]:
         """Parameter -> value at the point of that number."""
         where = dict(zip(self.sizes, np.unravel_index(index, self.shape), strict=True))
-        varied = {n: _plain(c.values[where[c.dimension]]) for n, c in self.columns.items()}
+        varied = {n: _plain_number(c.values[where[c.dimension]]) for n, c in self.columns.items()}
         return {**varied, **self.fixed}
 
     def table(self, first: int, last: int) -> dict[str, np.ndarray]:
@@ -81,7 +81,7 @@ def points_of(axes: Axes) -> Points:
     for part in parts:
         if not isinstance(part, Mapping | Samples):
             raise ModelError(
-                f"study: axes: found {described(part)}, expected a mapping of parameters to "
+                f"study: axes: found {describe_value(part)}, expected a mapping of parameters to "
                 "values, or samples"
             )
         names = part.names if isinstance(part, Samples) else tuple(part)
@@ -89,7 +89,7 @@ def points_of(axes: Axes) -> Points:
             if name in columns or name in fixed:
                 raise ModelError(f'study: axes: parameter "{name}" is there twice')
             if not isinstance(name, str):
-                raise ModelError(f"study: axes: found {described(name)}, expected a parameter")
+                raise ModelError(f"study: axes: found {describe_value(name)}, expected a parameter")
         if isinstance(part, Samples):
             if samples is not None:
                 raise ModelError("study: axes: points drawn together are there twice")
@@ -100,7 +100,7 @@ def points_of(axes: Axes) -> Points:
         for name, content in part.items():
             values = _values(name, content)
             if values is None:
-                fixed[name] = _plain(content)
+                fixed[name] = _plain_number(content)
             else:
                 sizes[name] = len(values)
                 columns[name] = Column(name, values)
@@ -120,7 +120,7 @@ def _values(name: str, content: Any) -> np.ndarray | None:
     is_one = not hasattr(content, "__len__") or getattr(content, "shape", None) == ()
     if is_one or isinstance(content, str):
         if not isinstance(content, str | bool | int | float | np.number | np.bool_):
-            raise ModelError(f"study: {name}: found {described(content)}, expected values")
+            raise ModelError(f"study: {name}: found {describe_value(content)}, expected values")
         return None
     listed = list(content) if not isinstance(content, np.ndarray) else content
     if len(listed) and all(isinstance(x, str) for x in listed):
@@ -132,7 +132,8 @@ def _values(name: str, content: Any) -> np.ndarray | None:
             values = np.empty((0, 0))
         if values.dtype.kind not in "biuf" or values.ndim != 1:
             raise ModelError(
-                f"study: {name}: found {described(content)}, expected numbers or texts in one row"
+                f"study: {name}: found {describe_value(content)}, "
+                "expected numbers or texts in one row"
             )
         if values.dtype.kind == "f" and not np.isfinite(values).all():
             raise ModelError(f"study: {name}: found values that are not finite")
@@ -143,6 +144,6 @@ def _values(name: str, content: Any) -> np.ndarray | None:
     return values
 
 
-def _plain(value: Any) -> Any:
+def _plain_number(value: Any) -> Any:
     """A number of numpy as one of Python."""
     return value.item() if isinstance(value, np.generic) else value

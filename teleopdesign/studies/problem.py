@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import ModelError
-from ..expectations import described
+from ..expectations import describe_value
 from ..passivity.intervals.box import ValueBox
 from .case import SimulatedCase
 from .chosen_measures import Measure
@@ -187,7 +187,9 @@ class Problem:
         numbers = {}
         for (name, kind, unit, *_), value in zip(outcome.form, outcome.values, strict=True):
             if kind != "number" or isinstance(value, tuple):
-                raise ModelError(f"tune: {name}: found {described(value)}, expected one number")
+                raise ModelError(
+                    f"tune: {name}: found {describe_value(value)}, expected one number"
+                )
             self.units[name] = unit or self.units.get(name, "")
             numbers[name] = float(value)
         self.reason = outcome.reason or self.reason

@@ -60,7 +60,7 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def packed(task: StudyTask) -> bytes:
+def pack_task(task: StudyTask) -> bytes:
     """The task for another process; functions of a script or a notebook go with their code.
 
     raises ModelError: something in it is code that cannot be sent
@@ -130,7 +130,7 @@ def run_here(
 
 def run_in_processes(task: StudyTask, units: list[Unit], sink: Sink, workers: int) -> None:
     """Points in that many processes beside this one."""
-    pool = _Pool(packed(task), units, sink)
+    pool = _Pool(pack_task(task), units, sink)
     try:
         pool.run(workers)
     finally:

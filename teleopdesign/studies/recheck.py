@@ -11,7 +11,7 @@ from ..by_value import ByValue
 from ..passivity.intervals.linear import CLAIMS
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.intervals.worst import search_worst
-from ..quantity import after_number
+from ..quantity import unit_after_number
 from .limits import LOOP_MARGINS, TuningLimit, loop_margin
 from .problem import Problem, TrialPoint, box_over
 
@@ -38,7 +38,7 @@ class CheckedLimit(ByValue):
     active: bool = False
 
     def __repr__(self) -> str:
-        unit = after_number(self.unit)
+        unit = unit_after_number(self.unit)
         state = "active" if self.active else "kept" if self.holds else "missed"
         at = ", ".join(f"{n} = {v:.4g}" for n, v in self.worst.items())
         where = f" at {at}" if at else ""

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..notebook import html_table
-from ..plain_data import replacing
+from ..plain_data import write_beside
 from .hdf5_trial import read_on_trial
 from .outcomes import PointOutcome
 from .points import SAMPLE, Points
@@ -88,7 +88,7 @@ class Study(ByValue):
         raises ExperimentError: it cannot be written, or h5netcdf is not installed
         """
         check_netcdf()
-        with replacing(path) as part:
+        with write_beside(path) as part:
             self.data.to_netcdf(part, engine="h5netcdf")
 
     def _repr_html_(self) -> str:
@@ -118,7 +118,7 @@ class Study(ByValue):
         return "\n".join([*lines, *([f"  {self._failed}"] if self._failed else [])])
 
 
-@checked
+@check_types
 def read_study(path: str | Path) -> Study:
     """Read a study from a file.
 
@@ -176,7 +176,7 @@ def check_netcdf() -> None:
         )
 
 
-def labelled(
+def label_outcomes(
     points: Points,
     outcomes: Mapping[int, PointOutcome],
     *,
@@ -235,7 +235,7 @@ def _form_of(
     for i in range(many):
         outcome = outcomes[i]
         if not outcome.reason and outcome.form not in verdicts:
-            verdicts[outcome.form] = _against(first, outcome.form, units)
+            verdicts[outcome.form] = _explain_misfit(first, outcome.form, units)
         reasons.append(outcome.reason or verdicts[outcome.form])
     form = [
         (name, kind, unit or "1", text, *over)
@@ -244,7 +244,7 @@ def _form_of(
     return form, np.array(reasons, dtype=object)
 
 
-def _against(first: tuple[Any, ...], form: tuple[Any, ...], units: list[str]) -> str:
+def _explain_misfit(first: tuple[Any, ...], form: tuple[Any, ...], units: list[str]) -> str:
     """Why a form does not fit the first, "" where it does; units not known before are noted."""
     if [(f[0], f[1], *f[4:]) for f in form] != [(f[0], f[1], *f[4:]) for f in first]:
         return "the measures give other names or dimensions than at the first point"

@@ -24,7 +24,7 @@ from .outcomes import PointOutcome
 from .points import Points, points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
-from .result import Study, check_netcdf, labelled, read_study
+from .result import Study, check_netcdf, label_outcomes, read_study
 from .side_by_side import units_of
 from .versions import versions
 
@@ -128,7 +128,7 @@ def _with_file(
         check_netcdf()
         part = target.with_name(f"{target.name}.part")
         if target.exists():
-            stored = _stored(target, key)
+            stored = _load_stored(target, key)
             _remove_finished(part, key, len(task.points))
             return stored
         if not target.parent.is_dir():
@@ -137,7 +137,7 @@ def _with_file(
     try:
         run(journal)
         by_axis = _units(task, words.units)
-        result = labelled(task.points, journal.outcomes, units=by_axis, attributes=attributes)
+        result = label_outcomes(task.points, journal.outcomes, units=by_axis, attributes=attributes)
         _write_words(result, words)
         if target is not None:
             result.to_netcdf(target)
@@ -174,7 +174,7 @@ def _run(
         run_on_this_machine(task, units, sink, workers)
 
 
-def _stored(target: Path, key: str) -> Study:
+def _load_stored(target: Path, key: str) -> Study:
     """The study that a file holds already, where it is this one."""
     stored = read_study(target)
     if stored.data.attrs["study"] != key:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..by_value import ByValue
 from ..errors import ModelError
-from ..expectations import described
+from ..expectations import describe_value
 
 Method = Literal["latin_hypercube", "sobol", "random", "sensitivity"]
 #: most points of one sample: 8 bytes each and parameter, 0.8 GB for ten parameters
@@ -54,8 +54,10 @@ def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -
     from scipy.stats import qmc
 
     _check_count("latin_hypercube", samples)
-    unit = qmc.LatinHypercube(len(_of(ranges)), rng=np.random.default_rng(seed)).random(samples)
-    return _placed(ranges, unit, "latin_hypercube", seed)
+    unit = qmc.LatinHypercube(len(_require_ranges(ranges)), rng=np.random.default_rng(seed)).random(
+        samples
+    )
+    return _scale_to_ranges(ranges, unit, "latin_hypercube", seed)
 
 
 def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
@@ -64,7 +66,9 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
     samples: a power of two: with another number the sequence loses its balance
     """
     _check_count("sobol", samples)
-    return _placed(ranges, _sequence("sobol", len(_of(ranges)), samples, seed), "sobol", seed)
+    return _scale_to_ranges(
+        ranges, _sequence("sobol", len(_require_ranges(ranges)), samples, seed), "sobol", seed
+    )
 
 
 def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
@@ -74,8 +78,8 @@ def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) ->
     raises ModelError: no range, a range without width, no whole number of points above 0
     """
     _check_count("random_samples", samples)
-    unit = np.random.default_rng(seed).random((samples, len(_of(ranges))))
-    return _placed(ranges, unit, "random", seed)
+    unit = np.random.default_rng(seed).random((samples, len(_require_ranges(ranges))))
+    return _scale_to_ranges(ranges, unit, "random", seed)
 
 
 def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) -> Samples:
@@ -87,7 +91,7 @@ def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) 
     base: a power of two;  ranges: as in `latin_hypercube`
     """
     _check_count("sensitivity_samples", base)
-    k = len(_of(ranges))
+    k = len(_require_ranges(ranges))
     pairs = _sequence("sensitivity_samples", 2 * k, base, seed)
     first, second = pairs[:, :k], pairs[:, k:]
     rows = np.empty((base, k + 2, k))
@@ -95,7 +99,7 @@ def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) 
     for i in range(k):
         rows[:, i + 1] = first
         rows[:, i + 1, i] = second[:, i]
-    return _placed(ranges, rows.reshape(-1, k), "sensitivity", seed, base)
+    return _scale_to_ranges(ranges, rows.reshape(-1, k), "sensitivity", seed, base)
 
 
 def _sequence(where: str, dimensions: int, samples: int, seed: int) -> np.ndarray:
@@ -110,7 +114,7 @@ def _sequence(where: str, dimensions: int, samples: int, seed: int) -> np.ndarra
     return np.asarray(sequence.random(samples))
 
 
-def _placed(
+def _scale_to_ranges(
     ranges: Mapping[str, Any], unit: np.ndarray, method: Method, seed: int, base: int = 0
 ) -> Samples:
     """Points of the unit cube, brought into the ranges."""
@@ -140,7 +144,7 @@ def distribution_text(extent: Any) -> str:
     return f"{name}({', '.join(parts)})"
 
 
-def _of(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
+def _require_ranges(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
     if not ranges:
         raise ModelError("samples: found no range, expected at least one, by parameter")
     return ranges
@@ -153,7 +157,7 @@ def _ends(name: str, extent: Any) -> tuple[float, float, float]:
         (step,) = more or [0.0]
     except (TypeError, ValueError):
         raise ModelError(
-            f"samples: {name}: found {described(extent)}, expected (low, high), (low, high, "
+            f"samples: {name}: found {describe_value(extent)}, expected (low, high), (low, high, "
             "step) or a distribution of scipy.stats"
         ) from None
     if not (np.isfinite([low, high]).all() and low < high):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..simulate import Sampling, Trajectory
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-@checked
+@check_types
 def sensitivities(
     diagram: Diagram | SimulatedCase,
     parameters: Sequence[str],

@@ -40,7 +40,7 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
         raise ExperimentError(
             "study: Sobol indices need SALib: pip install 'teleopdesign[studies]'"
         ) from None
-    name = measure or _only(study)
+    name = measure or _require_one(study)
     values, attrs = study[name], study.data.attrs
     if attrs.get("sampling") != "sensitivity" or values.dims != (SAMPLE,):
         raise ModelError(
@@ -78,7 +78,7 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
     )
 
 
-def _only(study: Study) -> str:
+def _require_one(study: Study) -> str:
     if len(study.measures) != 1:
         raise ModelError(f"study: which measure? It has {', '.join(study.measures)}")
     return study.measures[0]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..errors import ModelError
-from ..expectations import described
+from ..expectations import describe_value
 from ..passivity.intervals.box import ValueBox
 
 #: intervals whose ends differ by more than this factor are searched in logarithms
@@ -25,7 +25,9 @@ def box_of_parameters(parameters: Mapping[str, tuple[float, float]], caller: str
         raise ModelError(f"{caller}: found no parameter, expected a name with (low, high)")
     for name, ends in parameters.items():
         if len(ends) != 2 or not all(map(np.isfinite, ends)) or not ends[0] < ends[1]:
-            raise ModelError(f"{caller}: {name}: found {described(ends)}, expected (low, high)")
+            raise ModelError(
+                f"{caller}: {name}: found {describe_value(ends)}, expected (low, high)"
+            )
     low, high = (tuple(float(ends[k]) for ends in parameters.values()) for k in (0, 1))
     return ValueBox(tuple(parameters), low, high)
 

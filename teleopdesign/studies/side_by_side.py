@@ -74,7 +74,7 @@ def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
     assert isinstance(task.model, SimulatedCase)
     table = task.points.table(unit[0], unit[-1] + 1)
     outcomes: dict[int, PointOutcome] = {}
-    for rows, columns, others in alike(task.model, table):
+    for rows, columns, others in group_alike(task.model, table):
         try:
             case = task.model.with_values({**task.points.fixed, **others})
             block = _block(simulate_rows(case, columns, signals_of(task)))
@@ -88,7 +88,7 @@ def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
     return [outcomes[index] for index in unit]
 
 
-def alike(
+def group_alike(
     case: SimulatedCase, table: Mapping[str, np.ndarray]
 ) -> Iterator[tuple[list[int], dict[str, np.ndarray], dict[str, Any]]]:
     """Rows of a table that differ in values of the diagram alone, so that lanes may hold them.

@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
 from ..passivity.intervals.box import ValueBox
-from ..quantity import after_number
+from ..quantity import unit_after_number
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
@@ -106,7 +106,7 @@ class SimulationFit(ByValue):
         rows = []
         for name, value in self.values.items():
             unit, error = self.case.unit(name), self.errors[name]
-            rows.append((name, f"{with_standard_error(value, error)}{after_number(unit)}"))
+            rows.append((name, f"{with_standard_error(value, error)}{unit_after_number(unit)}"))
         units = signal_units(self.diagram)
         for name, rms in self.rms.items():
             was = f"{100 * self.before[name]:.3g} -> " if np.isfinite(self.before[name]) else ""
@@ -124,7 +124,7 @@ class SimulationFit(ByValue):
         return html_table(title, ("", ""), self._rows(), note="; ".join(self.remarks))
 
 
-@checked
+@check_types
 def fit_simulation(
     diagram: Diagram | SimulatedCase,
     data: Any,

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
-from ..quantity import after_number
+from ..quantity import unit_after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase, case_of
 from .problem import Problem, TrialPoint
 from .recheck import recheck
-from .tune import Tuned, problem_of, search, tuned_of
+from .tune import Tuned, make_tuned, problem_of, search
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -60,7 +60,7 @@ class ParetoFront(ByValue):
         return plot_pareto(self)
 
     def __repr__(self) -> str:
-        units = [after_number(u) for u in self.units]
+        units = [unit_after_number(u) for u in self.units]
         head = (
             f"The best trade-offs found of {self.number} points (seed {self.seed}), "
             f"{self.names[0]} against {self.names[1]}"
@@ -72,7 +72,7 @@ class ParetoFront(ByValue):
         return "\n".join(lines)
 
 
-@checked
+@check_types
 def trade_off(
     diagram: Diagram | SimulatedCase,
     parameters: Mapping[str, tuple[float, float]],
@@ -131,7 +131,7 @@ def _front(problem: Problem, before: TrialPoint, points: int) -> ParetoFront:
     results = []
     for trial in chosen:
         limits = recheck(problem, trial)
-        results.append(tuned_of(problem, trial, before, limits))
+        results.append(make_tuned(problem, trial, before, limits))
     good = [(t, r) for t, r in zip(chosen, results, strict=True) if r.keeps_limits]
     first, second = (m.name for m in problem.objectives)
     return ParetoFront(

@@ -22,12 +22,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arguments import checked
+from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
-from ..quantity import after_number
+from ..quantity import unit_after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase, case_of
@@ -79,7 +79,7 @@ class Tuned(ByValue):
 
     def __repr__(self) -> str:
         numbers = ", ".join(f"{n} = {v:.5g}" for n, v in self.values.items())
-        unit = after_number(self.unit)
+        unit = unit_after_number(self.unit)
         best = f"The best found of {self.number} points (seed {self.seed})"
         head = (
             best
@@ -99,7 +99,7 @@ class Tuned(ByValue):
         return html_table(f"The best found: {self.name} {self.objective:.5g}", ("", ""), rows)
 
 
-@checked
+@check_types
 def tune(
     diagram: Diagram | SimulatedCase,
     parameters: Mapping[str, tuple[float, float]],
@@ -144,7 +144,7 @@ def tune(
     checked_limits = search_with_rounds(problem, evaluations)
     if not any(np.isfinite(t.objectives).all() for t in problem.trials.values()) and problem.reason:
         raise ModelError(f"tune: no point was measured: {problem.reason}")
-    return tuned_of(problem, problem.best(), start, checked_limits)
+    return make_tuned(problem, problem.best(), start, checked_limits)
 
 
 def problem_of(
@@ -210,7 +210,7 @@ def search(problem: Problem, evaluations: int, *, number: int = 0, most: float =
         lambda u: merit(u.T),
         [(0.0, 1.0)] * size,
         rng=np.random.default_rng(problem.seed),
-        init=_first(problem, population, best),
+        init=_first_generation(problem, population, best),
         maxiter=generations,
         vectorized=True,
         updating="deferred",
@@ -226,7 +226,7 @@ def search(problem: Problem, evaluations: int, *, number: int = 0, most: float =
     )
 
 
-def _first(problem: Problem, population: int, best: TrialPoint | None) -> np.ndarray:
+def _first_generation(problem: Problem, population: int, best: TrialPoint | None) -> np.ndarray:
     """Sobol points of the first generation; the diagram's values and the best so far are in."""
     points = unit_box(problem.parameters.names).inside(population, problem.seed)
     points[0] = shares_of(problem.parameters, problem.start_values())
@@ -254,7 +254,7 @@ class _Scale:
         return value / self.size / (1 + abs(value / self.size))
 
 
-def tuned_of(
+def make_tuned(
     problem: Problem,
     trial: TrialPoint,
     start: TrialPoint,

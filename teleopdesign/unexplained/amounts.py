@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..quantity import after_number, unit_of
+from ..quantity import unit_after_number, unit_of
 
 #: quantities that are said in thousandths of their unit up to 1 of it
 _LENGTHS = ("position", "velocity")
@@ -36,10 +36,10 @@ def number(value: float) -> str:
 def amount(value: float, quantity: str, axis: str) -> str:
     """A value (SI) with its unit."""
     factor, unit = unit_for(quantity, axis, value)
-    return f"{number(factor * value)}{after_number(unit)}"
+    return f"{number(factor * value)}{unit_after_number(unit)}"
 
 
-def between(low: float, high: float, quantity: str, axis: str) -> str:
+def describe_span(low: float, high: float, quantity: str, axis: str) -> str:
     """Two values (SI) with one unit: "4 and 20 mm/s"."""
     factor, unit = unit_for(quantity, axis, max(abs(low), abs(high)))
-    return f"{number(factor * low)} and {number(factor * high)}{after_number(unit)}"
+    return f"{number(factor * low)} and {number(factor * high)}{unit_after_number(unit)}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..plain_data import plain
+from ..plain_data import make_plain
 from ..quantity import unit_of
 from .description import BodyResidual, DescribedDependence
 from .sentences import formula_text
@@ -28,7 +28,7 @@ def as_data(description: ResidualDescription) -> dict[str, Any]:
         ],
         "bodies": [_body(p) for p in description.parts],
     }
-    content: dict[str, Any] = plain(data)
+    content: dict[str, Any] = make_plain(data)
     return content
 
 

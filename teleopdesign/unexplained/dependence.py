@@ -111,7 +111,7 @@ def shape_columns(rows: Rows, shape: Shape, left: Array) -> tuple[Array, Columns
     return knots, Columns(values, SMALLNESS * size * np.eye(values.shape[1]))
 
 
-def held_out(rows: Rows, columns: Columns) -> Array:
+def predict_held_out(rows: Rows, columns: Columns) -> Array:
     """Weighted residual of the checked rows beside what columns learnt elsewhere predict."""
     target = rows.residual * rows.root
     left = np.zeros_like(target)
@@ -128,7 +128,7 @@ def fit_dependence(
     if shape.variable is not None and not shape.is_wave:
         columns = _with_smoothness(rows, beside, columns, roughness(shape, knots))
     together = beside.beside(columns)
-    before, after = held_out(rows, beside), held_out(rows, together)
+    before, after = predict_held_out(rows, beside), predict_held_out(rows, together)
     score = gain_score(before, after, rows.blocks[rows.checked])
     return Dependence(
         shape=shape,

@@ -13,7 +13,7 @@ from ..diagnose.prepare import Prepared
 from ..diagnose.scales import scales
 from ..errors import ModelError
 from ..plain_data import write_text
-from .amounts import between
+from .amounts import describe_span
 from .description import BodyResidual, DescribedDependence
 from .effect_law import law_of_formula, law_of_points
 from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape
@@ -120,7 +120,7 @@ def _known_range(part: BodyResidual, described: DescribedDependence) -> str:
     if variable is None:
         return ""
     name = variable.name.replace("_", " ")
-    ends = between(float(x[0]), float(x[-1]), variable.quantity, part.axis)
+    ends = describe_span(float(x[0]), float(x[-1]), variable.quantity, part.axis)
     return f"Known for {name} between {ends}."
 
 

@@ -149,7 +149,7 @@ def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) 
 
 def _line(knots: Array, values: Array, u: str) -> str:
     """Text of the line through these points, level beyond the outer ones."""
-    kept = _needed(knots, values)
+    kept = _select_points(knots, values)
     x, y = knots[kept], values[kept]
     slopes = np.concatenate([[0.0], np.diff(y) / np.diff(x), [0.0]])
     text = f"{y[0]:.5g}"
@@ -159,7 +159,7 @@ def _line(knots: Array, values: Array, u: str) -> str:
     return text
 
 
-def _needed(knots: Array, values: Array) -> list[int]:
+def _select_points(knots: Array, values: Array) -> list[int]:
     """The points that a line must pass so that it is nowhere off by more than `EXACT`."""
     kept, start = [0], 0
     for end in range(2, len(knots)):

@@ -11,7 +11,7 @@ from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import standard_errors
 from ..measurement.filtering import Array
-from .dependence import Columns, Dependence, held_out
+from .dependence import Columns, Dependence, predict_held_out
 from .library import FormulaTerm, terms_of
 from .rows import Rows, StretchSignals
 from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
@@ -162,7 +162,7 @@ def _checked_formula(
     """The formula of these terms, if each is sure and they hold on the checked rows."""
     columns = _columns(rows, dependence.shape, terms)
     together = beside.beside(columns)
-    after = held_out(rows, together)
+    after = predict_held_out(rows, together)
     before = float(dependence.before @ dependence.before)
     share = (before - float(after @ after)) / (before - dependence.squares)
     sure = gain_score(dependence.before, after, rows.blocks[rows.checked]) > CRITERIA.sure

@@ -19,7 +19,7 @@ from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
-from ..measurement.reversals import since_reversal
+from ..measurement.reversals import look_back_to_reversal
 from ..model import Model
 from ..realise.along_motion import residual_along
 
@@ -114,9 +114,9 @@ def rows_of(model: Model, prepared: Prepared, body: str) -> Rows:
         body=body,
         axis=model.body(body).axis,
         bandwidth=prepared.bandwidth,
-        alongs=tuple(_along(model, s) for s in stretches),
+        alongs=tuple(_signals_along(model, s) for s in stretches),
         residual=np.concatenate([r for r, _ in parts]),
-        measured=np.concatenate([_measured(s) for s in stretches]),
+        measured=np.concatenate([_measured_force(s) for s in stretches]),
         tangents=np.concatenate([d.T for _, d in parts]),
         root=np.concatenate(
             [np.sqrt(s.weight) * (s.motion.direction[s.keep] != 0) for s in stretches]
@@ -127,7 +127,7 @@ def rows_of(model: Model, prepared: Prepared, body: str) -> Rows:
     )
 
 
-def _measured(stretch: Stretch) -> Array:
+def _measured_force(stretch: Stretch) -> Array:
     motion = stretch.motion
     force = motion.at_rows(motion.command) + motion.interaction
     return motion.lowpassed(force)[stretch.keep]
@@ -148,12 +148,12 @@ def _splits(
     return tuple(splits)
 
 
-def _along(model: Model, stretch: Stretch) -> StretchSignals:
+def _signals_along(model: Model, stretch: Stretch) -> StretchSignals:
     motion = as_logged(model, stretch.motion)
     body = model.body(motion.body).with_effect(PUSH, {"size": 0.0}).with_effect(GRIP, {"size": 0.0})
     along = residual_along(body, motion, [f"{PUSH.name}.size", f"{GRIP.name}.size"])
     acting = along.acting.value
-    since = since_reversal(
+    since = look_back_to_reversal(
         motion.direction, motion.position, sample_time=motion.sample_time, rest=RESTED
     )
     spectrum = motion.spectrum

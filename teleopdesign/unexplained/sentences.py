@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from ..measurement.filtering import Array
 from ..quantity import unit_of
-from .amounts import amount, between, number
+from .amounts import amount, describe_span, number
 from .curve import Curve
 from .formula import Formula
 from .library import FormulaTerm
@@ -54,7 +54,7 @@ def place(region: SignRegion, variable: Variable, axis: str) -> str:
         inner = replace(region, low=low, high=high)
         return f"moving {way}{_range(inner, variable, axis, ' ')}"
     if variable.name in _AFTER:
-        return _since(region, variable, axis)
+        return _describe_since(region, variable, axis)
     over = _range(region, variable, axis)
     return _PLACES.get(variable.name, "") + over if over else "throughout"
 
@@ -62,7 +62,7 @@ def place(region: SignRegion, variable: Variable, axis: str) -> str:
 def _range(region: SignRegion, variable: Variable, axis: str, before: str = "") -> str:
     q = variable.quantity
     if math.isfinite(region.low) and math.isfinite(region.high):
-        return f"{before}between {between(region.low, region.high, q, axis)}"
+        return f"{before}between {describe_span(region.low, region.high, q, axis)}"
     if math.isfinite(region.high):
         return f"{before}below {amount(region.high, q, axis)}"
     if math.isfinite(region.low):
@@ -70,12 +70,12 @@ def _range(region: SignRegion, variable: Variable, axis: str, before: str = "") 
     return ""
 
 
-def _since(region: SignRegion, variable: Variable, axis: str) -> str:
+def _describe_since(region: SignRegion, variable: Variable, axis: str) -> str:
     q, after = variable.quantity, _AFTER[variable.name]
     if variable.name == "travel":
         after += " after it sets off"
     if math.isfinite(region.low) and math.isfinite(region.high):
-        return f"between {between(region.low, region.high, q, axis)}{after}"
+        return f"between {describe_span(region.low, region.high, q, axis)}{after}"
     if math.isfinite(region.high):
         first = "in the first" if variable.name == "time" else "within"
         return f"{first} {amount(region.high, q, axis)}{after}"
@@ -115,13 +115,13 @@ def sentence_for(
         said = _wave(shape, formula, axis)
     elif goes_up_and_down(regions) and shape.variable.name in ("position", "time"):
         low, high = float(curve.y.min()), float(curve.y.max())
-        over = _over(shape.variable)
+        over = _describe_range(shape.variable)
         said = f"{_subject(shape)} goes up and down {over}, by {_spread(low, high, shape, axis)}"
     elif regions:
         said = _ranges(shape, regions, axis)
     else:
         return ""
-    return said + _qualified(shape, contrasts) + _followed(formula, axis)
+    return said + _qualify(shape, contrasts) + _describe_following(formula, axis)
 
 
 def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
@@ -157,7 +157,7 @@ def _subject(shape: Shape) -> str:
     }[shape.carrier.name]
 
 
-def _over(variable: Variable) -> str:
+def _describe_range(variable: Variable) -> str:
     return {"position": "along the travel", "time": "in time"}.get(
         variable.name, f"with {variable.name.replace('_', ' ')}"
     )
@@ -197,7 +197,7 @@ def _constant(shape: Shape, value: float, axis: str) -> str:
     return f"everywhere the device needs {size} than the model"
 
 
-def _qualified(shape: Shape, contrasts: Sequence[Contrast]) -> str:
+def _qualify(shape: Shape, contrasts: Sequence[Contrast]) -> str:
     said = ""
     signed = shape.variable is not None and shape.variable.signed
     for contrast in contrasts:
@@ -216,7 +216,7 @@ def _qualified(shape: Shape, contrasts: Sequence[Contrast]) -> str:
     return said
 
 
-def _followed(formula: Formula | None, axis: str) -> str:
+def _describe_following(formula: Formula | None, axis: str) -> str:
     return "" if formula is None else f"; it follows {formula_text(formula, axis)}"
 
 

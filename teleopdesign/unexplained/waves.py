@@ -34,7 +34,7 @@ def wave_number(rows: Rows, left: Array, shape: Shape) -> float:
     if shape.variable.name == "time":
         coarse = _frequency(rows, used, carrier * left, step)
     else:
-        coarse = _along(values, carrier, left, step)
+        coarse = _best_wave_number(values, carrier, left, step)
 
     def lost(k: float) -> float:
         return -_gain(np.exp(2j * np.pi * k * values), carrier, left)
@@ -51,7 +51,7 @@ def _gain(wave: NDArray[np.complex128], carrier: Array, left: Array) -> float:
     return (qq * pl * pl - 2 * pq * pl * ql + pp * ql * ql) / free
 
 
-def _along(values: Array, carrier: Array, left: Array, step: float) -> float:
+def _best_wave_number(values: Array, carrier: Array, left: Array, step: float) -> float:
     """Best wave number on a grid, from half a period over the range upwards."""
     turn = np.exp(2j * np.pi * step * values)
     wave, gains = turn.copy(), []

@@ -29,7 +29,7 @@ def test_links_that_lead_out_of_the_folder_are_not_followed(tmp_path):
     assert files.experiments_in(folder) == () and files.logs_in(folder) == ()
     for name in ("../outside", "link", "/etc"):
         with pytest.raises(ExperimentError, match="outside of folder"):
-            files.inside(folder, name)
+            files.resolve_inside(folder, name)
 
 
 @given(name=st.text(max_size=40))

@@ -71,7 +71,7 @@ def bench():
 
 def test_two_models_stand_beside_each_other(bench):
     better = bench.add("stribeck", "device")
-    lines = pages.compared(better, 0, 1).splitlines()
+    lines = pages.compare_rungs(better, 0, 1).splitlines()
     assert lines[0] == "| | your model, re-estimated | + stribeck at device |"
     level = next(line for line in lines if "extra_static_level" in line)
     assert level.split("|")[2].strip() == "-" and "N" in level.split("|")[3]
@@ -113,5 +113,8 @@ def test_no_unit_of_the_page_is_read_as_emphasis(bench):
     """Markdown takes what stands between two asterisks for emphasis: `kg*m^2 ... kg*m^2`."""
     better = bench.add("stribeck", "device")
     free = [name for name, value in better.model.parameters.items() if value.value]
-    texts = [pages.compared(better, 0, 1), *(pages.moved(better, name, 1.1) for name in free)]
+    texts = [
+        pages.compare_rungs(better, 0, 1),
+        *(pages.move_parameter(better, name, 1.1) for name in free),
+    ]
     assert not [text for text in texts if "*" in text]

@@ -69,7 +69,7 @@ def test_moving_a_parameter_shows_the_error_that_it_makes(bench):
     name = "device.inertia"
     there = bench.errors({name: bench.model.parameters[name].value})
     assert there[1] == pytest.approx(bench.state.fit.check_error, rel=1e-9)
-    text = pages.moved(bench, name, 1.5)
+    text = pages.move_parameter(bench, name, 1.5)
     assert (
         f"{100 * bench.errors({name: 1.5 * bench.model.parameters[name].value})[1]:.2f} %" in text
     )

@@ -13,7 +13,7 @@ from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
-from teleopdesign.commands.diagnose import _next_on_joints
+from teleopdesign.commands.diagnose import _suggest_for_joints
 from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
 from teleopdesign.diagnose.arms.prepared import PreparedArm, prepare_arm
 from teleopdesign.diagnose.error import force_error
@@ -110,14 +110,14 @@ def test_what_helps_on_at_a_joint_is_said_with_the_answer_and_not_searched_anew(
         "joint2": joint("effects_missing", (), True),
         "joint3": joint("undecided", ("bias", "spring"), True),
     }
-    assert _next_on_joints(SimpleNamespace(joints=joints), "answer.json") == [
+    assert _suggest_for_joints(SimpleNamespace(joints=joints), "answer.json") == [
         "",
         "where it fails: teleopdesign describe answer.json --body joint2",
         "which of them is it: teleopdesign next answer.json --body joint3",
         "where it fails: teleopdesign describe answer.json --body joint3",
     ]
     adequate = SimpleNamespace(joints={"joint1": joints["joint1"]})
-    assert _next_on_joints(adequate, "answer.json") == []
+    assert _suggest_for_joints(adequate, "answer.json") == []
 
 
 @pytest.mark.slow

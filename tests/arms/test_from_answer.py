@@ -21,7 +21,7 @@ from teleopdesign.diagnose.answers import load_answer
 from teleopdesign.diagnose.arms.answer import arm_answer, write_arm_answer
 from teleopdesign.diagnose.arms.fit import estimate_arm
 from teleopdesign.diagnose.arms.prepared import inertias_at, prepare_arm
-from teleopdesign.diagnose.arms.restored import restored_arm
+from teleopdesign.diagnose.arms.restored import restore_arm_diagnosis
 from teleopdesign.diagnose.learnable import learnable
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.search_plan import QUICK
@@ -77,7 +77,7 @@ def test_the_diagnosis_reads_back_as_it_was(folder, answer):
     said = json.loads(answer.read_text())
     assert said["missing"] == [{"effect": "spring", "at": "joint2"}]
     experiment = td.load_experiment(folder)
-    restored = restored_arm(load_answer(answer), experiment)
+    restored = restore_arm_diagnosis(load_answer(answer), experiment)
     again = json.loads(json.dumps(arm_answer(restored)))
     numbers = {"experiment", "joints", "left_over_noise_floors"}
     assert {n for n in said if again[n] != said[n]} <= numbers
@@ -110,7 +110,7 @@ def test_what_trees_learn_is_said_of_each_joint_and_of_the_arm(answer, folder):
         np.sqrt(np.mean([box["left"] ** 2 for box in boxes]))
     )
     assert said["learnable"] <= said["black_box"]["left"]
-    text = str(restored_arm(load_answer(answer), td.load_experiment(folder)))
+    text = str(restore_arm_diagnosis(load_answer(answer), td.load_experiment(folder)))
     assert text.count("black box: ") == 2
 
 
@@ -135,7 +135,7 @@ def test_a_force_by_another_joint_s_motion_is_learned_from_that_motion_only(fold
 
 
 def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
-    figure = restored_arm(load_answer(answer), td.load_experiment(folder)).plot()
+    figure = restore_arm_diagnosis(load_answer(answer), td.load_experiment(folder)).plot()
     labels = [axes.get_ylabel().partition("\n")[0] for axes in figure.axes]
     assert {"joint1", "joint2"} <= set(labels)
     assert "check error (% of" in figure.axes[-1].get_xlabel()
@@ -210,7 +210,7 @@ def test_an_answer_that_was_changed_is_refused_in_one_line(
     path = tmp_path / "changed.json"
     path.write_text(json.dumps(content))
     with pytest.raises(ExperimentError, match=message) as caught:
-        restored_arm(load_answer(path), td.load_experiment(folder))
+        restore_arm_diagnosis(load_answer(path), td.load_experiment(folder))
     assert "\n" not in str(caught.value)
 
 
@@ -226,7 +226,7 @@ def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
     assert {k for k in first if first[k] != other[k]} == {"folder", "answer"}
     for name in (folder.name, "second"):
         there = load_answer(out / f"{name}.json")
-        assert restored_arm(there, td.load_experiment(folder)).verdict == first["verdict"]
+        assert restore_arm_diagnosis(there, td.load_experiment(folder)).verdict == first["verdict"]
     assert "2 of 2 folders diagnosed" in capsys.readouterr().out
 
 

@@ -7,7 +7,7 @@ import sympy as sp
 from devices import body
 from scipy.signal import butter
 
-from teleopdesign.controllers import controller, from_control, inverted, parameter_symbol
+from teleopdesign.controllers import controller, from_control, invert_plant, parameter_symbol
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
@@ -159,7 +159,7 @@ def test_a_nonlinear_system_goes_through_python_control_as_it_is():
 def test_an_inverse_leaves_the_low_pass_alone():
     """T is of relative degree one: a rod of 0.2 kg with 4 N s/m, force to velocity."""
     plant = control.tf([1.0, 9.0], [0.2, 4.0, 300.0])
-    made = inverted(plant, bandwidth=25.0)
+    made = invert_plant(plant, bandwidth=25.0)
     form = made.linear_form("K", S, sp.S(0))
     form = form.subs({parameter_symbol("K", n): v for n, v in made.names().items()})
     for f in (0.1, 5.0, 80.0):
@@ -170,4 +170,4 @@ def test_an_inverse_leaves_the_low_pass_alone():
 
 def test_an_inverse_that_would_be_unstable_is_refused():
     with pytest.raises(ModelError, match="zero at s = 3.* would be an unstable pole"):
-        inverted(control.tf([1.0, -3.0], [1.0, 2.0, 5.0]), bandwidth=10.0)
+        invert_plant(control.tf([1.0, -3.0], [1.0, 2.0, 5.0]), bandwidth=10.0)

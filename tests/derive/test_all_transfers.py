@@ -16,7 +16,7 @@ from teleopdesign.derive import (
     all_transfers,
     block_symbol,
     counterexample,
-    on_matrices,
+    insert_matrices,
     proved_equal,
     return_difference,
     transfer,
@@ -32,7 +32,7 @@ from teleopdesign.diagrams import (
     Junction,
     Moving,
     haptic_interface,
-    shipped,
+    load_shipped,
 )
 from teleopdesign.errors import ModelError
 
@@ -49,7 +49,7 @@ TWO_PORT = {"Z_mm", "Z_ms", "Z_sm", "Z_ss", "h_11", "h_12", "h_21", "h_22", "Z_t
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_diagram_has_every_transfer_within_two_seconds_each(name):
     start = time.process_time()
-    transfers = all_transfers(shipped(name))
+    transfers = all_transfers(load_shipped(name))
     each = (time.process_time() - start) / len(transfers.transfers)
     assert each < 2 * slowness() and not transfers.undone
     signals = transfers.diagram.signals
@@ -58,7 +58,7 @@ def test_a_shipped_diagram_has_every_transfer_within_two_seconds_each(name):
 
 
 def test_what_a_driver_works_against_is_the_inverse_of_what_it_moves():
-    for diagram in (shipped("haptic-interface"), pair(ANY, ANY, ANY)):
+    for diagram in (load_shipped("haptic-interface"), pair(ANY, ANY, ANY)):
         transfers = all_transfers(diagram).transfers
         for block in diagram.bodies:
             if isinstance(block, Moving):
@@ -68,7 +68,7 @@ def test_what_a_driver_works_against_is_the_inverse_of_what_it_moves():
 
 
 def numeric(expression, blocks):
-    return np.array(on_matrices(expression, blocks, size=2).tolist(), dtype=float)
+    return np.array(insert_matrices(expression, blocks, size=2).tolist(), dtype=float)
 
 
 # no search for a smaller example: with inverses of matrices in it, that takes minutes
@@ -195,20 +195,20 @@ def test_numbers_are_those_of_the_blocks():
 
 
 def test_what_has_no_linear_form_is_named():
-    data = all_transfers(shipped("world-haptics-2005")).as_data(speed=0.02)
+    data = all_transfers(load_shipped("world-haptics-2005")).as_data(speed=0.02)
     assert data["speed"] == 0.02
     assert all(t["left_out"] == ["Z_M.coulomb"] for t in data["transfers"])
 
 
 def test_a_derivation_that_takes_too_long_is_named():
-    transfers = all_transfers(shipped("haptic-interface"), seconds=-1.0)
+    transfers = all_transfers(load_shipped("haptic-interface"), seconds=-1.0)
     assert not transfers.transfers
     assert "was not derived within" in transfers.undone["T_H"] and "T_H: " in transfers.text()
 
 
 def test_a_transfer_that_is_not_there_is_told_with_the_nearest():
     with pytest.raises(ModelError, match='did you mean "T_MBC"'):
-        all_transfers(shipped("haptic-interface"))["T_MCB"]
+        all_transfers(load_shipped("haptic-interface"))["T_MCB"]
 
 
 def test_the_return_difference_is_that_of_the_opened_loop():
@@ -240,6 +240,6 @@ def test_names_are_printed_with_their_indices():
 def test_numbers_alone_are_told_apart_on_matrices_of_a_given_size():
     assert counterexample(sp.S(1), sp.S(2)) == {}
     assert counterexample(sp.S(1), sp.S(1)) is None
-    assert on_matrices(sp.S(3), {}, size=2) == 3 * sp.eye(2)
+    assert insert_matrices(sp.S(3), {}, size=2) == 3 * sp.eye(2)
     with pytest.raises(ModelError, match="no block is given, expected a size"):
-        on_matrices(sp.S(3), {})
+        insert_matrices(sp.S(3), {})

@@ -9,13 +9,19 @@ from hypothesis import strategies as st
 from teleopdesign.controllers import controller
 from teleopdesign.derive import (
     all_transfers,
+    convert_convention,
     hybrid_from_impedance,
     impedance_from_hybrid,
-    in_convention,
     two_port_functions,
     with_values,
 )
-from teleopdesign.diagrams import ANY, four_channel, read_diagram, shipped, write_diagram
+from teleopdesign.diagrams import (
+    ANY,
+    four_channel,
+    load_shipped,
+    read_diagram,
+    write_diagram,
+)
 from teleopdesign.errors import ModelError
 
 S = sp.Symbol("s")
@@ -83,7 +89,7 @@ def test_perfect_transparency_is_the_ideal_hybrid_matrix():
 
 
 def test_the_shipped_diagram_derives_and_comes_back_from_a_file(tmp_path):
-    diagram = shipped("four-channel")
+    diagram = load_shipped("four-channel")
     assert "exp(-s T_2) C_2" in all_transfers(diagram)["h_12"].text()
     write_diagram(diagram, tmp_path / "four.toml")
     assert read_diagram(tmp_path / "four.toml") == diagram
@@ -126,9 +132,9 @@ def test_both_conventions_are_one_two_port(z):
     for i in range(2):
         for j in range(2):
             name = f"h_{i + 1}{j + 1}"
-            turned = in_convention(name, h[i, j], "velocity")
+            turned = convert_convention(name, h[i, j], "velocity")
             assert sp.simplify(turned - expected[i, j]) == 0
-            assert sp.simplify(in_convention(name, turned, "position") - h[i, j]) == 0
+            assert sp.simplify(convert_convention(name, turned, "position") - h[i, j]) == 0
 
 
 def test_power_into_the_ports_is_the_same_in_both():
@@ -142,7 +148,7 @@ def test_no_convention_or_function_is_said_in_one_line():
     singular = sp.Matrix([[1, 1], [1, 0]])
     for make, words in (
         (lambda: two_port_functions(four, convention="velocities"), 'did you mean "velocity"'),
-        (lambda: in_convention("h_13", S, "velocity"), 'no function "h_13"'),
+        (lambda: convert_convention("h_13", S, "velocity"), 'no function "h_13"'),
         (lambda: hybrid_from_impedance(singular, convention="position"), "Z_ss is 0"),
         (lambda: impedance_from_hybrid(singular, convention="velocity"), "h_22 is 0"),
         (lambda: four_channel(channels={"C_5": ANY}), 'no channel "C_5"'),

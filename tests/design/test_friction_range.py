@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design.cancellation import acting_gain
-from teleopdesign.design.rounding import rounded_down, rounded_up
+from teleopdesign.design.rounding import round_down, round_up
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
 
@@ -107,7 +107,7 @@ def test_a_strong_actuator_and_its_ripple_count():
 
 @given(st.floats(1e-9, 1e9), st.integers(1, 4))
 def test_rounding_stays_on_its_side(value, digits):
-    low, high = rounded_down(value, digits=digits), rounded_up(value, digits=digits)
+    low, high = round_down(value, digits=digits), round_up(value, digits=digits)
     # a part in 1e8: a number of few digits is left as it is
     assert low <= value * (1 + 1e-8)
     assert high >= value * (1 - 1e-8)

@@ -11,7 +11,7 @@ from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.residual import residuals
-from teleopdesign.diagnose.search import _varied
+from teleopdesign.diagnose.search import _vary_starts
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS
 from teleopdesign.realise import ode_scan
@@ -64,7 +64,7 @@ def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
         for w in widths
         for m in inertias
     ]
-    tried = _varied(new, ordered)[: PLAN.corrected_predicted]
+    tried = _vary_starts(new, ordered)[: PLAN.corrected_predicted]
     values = [
         [start.parameters[f"device.backlash.{n}"].value for n in ("gap", "tip_inertia")]
         for start in tried

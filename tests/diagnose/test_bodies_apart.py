@@ -8,11 +8,11 @@ from cases import make_case, write_case
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import bodies_apart
-from teleopdesign.diagnose.bodies_apart import apart, of_bodies
+from teleopdesign.diagnose.bodies_apart import select_bodies, separate_bodies
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.stated import at_stated
+from teleopdesign.diagnose.stated import reset_to_stated
 
 
 @pytest.fixture(scope="module")
@@ -28,9 +28,11 @@ def test_what_one_body_leaves_does_not_depend_on_the_parameters_of_another(two_b
     prepared, model = two_bodies
     stretches = prepared.of("fit")
     names = tuple(n for n, v in model.parameters.items() if not v.fixed)
-    whole = of_bodies(stretches, ("master", "slave")).relative(model, names)
-    assert sorted(r for part in apart(stretches) for r in part.rows) == list(range(len(whole[0])))
-    for part in apart(stretches):
+    whole = select_bodies(stretches, ("master", "slave")).relative(model, names)
+    assert sorted(r for part in separate_bodies(stretches) for r in part.rows) == list(
+        range(len(whole[0]))
+    )
+    for part in separate_bodies(stretches):
         (body,) = part.bodies
         mine = [i for i, n in enumerate(names) if model.locate(n)[0] == body]
         left, slopes = part.relative(model, [names[i] for i in mine])
@@ -73,7 +75,7 @@ def test_the_values_of_a_user_come_back_at_one_body_alone(two_bodies):
     moved = stated.with_values(
         {n: 1.5 * v.value for n, v in stated.parameters.items() if not v.fixed}
     )
-    back = at_stated(moved, stated, "slave").parameters
+    back = reset_to_stated(moved, stated, "slave").parameters
     for name, value in back.items():
         here = stated if stated.locate(name)[0] == "slave" else moved
         assert value.value == here.parameters[name].value

@@ -8,7 +8,7 @@ import pytest
 from diagnose.own_cases import FEW
 
 from teleopdesign import Model, load_experiment
-from teleopdesign.diagnose.candidates import candidates, measured_at, started
+from teleopdesign.diagnose.candidates import bodies_with_measured_force, candidates, make_starts
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
@@ -80,9 +80,12 @@ def test_a_channel_says_that_its_force_was_measured(experiment, tmp_path):
     lines[n] = lines[n].replace("{", "{ measured = true,", 1)
     path.write_text("\n".join(lines))
     read = load_experiment(path.parent)
-    assert measured_at(read) == {"device"} and measured_at(experiment) == set()
+    assert (
+        bodies_with_measured_force(read) == {"device"}
+        and bodies_with_measured_force(experiment) == set()
+    )
     saved = write_experiment(read, tmp_path / "saved")
-    assert measured_at(load_experiment(saved)) == {"device"}
+    assert bodies_with_measured_force(load_experiment(saved)) == {"device"}
     path.write_text(path.read_text().replace("measured = true", 'measured = "yes"'))
     with pytest.raises(ExperimentError, match="measured.*expected true or false"):
         load_experiment(path.parent)
@@ -148,7 +151,7 @@ def test_a_search_starts_within_bounds_at_every_combination(name, model, prepare
     for need in needs_of(name):
         base = base.with_effect(need, values=dict.fromkeys(EFFECTS[need].parameters, 1.0))
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    starts = started(base.with_effect(name), unit)
+    starts = make_starts(base.with_effect(name), unit)
     assert len(starts) >= np.prod([len(p.search.starts) for p in effect.parameters.values()])
     for start in starts:
         values = start.body("device").parameters
@@ -180,7 +183,7 @@ def test_no_period_lies_far_from_where_its_search_starts(name, model, prepared):
     with, whatever the shape of the motion."""
     motions = [s.motion for s in prepared.of("fit")]
     travel = max(np.ptp(m.position) for m in motions)
-    models = started(model.with_effect(name), scales(motions, prepared.bandwidth))
+    models = make_starts(model.with_effect(name), scales(motions, prepared.bandwidth))
     periods = {m.parameters[f"device.{name}.period"].value for m in models}
     cycles = np.sort([travel / p for p in periods])
     assert np.diff(cycles).max() < 0.76

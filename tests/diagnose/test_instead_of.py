@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 
 from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.diagnose.candidates import Candidate, candidates
-from teleopdesign.diagnose.decision import objection, superfluous_beside
+from teleopdesign.diagnose.decision import find_superfluous_effect, objection
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
-from teleopdesign.diagnose.rung import Rung, replaced_from
-from teleopdesign.diagnose.stated import at_stated
+from teleopdesign.diagnose.rung import Rung, restore_replaced
+from teleopdesign.diagnose.stated import reset_to_stated
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment.rivals import rival_instead
@@ -119,7 +119,7 @@ def test_the_answer_says_what_it_takes_the_place_of(found):
 def test_an_answer_read_back_knows_it_too(found, tmp_path):
     experiment, diagnosis = found
     write_answer(diagnosis, tmp_path / "answer.json")
-    back = restored(load_answer(tmp_path / "answer.json"), experiment, KNOWN)
+    back = restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment, KNOWN)
     assert back.rungs[1].replaced == diagnosis.rungs[1].replaced
     assert back.missing == diagnosis.missing
     assert ladder_text(back).splitlines()[-1] == ladder_text(diagnosis).splitlines()[-1]
@@ -139,7 +139,7 @@ def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
 def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_there(found):
     experiment, diagnosis = found
     stated = Model.from_experiment(experiment, KNOWN)
-    again = at_stated(diagnosis.model, stated)
+    again = reset_to_stated(diagnosis.model, stated)
     assert not again.body("device").has("viscous")
     assert again.parameters["device.coulomb.level"].value == 1.0
     assert (
@@ -178,10 +178,10 @@ def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(found):
     )
     base = replace(fit, model=sure, at_bound=())
     open_now = replace(fit, model=unsure, at_bound=())
-    assert superfluous_beside(base, open_now, candidate) is None, "either may be the one"
+    assert find_superfluous_effect(base, open_now, candidate) is None, "either may be the one"
     gone = unsure.with_values({names[1]: replace(unsure.parameters[names[1]], value=0.0)})
     ended = replace(fit, model=gone, at_bound=(names[1],))
-    assert superfluous_beside(base, ended, candidate).effect.name == "viscous"
+    assert find_superfluous_effect(base, ended, candidate).effect.name == "viscous"
 
 
 #: an effect that another can count as -> its parameter
@@ -207,7 +207,7 @@ def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, o
         {"device": Body(axis, {"inertia": 1.0, f"{old}.{STRENGTH[old]}": 2.0}, (EFFECTS[old],))}
     )
     before = plain.with_effect(other)
-    gave_way = replaced_from(Candidate(EFFECTS[old], "device"), before)
+    gave_way = restore_replaced(Candidate(EFFECTS[old], "device"), before)
     model = Model({"device": Body(axis, {"inertia": 1.0}, ())}).with_effect(new).with_effect(other)
     rung = Rung(Candidate(EFFECTS[new], "device"), None, replaced=gave_way)
     back = rung.taken_from(model)
@@ -219,7 +219,7 @@ def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
     body = Body("prismatic", {"inertia": 1.0, "coulomb.level": 1.0}, (EFFECTS["coulomb"],))
     plain = Model({"device": body})
     before, after = plain.with_effect("presliding"), plain.with_effect("maxwell_slip")
-    gave_way = replaced_from(Candidate(EFFECTS["presliding"], "device"), before)
+    gave_way = restore_replaced(Candidate(EFFECTS["presliding"], "device"), before)
     rung = Rung(Candidate(EFFECTS["maxwell_slip"], "device"), None, replaced=gave_way)
     assert {n for n, _ in rung.taken_from(after).effects} == {"coulomb", "presliding"}
 
@@ -239,6 +239,6 @@ def test_whatever_gave_way_to_whatever_comes_back(axis, data):
                 instead = beside.without_effect(old.name, at="device")
             except ModelError:
                 continue  # another effect needs it
-            gave_way = replaced_from(Candidate(old, "device"), model)
+            gave_way = restore_replaced(Candidate(old, "device"), model)
             back = Rung(new, None, replaced=gave_way).taken_from(instead)
             assert set(back.effects) == set(model.effects)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from teleopdesign.diagnose import learnable as module
 from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.learnable import (
@@ -22,7 +22,7 @@ from teleopdesign.diagnose.learnable import (
 )
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.tree_inputs import inputs_along
-from teleopdesign.measurement.reversals import near_reversals
+from teleopdesign.measurement.reversals import mark_reversals
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -104,7 +104,7 @@ def test_an_answer_holds_what_could_be_learned_and_gives_it_back(diagnosis, expe
     data = json.loads((tmp_path / "answer.json").read_text())
     assert data["learnable"] == pytest.approx(diagnosis.learnable.error)
     assert data["near_reversals"]["check_error"] == pytest.approx(diagnosis.near_reversals.error)
-    back = restored(load_answer(tmp_path / "answer.json"), experiment)
+    back = restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment)
     assert back.learnable == diagnosis.learnable
     assert back.near_reversals == diagnosis.near_reversals
     assert str(diagnosis.learnable) in ladder_text(back)
@@ -131,7 +131,7 @@ def test_the_error_near_reversals_is_that_of_the_rows_there(diagnosis, prepared)
 
 @given(st.lists(st.sampled_from([-1, 0, 1]), min_size=1, max_size=60), st.integers(0, 8))
 def test_samples_near_a_reversal_are_those_that_have_one_within_reach(direction, within):
-    found = near_reversals(np.array(direction, dtype=np.int8), within=within)
+    found = mark_reversals(np.array(direction, dtype=np.int8), within=within)
     last, turned = 0, []
     for i, d in enumerate(direction):
         if d and last and d != last:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.candidates import started
+from teleopdesign.diagnose.candidates import make_starts
 from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.linear_start import linear_starts
 from teleopdesign.diagnose.prepare import prepare
@@ -47,7 +47,7 @@ def test_a_fine_period_is_found_among_a_hundred(cogged, base):
     prepared = prepare(cogged)
     model = base.model.with_effect("cogging")
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    starts = linear_starts(started(model, unit), EFFECTS["cogging"], "device", prepared, base)
+    starts = linear_starts(make_starts(model, unit), EFFECTS["cogging"], "device", prepared, base)
     best = starts[0].model.parameters
     # the grid is a cycle and a half apart over the travel: within one of fifty is the nearest
     assert best["device.cogging.period"].value == pytest.approx(PERIOD, rel=0.03)

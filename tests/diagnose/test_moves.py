@@ -9,13 +9,13 @@ from diagnose.own_cases import write_own
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.conclusion import without_doubtful
+from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.exchange import exchange
 from teleopdesign.diagnose.ladder_state import begin, look, search_for
 from teleopdesign.diagnose.moves import add, remove
 from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
-from teleopdesign.diagnose.rank import ranked
+from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.search import estimate_from_starts
@@ -44,7 +44,9 @@ def with_effects(search, state, *names):
         candidate = Candidate(EFFECTS[name], "device")
         model = state.fit.model.with_effect(candidate.effect, at=candidate.at)
         fit = estimate_from_starts(model, search.prepared, state.fit)
-        ranking = Ranking(state.fit, (ranked(state.fit, candidate, fit, prepared=search.prepared),))
+        ranking = Ranking(
+            state.fit, (make_ranked(state.fit, candidate, fit, prepared=search.prepared),)
+        )
         state = state.with_rungs((*state.rungs, Rung(candidate, fit, ranking)))
     return state
 
@@ -135,14 +137,14 @@ def test_what_the_stated_errors_do_not_tell_from_absence_is_set_aside_once(ladde
     value = last.fit.model.parameters[name]
     wide = last.fit.model.with_values({name: replace(value, stderr=2.0 * abs(value.value))})
     stated = (*full.rungs[:-1], replace(last, fit=replace(last.fit, model=wide)))
-    moved = without_doubtful(search, full, stated)
+    moved = remove_doubtful_rung(search, full, stated)
     assert added(moved) == ["spring"]
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
     assert "force = " in moved.set_aside[0].reason
     again = look(search, moved.rungs, moved)
     assert "bias" not in {r.candidate.key[0] for r in again.supported}
     back = replace(full, set_aside=moved.set_aside)
-    assert without_doubtful(search, back, stated) is None
+    assert remove_doubtful_rung(search, back, stated) is None
 
 
 def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
@@ -152,7 +154,7 @@ def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
     value = last.fit.model.parameters[name]
     wide = last.fit.model.with_values({name: replace(value, stderr=2.0 * abs(value.value))})
     stated = (*full.rungs[:-1], replace(last, fit=replace(last.fit, model=wide)))
-    moved = without_doubtful(search, full, stated)
+    moved = remove_doubtful_rung(search, full, stated)
     assert moved.rungs == (state.rungs[0],)
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
 

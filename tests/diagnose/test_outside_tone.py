@@ -11,7 +11,7 @@ import teleopdesign as td
 from teleopdesign.diagnose import ladder, ladder_state
 from teleopdesign.diagnose.adequacy import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
-from teleopdesign.diagnose.fit import estimate, weighted
+from teleopdesign.diagnose.fit import estimate, weigh_residuals
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, best_tone, is_of_mains
 from teleopdesign.diagnose.prepare import prepare
@@ -34,7 +34,7 @@ def with_residual(found, prepared, force):
 
     def left(use):
         stretches = prepared.of(use)
-        return weighted(stretches, [force(s.motion.time[s.keep]) for s in stretches])
+        return weigh_residuals(stretches, [force(s.motion.time[s.keep]) for s in stretches])
 
     return replace(found, fit_residual=left("fit"), check_residual=left("check"))
 

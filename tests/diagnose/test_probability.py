@@ -13,8 +13,8 @@ from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
     open_to_others,
+    select_independent,
     shares,
-    standing,
 )
 from teleopdesign.effects import EFFECTS
 
@@ -102,9 +102,9 @@ def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(diagnosis
     first = replace(first, fit=replace(first.fit, model=model))
     rungs = (first, *(replace(diagnosis.rungs[-1], added=c) for c in (on, friction)))
     whole = replace(diagnosis, rungs=rungs)
-    assert standing(whole, {on.key, friction.key}) == (on, friction)
-    assert standing(whole, {friction.key}) == ()
-    assert standing(whole, {on.key}) == (on,)
+    assert select_independent(whole, {on.key, friction.key}) == (on, friction)
+    assert select_independent(whole, {friction.key}) == ()
+    assert select_independent(whole, {on.key}) == (on,)
 
 
 def with_box(diagnosis, *, alone, learned):

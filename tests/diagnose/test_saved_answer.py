@@ -17,7 +17,7 @@ from teleopdesign import EFFECTS, ExperimentError, Model, Value
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.answers.fingerprint import digest
 from teleopdesign.diagnose.answers.restored import steps_of
@@ -77,7 +77,7 @@ def test_the_model_is_read_back_to_the_last_digit(path, diagnosis, experiment):
 
 
 def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
-    found = restored(load_answer(path), experiment, FEW)
+    found = restore_diagnosis(load_answer(path), experiment, FEW)
     assert ladder_text(found) == ladder_text(diagnosis)
     for one, other in zip(found.rungs, diagnosis.rungs, strict=True):
         assert_same(one.fit.model, other.fit.model)
@@ -91,7 +91,7 @@ def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
 
 @pytest.mark.slow
 def test_what_is_described_is_the_same_from_the_answer(path, diagnosis, experiment):
-    found = restored(load_answer(path), experiment, FEW)
+    found = restore_diagnosis(load_answer(path), experiment, FEW)
     told = describe_residual(found.before, found.prepared, found.floor)
     live = describe_residual(diagnosis.before, diagnosis.prepared, diagnosis.floor)
     assert told.as_data() == live.as_data()
@@ -105,7 +105,7 @@ def test_an_older_answer_is_read_with_what_its_experiment_says(changed, diagnosi
     values = {n: v.value for n, v in diagnosis.model.parameters.items()}
     assert {n: v.value for n, v in alone.parameters.items()} == values
     with pytest.raises(ExperimentError, match='no key "models": the answer of an earlier version'):
-        restored(load_answer(file), experiment, FEW)
+        restore_diagnosis(load_answer(file), experiment, FEW)
 
 
 def test_an_older_answer_without_an_axis_is_not_guessed_at(changed, content):
@@ -120,7 +120,7 @@ def test_an_older_answer_without_an_axis_is_not_guessed_at(changed, content):
 def test_the_answer_to_another_experiment_is_refused(old, changed, experiment, diagnosis):
     file = changed(**dict.fromkeys(LATER, ...)) if old else changed()
     rod = td.load_experiment(td.example("rod"))
-    for taken in (lambda s: s.model(EFFECTS, rod), lambda s: restored(s, rod)):
+    for taken in (lambda s: s.model(EFFECTS, rod), lambda s: restore_diagnosis(s, rod)):
         with pytest.raises(ExperimentError, match="is not an answer to rod but to another") as why:
             taken(load_answer(file))
         assert str(why.value).startswith(f"{file}: ") and "\n" not in str(why.value)
@@ -143,7 +143,10 @@ def test_models_of_other_bodies_than_those_recorded_are_refused(changed, content
     models["ladder"][-1]["device"]["effects"] = {"coulomb": {}, "stribeck": {}}
     models["estimated"] = models["ladder"][-1]
     file = changed(models=models)
-    for taken in (lambda s: s.model(FEW, experiment), lambda s: restored(s, experiment, FEW)):
+    for taken in (
+        lambda s: s.model(FEW, experiment),
+        lambda s: restore_diagnosis(s, experiment, FEW),
+    ):
         with pytest.raises(ExperimentError, match=r"models: found device \(prismatic\), expected"):
             taken(load_answer(file))
 

@@ -14,7 +14,7 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import is_better, is_supported, refusal
 from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.error_at_command import at_command
+from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.evidence import gain_at_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
@@ -221,7 +221,7 @@ def test_what_keeps_the_hand_from_the_body_explains_nothing(name, tmp_path):
         model = base.model.with_effect(HIDES_THE_HAND[name], at="device", values={"part": part})
         less = {n: (1.0 - part) * base.model.parameters[n].value for n in base.free}
         hidden = model.with_values(less)
-        left[part] = force_error(hidden, check), at_command(hidden, check).error
+        left[part] = force_error(hidden, check), refer_to_command(hidden, check).error
     assert left[0.999][0] < 0.1 * left[0.0][0], "the plain error could be cheated"
     assert left[0.999][1] > 0.9 * left[0.0][1] and left[0.5][1] > 0.9 * left[0.0][1]
 

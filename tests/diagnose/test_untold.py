@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.answers import restored
+from teleopdesign.diagnose.answers import restore_diagnosis
 from teleopdesign.diagnose.answers.saved import load_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.conclusion import doubtful
+from teleopdesign.diagnose.conclusion import find_doubtful_rung
 from teleopdesign.diagnose.diagnosis import SetAside, Untold
 from teleopdesign.diagnose.identifiability import doubt, is_identifiable
 from teleopdesign.diagnose.ladder_text import ladder_text
@@ -57,9 +57,9 @@ def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagno
     assert doubt(with_errors(fit, 0.3), added) == ""
     assert "extra_static_level" in doubt(with_errors(fit, 1.5), added)
     rungs = diagnosis.rungs
-    assert doubtful(rungs, prepared_case) is None
+    assert find_doubtful_rung(rungs, prepared_case) is None
     unsure = (*rungs[:-1], replace(rungs[-1], fit=with_errors(fit, 1.5)))
-    rung, why = doubtful(unsure, prepared_case)
+    rung, why = find_doubtful_rung(unsure, prepared_case)
     assert rung.added == added and "not told from absence" in why
 
 
@@ -103,7 +103,7 @@ def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, ex
     assert content["cannot_tell"][0]["effect"] == "stribeck"
     assert content["set_aside"][0]["reason"].startswith("gap")
     write_answer(whole, tmp_path / "answer.json")
-    again = restored(load_answer(tmp_path / "answer.json"), experiment)
+    again = restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment)
     assert [str(one) for one in again.untold] == [str(one) for one in whole.untold]
     assert [str(one) for one in again.set_aside] == [str(one) for one in whole.set_aside]
 

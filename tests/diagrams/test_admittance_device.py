@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from teleopdesign.controllers import controller
 from teleopdesign.derive import block_symbol, proved_equal, transfer
-from teleopdesign.diagrams import admittance_device, shipped
+from teleopdesign.diagrams import admittance_device, load_shipped
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.simulate import Sampling, simulate
 
@@ -36,7 +36,7 @@ def felt(s, inertia, damping, stiffness):
 
 
 def test_what_the_hand_feels_is_derived_from_the_wiring():
-    alone = shipped("admittance-device").without("Z_H")
+    alone = load_shipped("admittance-device").without("Z_H")
     found = transfer(alone, "F_h", ("X",), given="X")["X"]
     device, loop, admittance = map(block_symbol, ("Z_d", "C", "Y"))
     assert proved_equal(found, (1 + loop * admittance) ** -1 * (device + loop))

@@ -11,11 +11,11 @@ from teleopdesign.derive import block_symbol, transfer_functions
 from teleopdesign.diagrams import (
     ANY,
     Arm,
-    by_jacobian,
     haptic_interface,
     joint,
     parallel_rods,
     teleoperator_of_arms,
+    tip_coordinates,
 )
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
@@ -206,7 +206,7 @@ def test_six_axes_with_compensation_on_each_run_faster_than_real_time():
     from clock import takes_less_than
 
     random = np.random.default_rng(1)
-    coordinates = by_jacobian(np.eye(6) + 0.3 * random.standard_normal((6, 6)))
+    coordinates = tip_coordinates(np.eye(6) + 0.3 * random.standard_normal((6, 6)))
     parameters = {
         "inertia": Value(0.3), "viscous.damping": Value(2.0), "coulomb.level": Value(1.0)
     }  # fmt: skip

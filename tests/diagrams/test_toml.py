@@ -19,9 +19,9 @@ from teleopdesign.diagrams import (
     Junction,
     Moving,
     haptic_interface,
+    load_shipped,
     position_symbol,
     read_diagram,
-    shipped,
     write_diagram,
 )
 from teleopdesign.diagrams.expressions import read_expression
@@ -147,9 +147,9 @@ def test_what_is_written_is_read_as_the_same_diagram(tmp_path_factory, diagram):
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_diagram_is_written_by_its_blocks_and_read_as_the_same(name, reading):
     """One that is no `kind` of its own has its wiring written out."""
-    text = diagram_text(shipped(name))
+    text = diagram_text(load_shipped(name))
     assert ("[junctions]" in text) == (name in WRITTEN_OUT)
-    assert reading(text) == shipped(name)
+    assert reading(text) == load_shipped(name)
 
 
 def test_a_value_may_carry_its_unit(reading):
@@ -274,7 +274,7 @@ def test_parallel_rods_and_arms_are_read_as_they_were_written(reading):
 
 def test_what_has_no_form_in_a_file_is_told_in_one_line(tmp_path):
     control = pytest.importorskip("control")
-    diagram = shipped("world-haptics-2005")
+    diagram = load_shipped("world-haptics-2005")
     filtered = diagram.with_block("C", from_control(control.tf([1.0], [0.1, 1.0])))
     with pytest.raises(ModelError, match='C: law "state_space" is none of the package'):
         write_diagram(filtered, tmp_path / "odd.toml")
@@ -314,11 +314,11 @@ def test_a_missing_file_and_an_unknown_name_are_told(tmp_path):
     with pytest.raises(ExperimentError, match="none.toml: cannot be read"):
         read_diagram(tmp_path / "none.toml")
     with pytest.raises(ModelError, match='did you mean "haptic-interface"'):
-        shipped("haptic-interfac")
+        load_shipped("haptic-interfac")
 
 
 def test_an_effect_that_a_reader_would_not_find_is_not_written(tmp_path):
-    diagram = shipped("world-haptics-2005")
+    diagram = load_shipped("world-haptics-2005")
     changed = EFFECTS["presliding"].without("bristle_damping")
     body = diagram.block("Z_M").body.with_effect(changed, {"stiffness": 1e4})
     with pytest.raises(ModelError, match='Z_M: effect "presliding" is not the one'):

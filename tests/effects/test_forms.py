@@ -22,7 +22,7 @@ from excitation import fit_record
 from truth_effects import PUBLIC
 
 from teleopdesign.blocks import Body, Value
-from teleopdesign.effects import EFFECTS, SIGNALS, load_effect, rubbing
+from teleopdesign.effects import EFFECTS, SIGNALS, load_effect, make_rubbing_structure
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
 from teleopdesign.realise.traced import Along, Traced
@@ -143,7 +143,7 @@ def test_a_tip_that_dry_friction_holds_rests_and_lets_the_spring_wind_up():
             "transmission_compliance.damping": 1.0, "tip_friction.level": 0.2}  # fmt: skip
     effect = unled(body_of("transmission_compliance", "tip_friction", values=held))
     body = effect.effects[0]
-    held_tip = rubbing(body, effect.tip_level())
+    held_tip = make_rubbing_structure(body, effect.tip_level())
     t = np.arange(1000) * 1e-3
     x = 4e-4 * t  # m; the spring has 0.2 N after 0.5 s
     zero = Traced(np.zeros_like(x), np.zeros((0, len(x))))

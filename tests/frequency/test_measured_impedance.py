@@ -11,7 +11,7 @@ from teleopdesign.blocks import Body
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
 from teleopdesign.errors import ModelError
-from teleopdesign.frequency import bode, falling, measured_impedance, simulated_response
+from teleopdesign.frequency import bode, falling_profile, measured_impedance, simulated_response
 
 LINEAR = body(0.2, viscous__damping=3.0, spring__stiffness=500.0)
 
@@ -62,7 +62,7 @@ def test_cycles_settle_behind_a_slow_filter():
 
 def test_amplitude_can_follow_a_profile():
     found = measured_impedance(
-        haptic_interface(LINEAR), amplitude=falling(0.01), frequency=[1.0, 10.0]
+        haptic_interface(LINEAR), amplitude=falling_profile(0.01), frequency=[1.0, 10.0]
     )
     assert found.on_profile
     np.testing.assert_allclose(found.data["amplitude"], [0.01, 0.01 * 10**-0.8])

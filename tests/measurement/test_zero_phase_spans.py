@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.zero_phase import both_ways, margin, sections
+from teleopdesign.measurement.zero_phase import filter_both_ways, margin, sections
 from teleopdesign.measurement.zero_phase_spans import (
     NEAR,
-    between,
+    connect_spans,
     crossings,
     filter_spans,
     spans_of,
@@ -21,9 +21,9 @@ def both(signals, rows, cutoff, sample_time):
     m = margin(n, sample_time)
     known = sections(cutoff, sample_time)
     whole, spanned = np.empty((n + 2 * m, r)), np.full((n + 2 * m, r), np.nan)
-    both_ways(signals, whole, *known)
+    filter_both_ways(signals, whole, *known)
     spans = spans_of(rows, n, m, cutoff * sample_time)
-    filters = (*known, *between(spans, *crossings(cutoff, sample_time)))
+    filters = (*known, *connect_spans(spans, *crossings(cutoff, sample_time)))
     filter_spans(signals, spanned, spans, filters)
     return spanned[m + rows], whole[m + rows], spans
 

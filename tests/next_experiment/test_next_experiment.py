@@ -15,7 +15,7 @@ from next_experiment.next_cases import KNOWN, POOR, RATE, Rod
 from teleopdesign import Model, find_missing
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import write_answer
-from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment import (
@@ -55,7 +55,7 @@ def one_speed(tmp_path_factory):
 def test_a_proposal_from_the_answer_is_the_same(one_speed, tmp_path):
     _, experiment, proposal = one_speed
     write_answer(proposal.diagnosis, tmp_path / "answer.json")
-    again = propose(restored(load_answer(tmp_path / "answer.json"), experiment, FEW))
+    again = propose(restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment, FEW))
     assert proposal.rivals and proposal_data(again) == proposal_data(proposal)
 
 

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from teleopdesign.controllers import SIGNALS, controller, scheduled_force_feedback
-from teleopdesign.diagrams import reading, world_haptics_2005
+from teleopdesign.diagrams import read_open_number, world_haptics_2005
 from teleopdesign.effects import EFFECTS
 from teleopdesign.simulate import simulate
 
@@ -98,8 +98,12 @@ def test_the_lead_is_the_papers_lead():
 def test_the_rod_moves_only_if_the_loop_can_overcome_friction(share, moves):
     """abs(K(0)) A > F_C, or a slow reference does not move the rod at all."""
     diagram = world_haptics_2005(position_loop=True).without("H", "C")
-    stiffness = reading("position_gain") * reading("position_zero") / reading("position_pole")
-    amplitude = share * reading("coulomb_level") / stiffness
+    stiffness = (
+        read_open_number("position_gain")
+        * read_open_number("position_zero")
+        / read_open_number("position_pole")
+    )
+    amplitude = share * read_open_number("coulomb_level") / stiffness
     give = 1e-5
     result = simulate(
         diagram,

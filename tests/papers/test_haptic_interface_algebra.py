@@ -11,7 +11,7 @@ from teleopdesign.derive import (
     as_latex,
     block_symbol,
     counterexample,
-    on_matrices,
+    insert_matrices,
     proved_equal,
     return_difference,
     transfer,
@@ -125,7 +125,7 @@ def test_force_feedback_becomes_perfect_as_its_gain_grows():
             Z_H: sp.Matrix([[2, -1], [1, 4]]),
             H: gain * sp.Matrix([[2, 1], [0, 1]]),
         }
-        sizes.append(float(on_matrices(1 - DERIVED["T_FF"], blocks).norm()))
+        sizes.append(float(insert_matrices(1 - DERIVED["T_FF"], blocks).norm()))
     assert sizes[1] / sizes[0] < 0.02 and sizes[2] / sizes[1] < 0.011
 
 

@@ -22,7 +22,7 @@ from teleopdesign.passivity import (
     bounded_compensation,
     confirmed_motion,
     dahl_compensation,
-    given_out,
+    released_energy,
     sampled_compensation,
     sampled_passivity,
     velocity_compensation,
@@ -286,7 +286,7 @@ def found_by_search(system, rng, *, number):
             continue
         give = give_of(system, strokes)
         try:
-            found = given_out(diagram, strokes, computer=system.computer, give=give)
+            found = released_energy(diagram, strokes, computer=system.computer, give=give)
         except ModelError:  # a contact too stiff for steps that this search can afford
             continue
         if found.last_round > 0:

@@ -8,7 +8,7 @@ import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
-from teleopdesign.passivity import Strokes, given_out, search_counterexample
+from teleopdesign.passivity import Strokes, released_energy, search_counterexample
 from teleopdesign.simulate import Sampling
 
 
@@ -46,7 +46,7 @@ def test_strokes_begin_and_end_at_rest_and_turn_where_they_say():
 
 def test_coulomb_friction_takes_its_level_times_the_way():
     strokes = Strokes((5e-3, -5e-3), speed=0.1, rounds=3)
-    found = given_out(joint(0.5, None), strokes)
+    found = released_energy(joint(0.5, None), strokes)
     way = np.abs(np.diff(strokes.path)).sum()
     # 1e-3: friction gives by 0.1 micrometre at each reversal, and steps are a percent of a stroke
     assert found.total == pytest.approx(-0.5 * way, rel=1e-3)

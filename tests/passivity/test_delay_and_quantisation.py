@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     delayed_small_motion,
-    given_out_late,
     inertia_given_out,
     quantised_spring,
     read_record,
+    released_by_delay,
     write_record,
 )
 from teleopdesign.passivity.rate_independent import Dahl, dahl_loss
@@ -40,7 +40,7 @@ def given_out_by_integration(amplitude, phase, *, level, stiffness):
 def test_what_a_late_compensator_gives_out(u, phase):
     """Closed form with a modified Bessel function against integration with 2e4 steps a cycle."""
     amplitude = u * DAHL["level"] / DAHL["stiffness"]
-    found = given_out_late(**DAHL, amplitude=amplitude, phase=phase)
+    found = released_by_delay(**DAHL, amplitude=amplitude, phase=phase)
     expected = given_out_by_integration(amplitude, phase, **DAHL)
     assert found == pytest.approx(expected, rel=1e-3)
 
@@ -50,13 +50,13 @@ def test_what_a_late_compensator_gives_out(u, phase):
 def test_delay_makes_a_friction_compensator_give_out_less(u, phase):
     amplitude = u * DAHL["level"] / DAHL["stiffness"]
     without = dahl_loss(DAHL["level"], DAHL["stiffness"], amplitude)
-    late = given_out_late(**DAHL, amplitude=amplitude, phase=phase)
+    late = released_by_delay(**DAHL, amplitude=amplitude, phase=phase)
     assert late <= without * (1 + 1e-12)
 
 
 def test_a_large_motion_gives_out_that_of_coulomb_friction():
     """4 f A cos(w tau) for A far beyond the bristle, where the spring part decays as u^-1/2."""
-    found = given_out_late(**DAHL, amplitude=1e4, phase=0.4)
+    found = released_by_delay(**DAHL, amplitude=1e4, phase=0.4)
     assert found == pytest.approx(4 * 0.7 * 1e4 * math.cos(0.4), rel=1e-3)
 
 

@@ -16,9 +16,9 @@ from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Search, diagram_claims
-from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.theorems import THEOREMS, Question, Wall, settle
-from teleopdesign.passivity.theorems._hypotheses import POSITIVE, hypotheses_of, under
+from teleopdesign.passivity.theorems._hypotheses import POSITIVE, hypotheses_of, require_hypotheses
 from teleopdesign.passivity.theorems.compliant_transmission import free_motion
 from teleopdesign.passivity.theorems.velocity_compensation import velocity_compensation
 from teleopdesign.simulate import Sampling
@@ -114,7 +114,7 @@ def test_a_theorem_answers_or_refuses_numbers_of_any_size(theorem, function, rou
 def test_a_function_without_a_hypothesis_for_an_argument_is_refused_where_it_is_defined():
     with pytest.raises(ModelError, match="other"):
 
-        @under(level=POSITIVE)
+        @require_hypotheses(level=POSITIVE)
         def half(level, other):
             return level
 
@@ -181,7 +181,7 @@ def test_claims_on_a_revolute_axis_have_its_units(name):
             for effect, given in effects.items():
                 made = made.with_effect(EFFECTS[effect], given)
             for computer in (None, Sampling(1e-3, 0.0, 1e-4)):
-                question = Question(identified(made), law.stages[0], wall, computer)
+                question = Question(identify_device(made), law.stages[0], wall, computer)
                 for one in settle(question, simulated=False):
                     text = f"{one.claim.statement} {one.claim.verdict}"
                     assert not re.search(r"\d N(?! m\b)|N s/m|\d m/s|\d kg(?! m)|\d m\b", text)

@@ -15,7 +15,7 @@ from teleopdesign.passivity.device_claims import (
     wall_claims,
 )
 from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
-from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.identified import identify_device
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
 from teleopdesign.simulate import Sampling
@@ -36,7 +36,7 @@ def body_of(**more):
 
 def claims_on(body, level=0.4, stiffness=1e4, reach=None):
     """Topic -> claim about a Dahl compensator, by theorems."""
-    found = friction_claims(identified(body, reach), Compensator("dahl", level, stiffness))
+    found = friction_claims(identify_device(body, reach), Compensator("dahl", level, stiffness))
     return {s.topic: s.claim for s in found}
 
 
@@ -52,13 +52,13 @@ BRISTLE = {"stiffness": 2e4, "bristle_damping": 30.0}
 def test_bristle_damping_below_a_falling_level_is_not_dropped():
     """The device alone gives out energy in jumps of speed: no pair with it can be proved."""
     body = body_of(**SLOPE, presliding=BRISTLE)
-    (own,) = device_claims(identified(body))
+    (own,) = device_claims(identify_device(body))
     assert own.claim.status == "refuted"
     assert own.claim.record.replay() > 0
     found = claims_on(body)
     assert found["estimate"].status == found["95 % interval"].status == "unknown"
     assert "bristle damping may give out energy" in str(found["estimate"].verdict)
-    assert list(margins(identified(body))) == []
+    assert list(margins(identify_device(body))) == []
 
 
 def test_viscous_damping_makes_up_for_it():
@@ -112,15 +112,15 @@ def test_an_effect_that_may_supply_energy_leaves_a_claim_open(effect, values, id
 
 def test_damping_of_one_direction_counts_against_that_of_the_other():
     asymmetric = {"viscous_asymmetry": {"half_difference": -0.5}}
-    found = identified(body_of(viscous={"damping": 2.0}, **asymmetric))
+    found = identify_device(body_of(viscous={"damping": 2.0}, **asymmetric))
     assert found.set_aside == ()
     assert found.damping.low == pytest.approx(1.5)
     # alone it pushes one way
     body = body_of(viscous={"damping": 0.2}, **asymmetric)
-    assert identified(body).set_aside == ("viscous_asymmetry",)
+    assert identify_device(body).set_aside == ("viscous_asymmetry",)
     assert statuses(body)["any law within the level"] == "unknown"
     law = dict(stiffness=100.0, damping=0.0, computer=Sampling(period=1e-4))
-    (wall,) = wall_claims(identified(body), **law)
+    (wall,) = wall_claims(identify_device(body), **law)
     assert wall.claim.status == "unknown"
 
 
@@ -135,25 +135,27 @@ def test_a_users_force_that_does_not_say_leaves_claims_open():
         return -p.size * now.velocity
 
     body = body_of().with_effect(own("force", law), {"size": 0.1})
-    assert identified(body).set_aside == ("own",)
+    assert identify_device(body).set_aside == ("own",)
     found = claims_on(body)["any law within the level"]
     assert found.status == "unknown"
     assert "own may supply energy" in str(found.verdict)
     false = body_of().with_effect(own("force", law, energy="dissipates"), {"size": 0.1})
-    assert identified(false).set_aside == ("own",)
+    assert identify_device(false).set_aside == ("own",)
 
     def damping(now, p):
         return p.size * now.velocity
 
     true = body_of().with_effect(own("force", damping, energy="dissipates"), {"size": 0.1})
-    assert identified(true).set_aside == ()
+    assert identify_device(true).set_aside == ()
     damper = own("force", lambda now, p: p.size * now.velocity)
-    assert identified(body_of().with_effect(damper, {"size": 0.1})).set_aside == (), "it is proved"
+    assert identify_device(body_of().with_effect(damper, {"size": 0.1})).set_aside == (), (
+        "it is proved"
+    )
 
 
 def test_a_users_shape_of_friction_is_none_that_a_theorem_is_about():
     shape = own("friction_shape", lambda now, p: now.level * now.velocity / p.size)
-    assert identified(body_of().with_effect(shape, {"size": 0.1})).set_aside == ("own",)
+    assert identify_device(body_of().with_effect(shape, {"size": 0.1})).set_aside == ("own",)
 
 
 def test_design_and_passivity_have_one_interval():
@@ -161,7 +163,7 @@ def test_design_and_passivity_have_one_interval():
     body = body_of(
         **SLOPE, position_dependent_friction={"amplitude": 0.2, "period": 0.05, "phase": 0.3}
     ).with_values({"position_dependent_friction.period": td.Value(0.05, stderr=0.002)})
-    found = identified(body, REACH)
+    found = identify_device(body, REACH)
     assert found.friction == friction_interval(body, REACH, errors=1.96)
     assert found.lowest.low == pytest.approx(0.4, rel=1e-4)
     claim = claims_on(body, level=0.3, reach=REACH)["any law within the level"]
@@ -181,4 +183,4 @@ def test_a_level_without_an_upper_bound_is_refused_where_one_is_needed():
     load = {"load_dependent_friction": {"coefficient": 0.1}}
     assert statuses(body_of(**load))["any law within the level"] == "proved"
     with pytest.raises(ModelError, match="no upper bound of the friction level over any acting"):
-        identified(body_of(**load, presliding={"stiffness": 1e4}))
+        identify_device(body_of(**load, presliding={"stiffness": 1e4}))

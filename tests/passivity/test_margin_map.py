@@ -9,7 +9,7 @@ from devices import body
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import four_channel, haptic_interface
 from teleopdesign.errors import ModelError
-from teleopdesign.passivity import diagram_claims, margin_map, over_frequency, two_port
+from teleopdesign.passivity import diagram_claims, margin_map, sweep_margins, two_port
 from teleopdesign.passivity.ports import impedance_matrix, ports
 
 DAMPING, GAIN = "C_m.proportional_derivative.damping", "C_2.gain.gain"
@@ -38,7 +38,7 @@ def test_each_point_is_the_two_port_of_the_diagram_at_its_values():
     found = margin_map(diagram, {GAIN: [0.05, 0.3], DAMPING: [10.0, 60.0]}, frequency=F)
     for gain in (0.05, 0.3):
         at = diagram.with_values({GAIN: gain, DAMPING: 60.0})
-        expected = over_frequency(two_port(impedance_matrix(at, ports(at)).tolist()), F)
+        expected = sweep_margins(two_port(impedance_matrix(at, ports(at)).tolist()), F)
         here = found.data.sel({GAIN: gain, DAMPING: 60.0})
         assert float(here["llewellyn"]) == pytest.approx(expected.llewellyn.min(), rel=1e-9)
         assert float(here["passive"]) == pytest.approx(expected.passive.min(), rel=1e-9)

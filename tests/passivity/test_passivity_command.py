@@ -9,7 +9,7 @@ import teleopdesign as td
 from teleopdesign.cli import main
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity.device_claims import Compensator, compensation_claims
-from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.identified import identify_device
 
 
 def number(value, stderr, unit):
@@ -139,7 +139,7 @@ def body_with(**values):
 
 def test_the_lowest_level_is_that_of_the_whole_law():
     """Stribeck adds at rest, asymmetry takes from one direction."""
-    found = identified(
+    found = identify_device(
         body_with(
             coulomb__level=0.5,
             stribeck__extra_static_level=0.2,
@@ -147,16 +147,16 @@ def test_the_lowest_level_is_that_of_the_whole_law():
         )
     )
     assert (found.lowest.estimate, found.highest.estimate) == pytest.approx((0.5, 0.7))
-    found = identified(body_with(coulomb__level=0.5, coulomb_asymmetry__half_difference=0.1))
+    found = identify_device(body_with(coulomb__level=0.5, coulomb_asymmetry__half_difference=0.1))
     assert (found.lowest.estimate, found.highest.estimate) == pytest.approx((0.4, 0.6))
 
 
 def test_a_level_that_may_be_zero_covers_no_compensation():
     body = body_with(coulomb__level=0.5).with_values({"coulomb.level": td.Value(0.5, stderr=0.3)})
     with pytest.raises(ModelError, match="as low as"):
-        identified(body)
+        identify_device(body)
     with pytest.raises(ModelError, match="no friction to compensate"):
-        identified(body_with(viscous__damping=1.0))
+        identify_device(body_with(viscous__damping=1.0))
 
 
 @pytest.mark.slow
@@ -168,7 +168,7 @@ def test_damping_covers_what_the_lowest_level_does_not():
         stribeck__stribeck_velocity=0.05,
         viscous__damping=2.0,
     )
-    found = identified(body)
+    found = identify_device(body)
     v = np.linspace(0, 1, 100001)
     least = np.min(0.5 + 0.2 * np.exp(-((v / 0.05) ** 2)) + 2.0 * v)
     # a bound, met within 1e-4

@@ -12,9 +12,9 @@ from teleopdesign.diagrams import (
     Diagram,
     Linked,
     Moving,
-    by_jacobian,
     joint,
     teleoperator_of_arms,
+    tip_coordinates,
 )
 from teleopdesign.passivity import diagram_claims, ports
 from teleopdesign.passivity.linear_diagrams import linear_claims
@@ -98,7 +98,7 @@ def test_with_dead_times_nothing_is_claimed_of_three_ports():
 
 
 JOINT = td.Body("revolute", {"inertia": 0.01}).with_effect(td.EFFECTS["viscous"], {"damping": 0.1})
-LINKS = Arm((JOINT, JOINT), by_jacobian([[0.3, 0.1], [0.0, 0.2]]))
+LINKS = Arm((JOINT, JOINT), tip_coordinates([[0.3, 0.1], [0.0, 0.2]]))
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from devices import body
 from teleopdesign.controllers import controller
 from teleopdesign.effects import EFFECTS
 from teleopdesign.passivity import Claim, Evidence, Refutation
-from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.theorems import THEOREMS, Question, Theorem, TopicClaim, Wall, settle
 from teleopdesign.simulate import Sampling
 
@@ -19,7 +19,7 @@ def device(**effects):
     made = body(0.1)
     for name, values in effects.items():
         made = made.with_effect(EFFECTS[name], values)
-    return identified(made)
+    return identify_device(made)
 
 
 IDEAL = device(coulomb={"level": 0.5}, viscous={"damping": 1.0})

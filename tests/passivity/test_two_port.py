@@ -11,10 +11,10 @@ from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     absolutely_stable,
     delayed_spring,
-    over_frequency,
     passive,
     read_record,
     region,
+    sweep_margins,
     teleoperator_two_port,
     two_port,
     write_record,
@@ -122,7 +122,7 @@ def test_with_delay_a_positive_margin_is_evidence_never_proof():
 def test_a_reciprocal_two_port_is_passive_where_it_is_absolutely_stable():
     """With z12 = z21 both criteria are r11 r22 >= (Re z12)^2, also with equal delays each way."""
     f = np.geomspace(0.1, 1000, 200)
-    margins = over_frequency(coupled(stiffness=1250, delay=1e-3), f)
+    margins = sweep_margins(coupled(stiffness=1250, delay=1e-3), f)
     assert np.array_equal(margins.passive >= 0, margins.llewellyn >= 0)
     assert passive(coupled(stiffness=900, delay=1e-3)).holds
     assert passive(coupled(stiffness=1100, delay=1e-3)).status == "refuted"
@@ -131,7 +131,7 @@ def test_a_reciprocal_two_port_is_passive_where_it_is_absolutely_stable():
 def test_margins_over_frequency_change_sign_where_the_criterion_says():
     """b_m b_s against (P T sinc(w T))^2: with P T = 1.25 the margin crosses where sinc = 0.8."""
     f = np.linspace(1.0, 400.0, 3991)
-    margins = over_frequency(coupled(stiffness=1250, delay=1e-3), f)
+    margins = sweep_margins(coupled(stiffness=1250, delay=1e-3), f)
     crossing = f[np.flatnonzero(margins.llewellyn >= 0)[0]]
     y = 2 * np.pi * crossing * 1e-3
     assert np.sin(y) / y == pytest.approx(0.8, abs=2e-4)  # steps of 0.1 Hz
@@ -156,7 +156,7 @@ def test_passivity_by_the_sweep_agrees_with_the_exact_verdict(number):
         n = [sp.Rational(int(x), 4) for x in rng.integers(-6, 9, 6)]
         z = [[abs(n[0]) + 1 / (S + 1), n[1] + n[2] / (S + 2)], [n[3], abs(n[4]) + 1 + S]]
         system = two_port(z)
-        margins = over_frequency(system)
+        margins = sweep_margins(system)
         for claim, margin in (
             (passive(system), margins.passive),
             (absolutely_stable(system), margins.llewellyn),
@@ -190,7 +190,7 @@ TANK = S / (S**2 + 2)
 def test_residues_that_the_axis_does_not_show_refute(z, where):
     """Llewellyn's inequality holds at every frequency, but the two-port grows between its ports."""
     system = two_port(z)
-    assert np.min(over_frequency(system).llewellyn) > -1e-9
+    assert np.min(sweep_margins(system).llewellyn) > -1e-9
     claim = absolutely_stable(system)
     assert claim.status == "refuted"
     assert where in claim.verdict.method

@@ -11,7 +11,7 @@ import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
-from teleopdesign.passivity import Strokes, confirmed_motion, given_out, velocity_compensation
+from teleopdesign.passivity import Strokes, confirmed_motion, released_energy, velocity_compensation
 from teleopdesign.passivity.rate_independent import dahl_loss
 from teleopdesign.simulate import Sampling
 
@@ -92,7 +92,7 @@ def test_a_contact_that_gives_is_driven_by_a_tenth_of_its_friction(computer):
 def test_the_energy_of_small_strokes_is_that_of_a_negative_damper():
     """Of a sinusoid: pi (f_D/a) A V a cycle, less what the bristles of the contact lose."""
     a, peak = 1e-7, 1e-5
-    found = given_out(device(0.05, 1e-9, 2e4), Strokes((a, -a), speed=peak))
+    found = released_energy(device(0.05, 1e-9, 2e4), Strokes((a, -a), speed=peak))
     expected = np.pi * 0.05 / 0.01 * a * peak - dahl_loss(0.5, 2e4, a)
     # 1 %: the law bends by a thousandth at that speed, the first rounds load the bristle
     assert found.last_round == pytest.approx(expected, rel=0.01)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.derive import two_port_functions
-from teleopdesign.diagrams import ANY, Junction, four_channel, shipped, wave_variables
+from teleopdesign.diagrams import ANY, Junction, four_channel, load_shipped, wave_variables
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
@@ -39,7 +39,7 @@ MATCHED = controller("proportional_integral", {"gain": 1.0, "rate": 40.0})
 @cache
 def derived():
     """Z of the shipped wiring as a function of s and of numbers for its blocks."""
-    form = two_port_functions(shipped("wave-variables"))
+    form = two_port_functions(load_shipped("wave-variables"))
     commuting = {n: sp.Symbol(n) for n in BLOCKS}
 
     def plain(e):

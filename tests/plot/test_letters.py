@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from teleopdesign.plot import letters
-from teleopdesign.plot.letters import about_boxes, further_fonts, house_style
+from teleopdesign.plot.letters import explain_boxes, further_fonts, house_style
 from teleopdesign.report.picture import picture
 
 #: Arabic: in DejaVu Sans, which comes with matplotlib, and in no font of the house style
@@ -39,9 +39,9 @@ def test_fonts_that_are_not_here_are_not_asked_for(caplog):
 
 
 def test_letters_without_a_font_are_said_in_one_line_with_what_helps():
-    line = about_boxes(["time (s)", f"{CUNEIFORM} (deg)"])
+    line = explain_boxes(["time (s)", f"{CUNEIFORM} (deg)"])
     assert CUNEIFORM in line and "install" in line and "\n" not in line
-    assert about_boxes(["Zeit (µs)", "Händkraft", ARABIC]) == ""
+    assert explain_boxes(["Zeit (µs)", "Händkraft", ARABIC]) == ""
 
 
 def test_a_font_that_is_here_is_used(monkeypatch):

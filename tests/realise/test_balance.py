@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.measurement.zero_phase import zero_phase
-from teleopdesign.realise.balance import STEPS, balanced
+from teleopdesign.realise.balance import STEPS, balance_within_bounds
 from teleopdesign.realise.traced import Traced, constant
 
 SAMPLE_TIME, BANDWIDTH = 2e-3, 60.0
@@ -53,7 +53,7 @@ def bounded(seed, open_share, tangents=3, n=2_400):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_share, n):
     signals = bounded(seed, open_share, n=n)
-    friction = balanced(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
+    friction = balance_within_bounds(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
     # rounding, through eight turns of a filter that amplifies nothing
     assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
 
@@ -70,7 +70,7 @@ def test_windows_about_few_open_rows_give_what_the_whole_record_does(places):
     up = np.where(is_open & (high.value < 0.0), -1.0, 1.0)
     down = np.where(is_open & (low.value > 0.0), -1.0, 1.0)
     signals = (needed, low.times(down), high.times(up))
-    friction = balanced(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
+    friction = balance_within_bounds(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
     assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
 
 
@@ -79,10 +79,12 @@ def test_tangents_that_are_nothing_need_no_memory_and_change_nothing():
     signals = [Traced(s.value, np.zeros_like(s.tangent)) for s in (needed, low, high)]
     without = [constant(s.value, len(s.tangent)) for s in signals]
     of = {"bandwidth": BANDWIDTH, "sample_time": SAMPLE_TIME}
-    one, other = balanced(*signals, **of), balanced(*without, **of)
+    one, other = balance_within_bounds(*signals, **of), balance_within_bounds(*without, **of)
     assert (one.value == other.value).all() and not other.tangent.any()
 
 
 def test_where_every_sample_tells_its_motion_friction_is_its_bound():
     needed, low, _ = bounded(4, 0.0)
-    assert balanced(needed, low, low, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME) is low
+    assert (
+        balance_within_bounds(needed, low, low, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME) is low
+    )

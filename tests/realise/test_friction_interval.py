@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter, State
 from teleopdesign.errors import ModelError
-from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.identified import identify_device
 from teleopdesign.realise.acting_bound import largest_acting_force
 from teleopdesign.realise.damping_interval import damping_interval, small_motion_damping
 from teleopdesign.realise.friction_interval import friction_interval
@@ -158,8 +158,8 @@ def test_friction_of_the_load_has_no_upper_bound_until_the_load_has():
     assert found.over == "acting force -3 to 3 N"
     values["presliding.stiffness"] = 1e4
     with pytest.raises(ModelError, match="no upper bound of the friction level.*give the experi"):
-        identified(body_of(values))
-    assert identified(body_of(values), REACH).highest.high == pytest.approx(0.8)
+        identify_device(body_of(values))
+    assert identify_device(body_of(values), REACH).highest.high == pytest.approx(0.8)
 
 
 def user(law, role="friction_level", **more):

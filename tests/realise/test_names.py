@@ -32,7 +32,7 @@ from teleopdesign.realise._codegen import ANALOG, DIGITAL, Generator
 from teleopdesign.realise.equations import equations
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.private_names import private_names
-from teleopdesign.realise.simulated import in_computer, simulated
+from teleopdesign.realise.simulated import prepare_for_simulation, realise_in_computer
 from teleopdesign.simulate import prepare, simulate, sine
 
 #: words that generated code, Python, sympy or the package might want for itself
@@ -255,8 +255,8 @@ PRIVATE = re.compile(r"v\d+_|(p|k|out|a|b)\d+|j\d*_|[A-Z][A-Z_]+(_\d)?")
 @pytest.mark.parametrize("sampled", [False, True], ids=["continuous", "sampled"])
 def test_generated_source_holds_private_words_alone(name, sampled):
     """No name of an effect, a law or a parameter either: users write those too."""
-    inner = simulated(DIAGRAMS[name], 1e-5)
-    inner = in_computer(inner, 1e-3) if sampled else inner
+    inner = prepare_for_simulation(DIAGRAMS[name], 1e-5)
+    inner = realise_in_computer(inner, 1e-3) if sampled else inner
     generator = Generator(equations(private_names(inner).diagram, sampled=sampled))
     tree = ast.parse(generator.source())
     words = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}

@@ -13,7 +13,7 @@ from report.html_page import HtmlPage
 from teleopdesign.finding import Graph, Series
 from teleopdesign.plot.graph import draw_graph, extremes, thin_series
 from teleopdesign.report.picture import picture
-from teleopdesign.report.scaled import scaled
+from teleopdesign.report.scaled import choose_prefix
 
 X = np.linspace(0.0, 1.0, 50)
 
@@ -138,7 +138,7 @@ def test_the_same_figure_gives_the_same_bytes():
     ],
 )
 def test_a_quantity_is_shown_in_the_prefix_that_reads_well(unit, size, shown):
-    assert scaled(unit, size).unit == shown
+    assert choose_prefix(unit, size).unit == shown
 
 
 def test_a_cloud_that_is_thinned_keeps_its_middle():

@@ -19,7 +19,7 @@ from report.html_page import HtmlPage
 
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.finding import Finding, Graph, Series
-from teleopdesign.plain_data import plain
+from teleopdesign.plain_data import make_plain
 from teleopdesign.report import write_report
 from teleopdesign.report.figures import graph_figure
 from teleopdesign.report.page import page_of
@@ -114,7 +114,7 @@ def _numbered(cell):
 
 
 def test_the_data_hold_the_answer(html, diagnosis):
-    assert html.data["answer"] == plain(answer(diagnosis))
+    assert html.data["answer"] == make_plain(answer(diagnosis))
     assert html.data["report"]["views"][0]["steps"][0]["check_error"] == pytest.approx(0.0707, 1e-2)
 
 
@@ -150,7 +150,7 @@ def test_a_page_stays_small_however_much_the_findings_hold(page, written, diagno
     many = [finding(graph=graph) for _ in range(20)]
     full = page_of(diagnosis, soundness=many)
     drawn = graph_figure(full.soundness[0].graph, "force")
-    data = len(embedded_json(plain(full))) - len(embedded_json(plain(page)))
+    data = len(embedded_json(make_plain(full))) - len(embedded_json(make_plain(page)))
     assert len(written) + data + 20 * len(drawn) < 2e6
 
 
@@ -224,7 +224,7 @@ def test_findings_are_escaped_in_text_names_and_figures(text, page, bare):
     full = dataclasses.replace(page, soundness=(one,), unexplained=(one,), next_steps=(one,))
     drawn = {("next", 0): graph_figure(graph, text)}
     figures = dataclasses.replace(bare, findings=drawn)
-    read = HtmlPage(render(full, figures, {"report": plain(full)}))
+    read = HtmlPage(render(full, figures, {"report": make_plain(full)}))
     assert [e.attributes.get("type") for e in read.all("script")] == ["application/json", None]
     assert read.all("script")[1].text == figure_script()
     (shown,) = read.all("img")
@@ -246,11 +246,11 @@ def test_sections_without_findings_are_left_out(page, figures):
 
 @given(st.recursive(st.floats() | st.text() | st.integers(), st.lists, max_leaves=5))
 def test_embedded_json_reads_back_and_cannot_end_its_element(value):
-    text = embedded_json(plain({"value": value}))
+    text = embedded_json(make_plain({"value": value}))
     assert "<" not in text and "&" not in text
-    assert json.loads(text) == plain({"value": value})
+    assert json.loads(text) == make_plain({"value": value})
 
 
 def test_numbers_that_are_not_finite_are_null():
-    found = plain({"a": math.nan, "b": np.array([1.0, np.inf]), "c": np.float64(2.0)})
+    found = make_plain({"a": math.nan, "b": np.array([1.0, np.inf]), "c": np.float64(2.0)})
     assert found == {"a": None, "b": [1.0, None], "c": 2.0}

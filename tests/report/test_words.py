@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.report.words import (
-    listed,
+    join_names,
     number,
     percent,
     short,
@@ -59,8 +59,8 @@ def test_a_value_and_its_error_are_printed_to_the_same_decimal(x, error):
         (unit_text("N*s/m"), "N·s/m"),
         (unit_text("kg*m^2"), "kg·m²"),
         (unit_text("1"), ""),
-        (listed(["a"]), "a"),
-        (listed(["a", "b", "c"], "or"), "a, b or c"),
+        (join_names(["a"]), "a"),
+        (join_names(["a", "b", "c"], "or"), "a, b or c"),
         (with_error(0.19717, 0.00081), ("0.19717", "0.00081")),
         (with_error(1.0, None), ("1.000", "–")),
     ],

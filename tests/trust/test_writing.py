@@ -17,7 +17,7 @@ ELSEWHERE = {
 
 
 def test_every_file_is_written_beside_its_target():
-    """In the package, files are written to the path that `replacing` gives, named `part`."""
+    """In the package, files are written to the path that `write_beside` gives, named `part`."""
     wrong = []
     for path, tree in syntax_trees().items():
         for node in ast.walk(tree):

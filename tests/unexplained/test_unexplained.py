@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.measurement.reversals import since_reversal
+from teleopdesign.measurement.reversals import look_back_to_reversal
 from teleopdesign.unexplained import describe_residual, where_it_fails
 from teleopdesign.unexplained.amounts import amount, number
 from teleopdesign.unexplained.rows import rows_of
@@ -110,12 +110,12 @@ def test_looking_is_fast(rod, lacking, failure):
 def test_time_and_travel_are_counted_from_where_the_body_set_off():
     direction = np.array([0, 1, 1, 0, 0, 0, 1, 1, -1, -1], dtype=np.int8)
     x = np.array([0.0, 1, 2, 2, 2, 2, 3, 4, 3, 2])
-    found = since_reversal(direction, x, sample_time=0.1, rest=0.35)
+    found = look_back_to_reversal(direction, x, sample_time=0.1, rest=0.35)
     assert found.known.tolist() == [False] + [True] * 9
     assert found.time == pytest.approx([0, 0, 0.1, 0.2, 0.3, 0.4, 0, 0.1, 0, 0.1])
     assert found.travel == pytest.approx([0, 0, 1, 1, 1, 1, 0, 1, 0, 1])
     assert found.rested[6:8] == pytest.approx(0.4) and found.rested[8] == pytest.approx(0.1)
-    short = since_reversal(direction, x, sample_time=0.1, rest=0.5)
+    short = look_back_to_reversal(direction, x, sample_time=0.1, rest=0.5)
     assert short.time[6] == pytest.approx(0.5), "a short stop is no new start"
 
 

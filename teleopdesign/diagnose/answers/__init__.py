@@ -8,7 +8,7 @@ restored(saved, experiment, known)                  # a Diagnosis: nothing is so
 `fingerprint` here.
 """
 
-from .restored import restored
+from .restored import restore_diagnosis
 from .saved import SavedAnswer, load_answer
 
-__all__ = ["SavedAnswer", "load_answer", "restored"]
+__all__ = ["SavedAnswer", "load_answer", "restore_diagnosis"]

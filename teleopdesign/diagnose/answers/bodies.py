@@ -9,7 +9,7 @@ from typing import Any
 from ...blocks import Body, Value, with_block_effects
 from ...blocks.described import body_of
 from ...effects import Effect
-from ...errors import ExperimentError, did_you_mean, quoted
+from ...errors import ExperimentError, did_you_mean, quote
 from ...measurement.arm_description import joints_from
 from ...measurement.description import ONE_BODY, TWO_BODIES, bodies_from
 from ...measurement.toml_table import Table
@@ -111,7 +111,7 @@ def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effec
     """The effect of that name; a line that asks for its file where it is a user's effect."""
     if name not in known:
         raise ExperimentError(
-            f"{where}: no effect {quoted(name)}{did_you_mean(name, known)}; "
+            f"{where}: no effect {quote(name)}{did_you_mean(name, known)}; "
             "if it is your own, give its file with --effect FILE"
         )
     return known[name]

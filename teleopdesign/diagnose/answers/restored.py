@@ -14,14 +14,14 @@ from ...model import Model
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis, OpenQuestion, SetAside, Untold
 from ..effort import EFFORTS
-from ..excerpt import on_windows
+from ..excerpt import cut_to_windows
 from ..fit import Fit, estimate
-from ..learnable import learnable_from, near_reversals_from
+from ..learnable import learnable_from, read_near_reversals
 from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
 from ..prepare import Prepared, prepare
 from ..ranking import Ranking
-from ..rung import Replaced, Rung, replaced_from
+from ..rung import Replaced, Rung, restore_replaced
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
 
@@ -47,7 +47,7 @@ class _Steps:
     open: tuple[tuple[Candidate | None, tuple[tuple[Candidate, Model], ...]], ...]
 
 
-def restored(
+def restore_diagnosis(
     saved: SavedAnswer,
     experiment: Experiment,
     known: Mapping[str, Effect] = EFFECTS,
@@ -67,9 +67,9 @@ def restored(
     for model in (*steps.models, steps.estimated, *(m for _, o in steps.open for _, m in o)):
         saved.require_bodies(model, experiment)
     whole = records or prepare(experiment, bandwidth=float(content["bandwidth"]["value"]))
-    prepared = on_windows(whole) if records is None else whole
+    prepared = cut_to_windows(whole) if records is None else whole
     fits = [
-        with_errors_of(row, evaluated(model, prepared))
+        with_errors_of(row, evaluate_fit(model, prepared))
         for model, row in zip(steps.models, content["ladder"], strict=True)
     ]
     fits[-1] = replace(fits[-1], at_bound=tuple(content.get("at_bound", ())))
@@ -85,19 +85,19 @@ def restored(
         verdict=saved.verdict,
         rungs=rungs,
         last=Ranking(fits[-1], ()),
-        estimated=evaluated(steps.estimated, prepared),
+        estimated=evaluate_fit(steps.estimated, prepared),
         floor=_floor(content),
         moment=_moment(content.get("one_moment")),
         learnable=learnable_from(content),
-        near_reversals=near_reversals_from(content),
-        named=tuple(c for c in steps.added if c is not None and c.key in _named(content)),
+        near_reversals=read_near_reversals(content),
+        named=tuple(c for c in steps.added if c is not None and c.key in _named_effects(content)),
         open=tuple(
-            OpenQuestion(added, tuple((c, evaluated(m, prepared)) for c, m in others))
+            OpenQuestion(added, tuple((c, evaluate_fit(m, prepared)) for c, m in others))
             for added, others in steps.open
         ),
         left_out=tuple(content.get("left_out", ())),
         untold=tuple(
-            Untold(_known(saved, row, known, "cannot_tell"), row["sentence"])
+            Untold(_restore_candidate(saved, row, known, "cannot_tell"), row["sentence"])
             for row in content.get("cannot_tell", ())
         ),
         set_aside=_set_aside(saved, known),
@@ -109,7 +109,9 @@ def _set_aside(saved: SavedAnswer, known: Mapping[str, Effect]) -> tuple[SetAsid
     """Effects that were accepted and are not there, with the reason."""
     return tuple(
         SetAside(
-            _known(saved, row, known, "set_aside"), error_from(row["check_error"]), row["reason"]
+            _restore_candidate(saved, row, known, "set_aside"),
+            error_from(row["check_error"]),
+            row["reason"],
         )
         for row in saved.content.get("set_aside", ())
     )
@@ -122,7 +124,7 @@ def with_errors_of(row: Mapping[str, Any], fit: Fit) -> Fit:
     )
 
 
-def evaluated(model: Model, prepared: Prepared) -> Fit:
+def evaluate_fit(model: Model, prepared: Prepared) -> Fit:
     """A fit with the residuals of a model and their derivatives; no parameter changes.
 
     Without check records, what is held out is fitted from here, as `estimate` does.
@@ -142,7 +144,7 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
     def candidate(place: Mapping[str, Any], key: str, *there: Model) -> Candidate:
         effects = with_block_effects(known)
         effect = known_effect(place["effect"], effects, where=f"{saved.file}: {key}")
-        return _in_model(saved, Candidate(effect, place["at"]), key, there)
+        return _candidate_in_model(saved, Candidate(effect, place["at"]), key, there)
 
     ladder = tuple(model(data, "models.ladder") for data in models["ladder"])
     estimated = model(models["estimated"], "models.estimated")
@@ -177,7 +179,7 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
             raise ExperimentError(f"{saved.file}: ladder: instead_of: found it beside added: null")
         place = None if instead is None else {"effect": instead, "at": row["added"]["at"]}
         gone = None if place is None else candidate(place, "ladder", ladder[0])
-        replaced.append(None if gone is None else replaced_from(gone, ladder[0]))
+        replaced.append(None if gone is None else restore_replaced(gone, ladder[0]))
     could_be = tuple(
         None
         if row.get("could_be") is None
@@ -204,7 +206,7 @@ def _require_models(saved: SavedAnswer) -> None:
         )
 
 
-def _in_model(
+def _candidate_in_model(
     saved: SavedAnswer, candidate: Candidate, key: str, models: tuple[Model, ...]
 ) -> Candidate:
     for model in models:
@@ -217,7 +219,7 @@ def _in_model(
     return candidate
 
 
-def _known(
+def _restore_candidate(
     saved: SavedAnswer, row: Mapping[str, Any], known: Mapping[str, Effect], key: str
 ) -> Candidate:
     """The candidate of a row, whether or not a model of the answer has it."""
@@ -225,7 +227,7 @@ def _known(
     return Candidate(known_effect(row["effect"], effects, where=f"{saved.file}: {key}"), row["at"])
 
 
-def _named(content: Mapping[str, Any]) -> set[tuple[str, str]]:
+def _named_effects(content: Mapping[str, Any]) -> set[tuple[str, str]]:
     return {(place["effect"], place["at"]) for place in content["missing"]}
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...blocks import CONTACT
 from ...effects import EFFECTS, Effect
-from ...errors import ExperimentError, did_you_mean, quoted
+from ...errors import ExperimentError, did_you_mean, quote
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ...quantity import AXES, unit_of
@@ -49,7 +49,7 @@ class SavedAnswer:
         folder: Path = Path(self.file).parent / recorded
         if not folder.is_dir():
             raise ExperimentError(
-                f"{self.file}: its experiment was in {quoted(recorded)}, found no such folder: "
+                f"{self.file}: its experiment was in {quote(recorded)}, found no such folder: "
                 f"give the folder, and --answer {self.file}"
             )
         return folder
@@ -92,7 +92,7 @@ class SavedAnswer:
         joints = self.content.get("joints", {})
         if joint not in joints:
             raise ExperimentError(
-                f"{self.file}: joints: no joint {quoted(joint)}, has {', '.join(joints) or 'none'}"
+                f"{self.file}: joints: no joint {quote(joint)}, has {', '.join(joints) or 'none'}"
                 f"{did_you_mean(joint, joints)}"
             )
         if "models" not in joints[joint]:
@@ -175,7 +175,7 @@ def _older_bodies(
         if place == CONTACT.name:
             effect = effect or place  # environment.stiffness: the contact itself
         if not effect:
-            raise ExperimentError(f"{saved.file}: model_parameters: no body has a {quoted(name)}")
+            raise ExperimentError(f"{saved.file}: model_parameters: no body has a {quote(name)}")
         holder = bodies[-1] if place == CONTACT.name else place
         row = tables[holder]["effects"].setdefault(effect, {})
         if parameter["value"] is not None:
@@ -199,8 +199,8 @@ def _axis_of(saved: SavedAnswer, place: str, unit: str) -> str:
         if unit == unit_of("inertia", axis):
             return axis
     raise ExperimentError(
-        f"{saved.file}: model_parameters.{place}.inertia.unit: found {quoted(unit)}, expected "
-        f"{' or '.join(quoted(unit_of('inertia', a)) for a in AXES)}: the answer of an earlier "
+        f"{saved.file}: model_parameters.{place}.inertia.unit: found {quote(unit)}, expected "
+        f"{' or '.join(quote(unit_of('inertia', a)) for a in AXES)}: the answer of an earlier "
         "version, it says no axis"
     )
 
@@ -225,7 +225,7 @@ def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
         unit = unit_of("inertia", experiment.axis(place))
         stated_unit = parameters.get(f"{place}.inertia", {}).get("unit", unit)
         if stated_unit != unit:
-            return f"{place}.inertia in {quoted(stated_unit)}, found {quoted(unit)}"
+            return f"{place}.inertia in {quote(stated_unit)}, found {quote(unit)}"
     stated = {place: set(body.effects) for place, body in experiment.bodies.items()}
     touched = experiment.environment
     stated[CONTACT.name] = set() if touched is None else set(touched.effects)
@@ -243,7 +243,7 @@ def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
         [moment["record"]] if moment else []
     )
     if others := [file for file in named_records if file not in files]:
-        return f"a record {quoted(others[0])}, found {', '.join(sorted(files))}"
+        return f"a record {quote(others[0])}, found {', '.join(sorted(files))}"
     bandwidth = content.get("bandwidth", {}).get("value", experiment.bandwidth)
     if experiment.bandwidth is not None and bandwidth != experiment.bandwidth:
         return f"bandwidth {bandwidth:g} Hz, found {experiment.bandwidth:g} Hz"

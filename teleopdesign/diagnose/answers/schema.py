@@ -13,8 +13,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ...errors import ExperimentError, quoted
-from ...measurement.toml_table import described
+from ...errors import ExperimentError, quote
+from ...measurement.toml_table import describe_toml_value
 
 #: checks a value; the text is where it stands, for the message
 Check = Callable[[object, str], None]
@@ -51,9 +51,9 @@ def read_content(path: str | Path) -> dict[str, Any]:
 def check_answer(content: object) -> None:
     """Refuse what is no answer; raises ExperimentError with the key in front."""
     if not isinstance(content, dict):
-        raise ExperimentError(f"found {_described(content)}, expected an answer of {WRITER}")
+        raise ExperimentError(f"found {_describe_value(content)}, expected an answer of {WRITER}")
     if lacking := [key for key in _REQUIRED if key not in content]:
-        raise ExperimentError(f"no key {quoted(lacking[0])}, expected an answer of {WRITER}")
+        raise ExperimentError(f"no key {quote(lacking[0])}, expected an answer of {WRITER}")
     for key, check in (_REQUIRED | _LATER).items():
         if key in content:
             check(content[key], key)
@@ -69,12 +69,12 @@ def _constant(name: str) -> NoReturn:
     raise ValueError(f"found {name}, expected a finite number or null")
 
 
-def _described(value: object) -> str:
-    return "null" if value is None else described(value)
+def _describe_value(value: object) -> str:
+    return "null" if value is None else describe_toml_value(value)
 
 
 def _wrong(where: str, value: object, expected: str) -> ExperimentError:
-    return ExperimentError(f"{where}: found {_described(value)}, expected {expected}")
+    return ExperimentError(f"{where}: found {_describe_value(value)}, expected {expected}")
 
 
 def _number(*, low: float = -math.inf, null: bool = False) -> Check:
@@ -108,7 +108,7 @@ def _flag(value: object, where: str) -> None:
 def _one_of(*known: str) -> Check:
     def check(value: object, where: str) -> None:
         if not isinstance(value, str) or value not in known:
-            raise _wrong(where, value, " or ".join(map(quoted, known)))
+            raise _wrong(where, value, " or ".join(map(quote, known)))
 
     return check
 
@@ -152,7 +152,7 @@ def _table(required: Mapping[str, Check], optional: Mapping[str, Check] | None =
         if not isinstance(value, dict):
             raise _wrong(where, value, "a table")
         if lacking := [key for key in required if key not in value]:
-            raise ExperimentError(f"{where}: no key {quoted(lacking[0])}")
+            raise ExperimentError(f"{where}: no key {quote(lacking[0])}")
         for key, one in {**required, **(optional or {})}.items():
             if key in value:
                 one(value[key], f"{where}.{key}")

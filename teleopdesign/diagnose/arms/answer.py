@@ -11,12 +11,12 @@ import numpy as np
 
 from ...measurement.filtering import Array
 from ...measurement.reading import reading_data
-from ...plain_data import harmless_cell, plain, replacing, write_json
+from ...plain_data import harmless_cell, make_plain, write_beside, write_json
 from ...realise.along_motion import residual_along
 from ..answer import (
     answer,
     candidate_rows,
-    opened,
+    open_for_writing,
     parameter_rows,
     place_data,
     set_aside_rows,
@@ -26,7 +26,7 @@ from ..answer import (
 from ..answers.bodies import model_data
 from ..answers.fingerprint import experiment_data
 from ..learnable import learnable_data
-from ..record_offsets import along_with_offsets
+from ..record_offsets import apply_record_offsets
 from ..record_shift import shift_data
 from .diagnosis import ArmDiagnosis, ArmRung
 
@@ -41,7 +41,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         shifts |= shift_data(d.model, d.prepared.stretches)
     return {
         "verdict": diagnosis.verdict,
-        "missing": [_missing(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
+        "missing": [_missing_effects(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
         "ladder": [_rung(r) for r in diagnosis.rungs],
         "noise_floor": diagnosis.floor,
         "noise_floor_source": next(iter(joints)).floor.source,
@@ -60,7 +60,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         "record_shift": shifts,
         "model_parameters": _parameters(diagnosis),
         **learnable_data(diagnosis.learnable, None),
-        "left_over_noise_floors": plain(diagnosis.left),
+        "left_over_noise_floors": make_plain(diagnosis.left),
         "at_bound": [n for d in joints for n in d.after.at_bound],
         "models": {
             "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
@@ -71,7 +71,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
     } | ({"left_out": list(diagnosis.left_out)} if diagnosis.left_out else {})
 
 
-def _missing(rung: ArmRung) -> dict[str, str]:
+def _missing_effects(rung: ArmRung) -> dict[str, str]:
     assert rung.added is not None
     place = place_data(rung.added.key)
     instead = rung.instead_of
@@ -103,7 +103,7 @@ def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
             if n != f"{j}.inertia"  # its body stands for the links too while it is searched
         }
     rows |= {
-        f"arm.{n}": {"value": plain(value), "stderr": plain(error), "unit": unit}
+        f"arm.{n}": {"value": make_plain(value), "stderr": make_plain(error), "unit": unit}
         for n, (value, error, unit) in diagnosis.base_parameters.items()
     }
     return rows
@@ -124,19 +124,19 @@ def write_arm_predictions(diagnosis: ArmDiagnosis, path: str | Path) -> None:
     for joint in diagnosis.joints:
         head += [f"{joint}.{q}" for q in ("measured", "model_before", "model_after")]
         head += [f"{joint}.residual_before", f"{joint}.residual_after"]
-    with replacing(path) as part, opened(part, path) as file:
+    with write_beside(path) as part, open_for_writing(part, path) as file:
         out = csv.writer(file)
         out.writerow(head)
         for record in diagnosis.experiment.records:
             columns: list[Array] = []
             for joint in diagnosis.joints:
-                columns += _predicted(diagnosis, joint, record.file)
+                columns += _predicted_forces(diagnosis, joint, record.file)
             for k, time in enumerate(record.time):
                 numbers = (f"{c[k]:.7g}" for c in columns)
                 out.writerow([harmless_cell(record.file), f"{time:.9g}", *numbers])
 
 
-def _predicted(diagnosis: ArmDiagnosis, joint: str, file: str) -> Sequence[Array]:
+def _predicted_forces(diagnosis: ArmDiagnosis, joint: str, file: str) -> Sequence[Array]:
     record = next(r for r in diagnosis.experiment.records if r.file == file)
     stretches = [s for s in diagnosis.before.prepared[joint].stretches if s.motion.file == file]
     interaction = record.signals.get(f"{joint}.interaction_force")
@@ -146,7 +146,7 @@ def _predicted(diagnosis: ArmDiagnosis, joint: str, file: str) -> Sequence[Array
     left = []
     for fit in (diagnosis.before, diagnosis.after):
         residual = np.zeros_like(measured)
-        for body, motion in along_with_offsets(fit.fits[joint].model, stretches):
+        for body, motion in apply_record_offsets(fit.fits[joint].model, stretches):
             residual[motion.rows] = residual_along(body, motion).residual.value
         left.append(residual)
     before, after = left

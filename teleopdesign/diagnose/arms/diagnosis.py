@@ -10,7 +10,7 @@ from ...by_value import ByValue
 from ...measurement.experiment import Experiment
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis
-from ..ladder_text import ladder_html, refused_lines, said_of_added, sentence
+from ..ladder_text import describe_addition, ladder_html, refused_lines, sentence
 from ..learnable import Learnable
 from ..ranking import named_instead
 from ..record_shift import shifts_of
@@ -135,7 +135,9 @@ class ArmDiagnosis(ByValue):
             errors = f"{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
             lines.append(f"{name:<42}{errors}")
             if rung.added is not None:
-                lines += said_of_added(self.joints[rung.added.at], self._at_its_joint(rung.added))
+                lines += describe_addition(
+                    self.joints[rung.added.at], self._at_its_joint(rung.added)
+                )
         lines.append(f"{'noise floor':<42}{'':>10}{100 * self.floor:>12.2f}%")
         lines += ["", f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}"]
         for j, diagnosis in self.joints.items():

@@ -21,7 +21,7 @@ from ..effort import EFFORTS, Effort
 from ..error import force_error
 from ..fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
 from ..prepare import Prepared, Stretch
-from ..record_offsets import along_with_offsets
+from ..record_offsets import apply_record_offsets
 from ..record_shift import record_shifts
 from ..residual import relative_residuals
 from ..search import estimate_from_starts
@@ -90,7 +90,7 @@ def estimate_arm(
     for k in range(rounds):
         if prepared.base is not None:
             if not any(m.absent for m in models.values()):
-                models = _at_common_links(models, prepared)
+                models = _estimate_at_common_links(models, prepared)
             sizes = misfits(models, prepared)
             known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in records.items()}
             common = _together(known)
@@ -107,7 +107,9 @@ def estimate_arm(
     return with_common_links(fits, records, prepared)
 
 
-def _at_common_links(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, Model]:
+def _estimate_at_common_links(
+    models: Mapping[str, Model], prepared: PreparedArm
+) -> dict[str, Model]:
     """Models of all joints estimated at base parameters that these agree on, by what they leave.
 
     A model that was led astray, or has just got an effect, leaves far more than it will, and by
@@ -118,7 +120,7 @@ def _at_common_links(models: Mapping[str, Model], prepared: PreparedArm) -> dict
     common = _together(known)
     there = {}
     for j, records in prepared.joints.items():
-        plain = replace(records, stretches=bare(records.of("fit")))
+        plain = replace(records, stretches=remove_links(records.of("fit")))
         model, free = models[j].with_links(common), free_parameters(models[j])
         there[j] = solve(model, free, plain, plain.stretches, EFFORTS.rough).model
     return there
@@ -133,7 +135,7 @@ def with_common_links(
         sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
         known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
         links = _together(known)
-    fits = {j: _held_against(f, f.model.with_links(links), records[j]) for j, f in fits.items()}
+    fits = {j: _evaluate_at(f, f.model.with_links(links), records[j]) for j, f in fits.items()}
     return ArmFit(
         fits=fits,
         prepared=dict(records),
@@ -143,12 +145,12 @@ def with_common_links(
     )
 
 
-def _held_against(fit: Fit, model: Model, records: Prepared) -> Fit:
+def _evaluate_at(fit: Fit, model: Model, records: Prepared) -> Fit:
     """A fit with the errors of its model at other base parameters.
 
     Without check records the blocks that were held out keep the links of their fits.
     """
-    fit = replace(fit, model=model, fit_error=force_error(model, bare(records.of("fit"))))
+    fit = replace(fit, model=model, fit_error=force_error(model, remove_links(records.of("fit"))))
     check = records.of("check")
     if not check:
         return fit
@@ -164,17 +166,19 @@ def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, flo
     """
     if any(m.absent for m in models.values()):
         return dict(prepared.size)
-    left = {j: force_error(m, bare(prepared.joints[j].of("fit"))) for j, m in models.items()}
+    left = {
+        j: force_error(m, remove_links(prepared.joints[j].of("fit"))) for j, m in models.items()
+    }
     return {j: max(left[j], LEAST) * size for j, size in prepared.size.items()}
 
 
-def felt(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
+def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
     """Stretches with what a joint feels of the links: where it is at rest, friction takes that up.
 
     Else a row at rest would say that the links are what the model has already.
     """
     made = []
-    for s, (body, motion) in zip(stretches, along_with_offsets(model, stretches), strict=True):
+    for s, (body, motion) in zip(stretches, apply_record_offsets(model, stretches), strict=True):
         assert s.motion.links is not None
         wrt = [LinkParameter(motion.body, k) for k in range(len(model.links))]
         slopes = residual_along(body, motion, wrt).residual.tangent
@@ -183,7 +187,7 @@ def felt(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
     return tuple(made)
 
 
-def bare(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
+def remove_links(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
     """Stretches as they were measured, with the links' freedom left in."""
     return tuple(replace(s, shared=None) for s in stretches)
 
@@ -205,7 +209,7 @@ def _linear(
     model: Model, stretches: tuple[Stretch, ...]
 ) -> tuple[Array, Array, Array, tuple[Stretch, ...]]:
     """Columns of the links, residual, and columns of the joint's parameters, with priors."""
-    plain, free = bare(felt(model, stretches)), _inside(model)
+    plain, free = remove_links(add_links(model, stretches)), _list_inner_parameters(model)
     lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK))
     parts = relative_residuals(model, plain, (*free, *shifts.names))
@@ -225,7 +229,7 @@ def _linear(
     )
 
 
-def _inside(model: Model) -> tuple[str, ...]:
+def _list_inner_parameters(model: Model) -> tuple[str, ...]:
     """Free parameters that are not at the value where their effect is absent."""
     absent = {f"{at}.{name}" for name, at in model.absent}
     first = {f"{at}.{n}.{model.body(at).effect(n).strength}" for n, at in model.absent}
@@ -261,7 +265,7 @@ def with_others(
     mine = known[joint]
     nothing = Knowledge(np.zeros_like(mine.matrix), np.zeros_like(mine.vector))
     others = _sum([nothing, *(k for j, k in known.items() if j != joint)])
-    fit = iter(share(felt(model, prepared.of("fit")), others, size))
+    fit = iter(share(add_links(model, prepared.of("fit")), others, size))
     stretches = tuple(next(fit) if s.use == "fit" else s for s in prepared.stretches)
     return replace(prepared, stretches=stretches)
 

@@ -27,7 +27,7 @@ from ..search_plan import PLAN, SearchPlan
 from .bodies import as_bodies, with_final_bodies
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
-from .prepared import PreparedArm, alone, prepare_arm
+from .prepared import PreparedArm, isolate_joint, prepare_arm
 
 #: why an effect that one joint's records supported is not there
 NO_HELP = "it helps no more with all joints estimated together"
@@ -75,7 +75,7 @@ def find_missing_in_arm(
         stated = restrict_candidates(among, stated)
     said("forces of the links along the measured motion")
     prepared = prepare_arm(experiment, seed=seed)
-    known = stated.known if prepared.base is None else _beyond_links(stated.known)
+    known = stated.known if prepared.base is None else _select_beyond_links(stated.known)
     models = {
         j: Model({j: body}, known).with_links(prepared.initial) for j, body in stated.bodies.items()
     }
@@ -86,7 +86,7 @@ def find_missing_in_arm(
     joints: dict[str, _Joint] = {}
     for j in prepared.joints:
         search = LadderSearch(
-            experiment=alone(experiment, j),
+            experiment=isolate_joint(experiment, j),
             whole=first.prepared[j],
             prepared=first.prepared[j],
             stated=models[j],
@@ -94,7 +94,7 @@ def find_missing_in_arm(
             plan=plan.for_joints(len(prepared.joints)),
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
-        joints[j] = _begun(j, search, first.prepared[j], first.fits[j].model)
+        joints[j] = _begin_joint(j, search, first.prepared[j], first.fits[j].model)
     order = _climb(joints, prepared)
     said("all joints together")
     rungs = _rungs(joints, order, first, prepared)
@@ -104,7 +104,7 @@ def find_missing_in_arm(
     return with_final_bodies(replace(diagnosis, joints=limited), motors)
 
 
-def _beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
+def _select_beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
     """The effects that base parameters do not take up: that of each motor's inertia is estimated.
 
     A force by the acceleration of the joint alone would be told from it by nothing.
@@ -118,7 +118,7 @@ def _beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
     }
 
 
-def _begun(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
+def _begin_joint(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
     """A joint whose ladder begins, with what the others say of the links now."""
     search = replace(search, whole=prepared, prepared=prepared)
     fit = estimate(model, prepared)
@@ -138,11 +138,11 @@ def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
         if here.is_stale:
             records = {n: x.search.prepared for n, x in joints.items()}
             fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, prepared, j)
-            joints[j] = _begun(j, here.search, fresh, here.state.fit.model)
+            joints[j] = _begin_joint(j, here.search, fresh, here.state.fit.model)
             continue
         astray = _astray(here)
         if astray is not None:
-            here = _begun_again(joints, astray, prepared, j)
+            here = _begin_joint_again(joints, astray, prepared, j)
         state, _ = climb(here.search, here.state, _as_they_are)
         joints[j] = replace(here, state=state)
         waiting.remove(j)
@@ -168,7 +168,7 @@ def _astray(joint: _Joint) -> Model | None:
     return moved.fit.model
 
 
-def _begun_again(
+def _begin_joint_again(
     joints: dict[str, _Joint], model: Model, prepared: PreparedArm, joint: str
 ) -> _Joint:
     """A joint whose ladder begins anew, with what the others say of the links beside its effect.
@@ -187,7 +187,7 @@ def _begun_again(
     records = {**arm.prepared, joint: here.search.prepared}
     fresh = with_known(records, {**arm.fits, joint: here.state.fit}, prepared, joint)
     late = arm.fits[joint].model.record_shift
-    return _begun(joint, here.search, fresh, here.state.fit.model.with_record_shift(late))
+    return _begin_joint(joint, here.search, fresh, here.state.fit.model.with_record_shift(late))
 
 
 def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
@@ -231,7 +231,7 @@ def _rungs(
             before, after = rungs[-1].fit.fits[j], fit.fits[j]
             if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
                 rungs, waiting, kept = [*rungs, *waiting], [], i + 1
-        joints[j] = _without(joint, kept, waiting, why or NO_HELP)
+        joints[j] = _cut_ladder(joint, kept, waiting, why or NO_HELP)
     return tuple(rungs)
 
 
@@ -255,7 +255,7 @@ def _refusal(joint: _Joint, before: ArmFit, after: ArmFit) -> str:
     return "" if left <= kept * (there / sensors) ** 2 else NO_MORE_THAN_NOISE
 
 
-def _without(joint: _Joint, kept: int, refused: Sequence[ArmRung], why: str) -> _Joint:
+def _cut_ladder(joint: _Joint, kept: int, refused: Sequence[ArmRung], why: str) -> _Joint:
     """The joint with the first rungs of its ladder; the others are set aside.
 
     refused: the other candidates with all joints estimated again
@@ -281,7 +281,7 @@ def _conclude(
 ) -> ArmDiagnosis:
     """The verdict on each joint with the final links, and on the arm."""
     last = rungs[-1].fit
-    diagnoses = {j: _concluded(joints[j], last.fits[j], prepared) for j in prepared.joints}
+    diagnoses = {j: _conclude_joint(joints[j], last.fits[j], prepared) for j in prepared.joints}
     verdicts = {d.verdict for d in diagnoses.values()}
     whole = "undecided"
     if "effects_missing" in verdicts:
@@ -292,7 +292,7 @@ def _conclude(
     return ArmDiagnosis(experiment, prepared, whole, rungs, diagnoses, errors)
 
 
-def _concluded(joint: _Joint, fit: Fit, prepared: PreparedArm) -> Diagnosis:
+def _conclude_joint(joint: _Joint, fit: Fit, prepared: PreparedArm) -> Diagnosis:
     """The diagnosis of one joint, its last rung with the final links."""
     rungs = (*joint.state.rungs[:-1], replace(joint.state.rungs[-1], fit=fit))
     return conclude(joint.search, joint.state, rungs, beside=prepared.beside(joint.name))

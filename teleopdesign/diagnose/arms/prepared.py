@@ -49,7 +49,7 @@ class PreparedArm(ByValue):
         return [tuple(stretches[i].motion for stretches in others) for i in range(count)]
 
 
-def alone(experiment: Experiment, joint: str) -> Experiment:
+def isolate_joint(experiment: Experiment, joint: str) -> Experiment:
     """The experiment as one on this joint by itself."""
     channels = {n: c for n, c in experiment.channels.items() if c.body in (joint, None)}
     bodies = {joint: experiment.bodies[joint]}
@@ -67,7 +67,7 @@ def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
     bandwidth = experiment.bandwidth or default_bandwidth(experiment)
     arm, joints = experiment.arm.arm, tuple(experiment.bodies)
     base = base_parameters(arm) if experiment.arm.estimate == "base parameters" else None
-    prepared = {j: prepare(alone(experiment, j), bandwidth=bandwidth) for j in joints}
+    prepared = {j: prepare(isolate_joint(experiment, j), bandwidth=bandwidth) for j in joints}
     stretches: dict[str, list[Stretch]] = {j: [] for j in joints}
     generator = np.random.default_rng(seed)
     checked = bool(experiment.check_records)

@@ -11,15 +11,15 @@ from ...measurement.experiment import Experiment
 from ...model import Model
 from ..answers import SavedAnswer
 from ..answers.bodies import model_from
-from ..answers.restored import error_from, evaluated, restored, with_errors_of
+from ..answers.restored import error_from, evaluate_fit, restore_diagnosis, with_errors_of
 from ..diagnosis import Diagnosis
 from ..rung import Rung
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit
-from .prepared import PreparedArm, alone, prepare_arm, with_inertias
+from .prepared import PreparedArm, isolate_joint, prepare_arm, with_inertias
 
 
-def restored_arm(
+def restore_arm_diagnosis(
     saved: SavedAnswer, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
 ) -> ArmDiagnosis:
     """The diagnosis of an arm in an answer; residuals are computed, nothing is estimated.
@@ -41,11 +41,13 @@ def restored_arm(
     }
     prepared = with_inertias(prepared, inertias)
     joints = {
-        j: restored(saved.of_joint(j), alone(experiment, j), known, records=records)
+        j: restore_diagnosis(
+            saved.of_joint(j), isolate_joint(experiment, j), known, records=records
+        )
         for j, records in prepared.joints.items()
     }
     rows = saved.content["ladder"]
-    added = _added(joints)
+    added = _rungs_by_addition(joints)
     rungs = tuple(
         _rung(row, model, prepared, added, f"{saved.file}: ladder")
         for row, model in zip(rows, models, strict=True)
@@ -76,7 +78,7 @@ def _models(
     return models
 
 
-def _added(joints: Mapping[str, Diagnosis]) -> dict[tuple[str, str], Rung]:
+def _rungs_by_addition(joints: Mapping[str, Diagnosis]) -> dict[tuple[str, str], Rung]:
     """(effect, joint) -> the rung of that joint's ladder that added it."""
     return {r.added.key: r for d in joints.values() for r in d.rungs if r.added is not None}
 
@@ -93,7 +95,7 @@ def _rung(
     for j, records in prepared.joints.items():
         shifts = {n: late for n, late in model.record_shift.items() if n == j}
         mine = Model({j: model.bodies[j]}, model.known, shifts).with_links(model.links)
-        fits[j] = with_errors_of(errors[j], evaluated(mine, records))
+        fits[j] = with_errors_of(errors[j], evaluate_fit(mine, records))
     fit = ArmFit(
         fits=fits,
         prepared=prepared.joints,

@@ -14,17 +14,17 @@ from ...frozen import Catalogue
 from ..wiring import Diagram
 
 
-def _shipped() -> Mapping[str, Callable[[], Diagram]]:
+def _list_builders() -> Mapping[str, Callable[[], Diagram]]:
     files = sorted(m.name for m in iter_modules(__path__) if not m.name.startswith("_"))
     makers = {n: import_module(f"{__name__}.{n}").diagram for n in files}
     return Catalogue({n.replace("_", "-"): maker for n, maker in makers.items()}, "diagram")
 
 
 #: name -> what makes the diagram
-SHIPPED: Mapping[str, Callable[[], Diagram]] = _shipped()
+SHIPPED: Mapping[str, Callable[[], Diagram]] = _list_builders()
 
 
-def shipped(name: str) -> Diagram:
+def load_shipped(name: str) -> Diagram:
     """A diagram that ships with the package, by its name.
 
     raises ModelError: no such diagram; the message names the nearest one

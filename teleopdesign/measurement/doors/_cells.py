@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ._log import Array
 
 #: digits are taken once ("++"): a cell of a million digits and a letter is decided at once
@@ -63,7 +63,7 @@ def stamps_of(cells: Sequence[str]) -> Array | None:
         if day is not None:
             parts = [c.replace(",", ".").split(":") for c in cells]
             return np.array([3600.0 * int(h) + 60.0 * int(m) + float(s) for h, m, s in parts])
-        written = [_ZONE.sub("", _turned(c)).replace(",", ".") for c in cells]
+        written = [_ZONE.sub("", _turn_date(c)).replace(",", ".") for c in cells]
         with warnings.catch_warnings(action="ignore", category=UserWarning):  # of a time zone
             stamps = np.array(written, dtype="datetime64[ns]")
     except (ValueError, IndexError):
@@ -74,7 +74,7 @@ def stamps_of(cells: Sequence[str]) -> Array | None:
     return seconds
 
 
-def _turned(cell: str) -> str:
+def _turn_date(cell: str) -> str:
     """A date that begins with the day, as one that begins with the year."""
     match = _DAY.match(cell)
     if match is None:
@@ -129,6 +129,6 @@ def _numbers(cells: Sequence[str], where: str, before: int = 0) -> Array:
     for k, cell in enumerate(cells, start=before + 1):
         number = number_of(cell) if cell else math.nan
         if isinstance(number, str):
-            raise ExperimentError(f"{where}, row {k}: found {quoted(cell)}, expected a number")
+            raise ExperimentError(f"{where}, row {k}: found {quote(cell)}, expected a number")
         out[k - before - 1] = number
     return out

@@ -12,7 +12,7 @@ from typing import IO, cast
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ...quantity import is_unit
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
@@ -96,7 +96,7 @@ def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> Non
         raise ExperimentError(f"{file}: found a header and no rows, expected at least 64")
     cell = next((c for c in cells_of(filled[1], separator) if c), "")
     raise ExperimentError(
-        f"{file}: not a table of numbers: row 1: found {quoted(cell)}, expected a number"
+        f"{file}: not a table of numbers: row 1: found {quote(cell)}, expected a number"
     )
 
 

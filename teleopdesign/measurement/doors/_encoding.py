@@ -50,16 +50,16 @@ def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
         return "utf-8-sig"
     if b"\x00" in raw:
         raise ExperimentError(f"{file}: not a text (byte {raw.index(0)} is 0)")
-    if _decoded(raw, "utf-8", whole) is not None:
+    if _decode(raw, "utf-8", whole) is not None:
         return "utf-8"
-    shares = {e: _known_share(_decoded(raw, e, whole), e) for e in ALPHABETS}
+    shares = {e: _known_share(_decode(raw, e, whole), e) for e in ALPHABETS}
     best = max(shares, key=lambda e: shares[e])
     if shares[best] >= KNOWN:
         return best
-    return "cp1252" if _decoded(raw, "cp1252", whole) is not None else "latin-1"
+    return "cp1252" if _decode(raw, "cp1252", whole) is not None else "latin-1"
 
 
-def _decoded(raw: bytes, encoding: str, whole: bool) -> str | None:
+def _decode(raw: bytes, encoding: str, whole: bool) -> str | None:
     """The text, without a last letter that was cut; None: no text of this encoding."""
     try:
         return codecs.getincrementaldecoder(encoding)().decode(raw, final=whole)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 
 _NUMBER = re.compile(r" #\d+$")
 Array = NDArray[np.float64]
@@ -80,7 +80,7 @@ def how_to_save(name: str) -> str:
     name: of the variable
     """
     return (
-        f"{quoted(name)} is a timetable, table or other object that only MATLAB can unpack: in "
+        f"{quote(name)} is a timetable, table or other object that only MATLAB can unpack: in "
         'MATLAB, writetimetable(T, "log.csv") or S = table2struct(timetable2table(T), "ToScalar", '
         'true); save("log.mat", "S")'
     )
@@ -104,7 +104,7 @@ def refuse_odd_names(log: Log, file: str) -> None:
     if len(longest) > LONGEST_NAME:
         raise ExperimentError(
             f"{file}: found a column whose name has {len(longest)} characters, expected at most "
-            f"{LONGEST_NAME}: {quoted(longest)}"
+            f"{LONGEST_NAME}: {quote(longest)}"
         )
 
 
@@ -142,7 +142,7 @@ def part(values: Any, column: int | None) -> Any:
     return array.reshape(-1) if column is None else array[:, column]
 
 
-def listed(names: Iterable[str], most: int = 20) -> str:
+def join_names(names: Iterable[str], most: int = 20) -> str:
     """Names for a message."""
     names = list(names)
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ._log import MOST_BYTES, Log, part, parts_of, refuse_size, refusing_damage
 
 _KIND = ".npz file"
@@ -39,7 +39,7 @@ def open_arrays(path: Path, file: str) -> Log:
                 except (ValueError, KeyError, IndexError) as problem:
                     kind = "holds Python objects" if "pickle" in str(problem) else str(problem)
                     raise ExperimentError(
-                        f"{file}: {quoted(name)}: {kind}, expected numbers"
+                        f"{file}: {quote(name)}: {kind}, expected numbers"
                     ) from None
         return out
 

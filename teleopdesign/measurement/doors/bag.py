@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ...names import LONGEST
-from ._log import Array, Log, listed, optional, refuse_size, refusing_damage
+from ._log import Array, Log, join_names, optional, refuse_size, refusing_damage
 
 #: numbers of one message that become columns: images and point clouds are no log
 MOST_FIELDS = 200
@@ -55,7 +55,7 @@ def open_bag(path: Path, file: str) -> Log:
     columns = _columns(topics)
     if not columns:
         raise ExperimentError(
-            f"{file}: found no topic with numbers, but {listed(topics) or 'no messages'}"
+            f"{file}: found no topic with numbers, but {join_names(topics) or 'no messages'}"
         )
     clocks = {name: f"{_topic(name, topics)}.{STAMP}" for name in columns}
 
@@ -102,7 +102,7 @@ def _check_type_name(name: str, file: str) -> None:
     """A type is words joined by slashes: "sensor_msgs/msg/JointState"."""
     if not (0 < len(name) <= LONGEST and all(map(_WORD.fullmatch, name.split("/")))):
         raise ExperimentError(
-            f"{file}: found a message type {quoted(name)}, expected words joined by slashes, such "
+            f"{file}: found a message type {quote(name)}, expected words joined by slashes, such "
             "as sensor_msgs/msg/JointState"
         )
 
@@ -110,7 +110,7 @@ def _check_type_name(name: str, file: str) -> None:
 def _check_field(name: str, kind: Any, file: str) -> None:
     """A field is a word; its type holds words and sizes alone, at any depth."""
     if not (len(name) <= LONGEST and _WORD.fullmatch(name)):
-        raise ExperimentError(f"{file}: found a field {quoted(name)}, expected a word")
+        raise ExperimentError(f"{file}: found a field {quote(name)}, expected a word")
     parts = [kind]
     while parts:
         part = parts.pop()

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ...quantity import measures, si_factor
-from ._log import Array, Log, listed
+from ._log import Array, Log, join_names
 
 #: part of the shortest table for which all tables must run at the same time
 SHARED = 0.5
@@ -54,7 +54,7 @@ def open_folder(
 
     clocks = {w: f"{n}.{time_of[n]}" for w, (n, c) in columns.items() if c != time_of[n]}
     notes = [f"{n}: {note}" for n, log in logs.items() for note in log.notes]
-    notes.append(f"{len(logs)} tables, each with its own clock: {listed(names)}")
+    notes.append(f"{len(logs)} tables, each with its own clock: {join_names(names)}")
 
     def left_out() -> tuple[str, ...]:
         return tuple(f"{n}: {note}" for n, log in logs.items() for note in log.left_out())
@@ -78,7 +78,8 @@ def _time_column(log: Log, file: str) -> str:
     best = max(log.names, key=lambda name: likeness(name, "time"))
     if likeness(best, "time") == 0.0:
         raise ExperimentError(
-            f"{file}: found no column that is called time among {listed(log.names)}: tables side "
+            f"{file}: found no column that is called time among "
+            f"{join_names(log.names)}: tables side "
             "by side need one each"
         )
     return best

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ._log import Log, how_to_save, optional, part, parts_of, refuse_size, refusing_damage
 
 _KIND = "HDF5 file"
@@ -58,7 +58,7 @@ def open_hdf5(path: Path, file: str) -> Log:
     def _values(item: Any, name: str, column: int | str | None) -> Any:
         if item.external or item.is_virtual:
             raise ExperimentError(
-                f"{file}: dataset {quoted(name)} lies in another file, expected one file"
+                f"{file}: dataset {quote(name)} lies in another file, expected one file"
             )
         refuse_size(max(item.shape, default=0), file)
         if column == -1:

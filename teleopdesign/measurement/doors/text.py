@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ._cells import CellColumns, is_empty
 from ._dialect import (
     COMMENTS,
@@ -118,7 +118,7 @@ def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Itera
 def _place(header: Sequence[str], name: str, file: str) -> int:
     if header.count(name) > 1:
         raise ExperimentError(
-            f"{file}: found {header.count(name)} columns {quoted(name)}, expected one"
+            f"{file}: found {header.count(name)} columns {quote(name)}, expected one"
         )
     return header.index(name)
 
@@ -150,11 +150,11 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
             strays.append(count)
             count -= 1
             if len(strays) > max(FEW_STRAYS, MOST_STRAYS * count):
-                raise _ragged(file, strays[0], cells, width)
+                raise _ragged_row_error(file, strays[0], cells, width)
             continue
         if cells > width and not quoted_cells and separator != " ":
             if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
-                raise _ragged(file, count, cells, width)
+                raise _ragged_row_error(file, count, cells, width)
             line = line.rstrip("\r\n")[:-1] + "\n"
         yield line.replace(",", ".") if dialect.comma else line
     if cut:
@@ -169,7 +169,7 @@ def _is_text(line: str, dialect: Dialect) -> bool:
     return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
 
 
-def _ragged(file: str, row: int, cells: int, width: int) -> ExperimentError:
+def _ragged_row_error(file: str, row: int, cells: int, width: int) -> ExperimentError:
     return ExperimentError(
         f"{file}: row {row}: found {cells} cells, expected {width} as in the header"
     )
@@ -185,7 +185,7 @@ def _read_cell_by_cell(
 ) -> dict[str, Array]:
     """The slow way: empty cells are NaN, dates become seconds, other texts are named."""
     where = [
-        f"{file}: {channel + ': ' if channel else ''}column {quoted(name)}"
+        f"{file}: {channel + ': ' if channel else ''}column {quote(name)}"
         for name, channel in wanted.items()
     ]
     columns = CellColumns(where)

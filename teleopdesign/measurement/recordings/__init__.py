@@ -13,8 +13,8 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...arguments import checked
-from ...errors import ExperimentError, did_you_mean, quoted
+from ...arguments import check_types
+from ...errors import ExperimentError, did_you_mean, quote
 from . import emps, hsm150, mtm_wrist, psm_insertion
 from ._recording import RawFile, Recording
 
@@ -28,7 +28,7 @@ RECORDINGS: Mapping[str, Recording] = {
 }
 
 
-@checked
+@check_types
 def fetch(name: str, folder: str | Path | None = None, *, source: str | Path = _PUBLIC) -> Path:
     """The experiment's folder of a public recording; downloaded and converted if not there yet.
 
@@ -40,7 +40,7 @@ def fetch(name: str, folder: str | Path | None = None, *, source: str | Path = _
     """
     if name not in RECORDINGS:
         raise ExperimentError(
-            f"recordings: no recording {quoted(name)}, found {', '.join(RECORDINGS)}"
+            f"recordings: no recording {quote(name)}, found {', '.join(RECORDINGS)}"
             f"{did_you_mean(name, RECORDINGS)}"
         )
     target = (_cache() if folder is None else Path(folder)) / name
@@ -65,7 +65,7 @@ def _obtain(file: RawFile, source: str) -> Path:
     if not path.is_file():
         raise ExperimentError(f"recordings: no file {file.repository}/{file.path} in the source")
     if hashlib.sha256(path.read_bytes()).hexdigest() != file.sha256:
-        raise _not_as_expected(f"{file.repository}/{file.path}")
+        raise _changed_content_error(f"{file.repository}/{file.path}")
     return path
 
 
@@ -86,10 +86,10 @@ def _download(file: RawFile, address: str) -> Path:
             f"recordings: {address} cannot be downloaded: {type(problem).__name__}"
         ) from None
     except ValueError:
-        raise _not_as_expected(address) from None
+        raise _changed_content_error(address) from None
 
 
-def _not_as_expected(file: str) -> ExperimentError:
+def _changed_content_error(file: str) -> ExperimentError:
     return ExperimentError(f"recordings: {file}: found other content, expected the known sha256")
 
 

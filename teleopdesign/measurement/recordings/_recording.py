@@ -43,6 +43,6 @@ def write(path: Path, columns: Mapping[str, tuple[NDArray[np.float64], int]]) ->
     )
 
 
-def counted(values: NDArray[np.float64], rate: float) -> tuple[NDArray[np.float64], int]:
+def count_rows(values: NDArray[np.float64], rate: float) -> tuple[NDArray[np.float64], int]:
     """Time in s of one row of `values` after the other, at a rate in Hz: a column for `write`."""
     return np.arange(len(values)) / rate, 3

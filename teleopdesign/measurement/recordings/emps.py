@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ._recording import RawFile, Recording, counted, write
+from ._recording import RawFile, Recording, count_rows, write
 
 _SOURCE = ("forgi86/sysid-neural-continuous", "956aa7ecd73061b0321c6f6098d74c9e4a7ce67a")
 
@@ -14,7 +14,7 @@ def _convert(raw: list[Path], folder: Path) -> None:
     for path, name in zip(raw, ("emps_estimation", "emps_pulses"), strict=True):
         content = {k: v.ravel() for k, v in loadmat(path).items() if not k.startswith("__")}
         columns = {
-            "time_s": counted(content["qm"], 1000.0),
+            "time_s": count_rows(content["qm"], 1000.0),
             "position_m": (content["qm"], 8),
             "force_N": (content["gtau"] * content["vir"], 6),
             "reference_m": (content["qg"], 8),

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._recording import RawFile, Recording, counted, write
+from ._recording import RawFile, Recording, count_rows, write
 
 _SOURCE = ("WPI-AIM/dvrk_dynamics_identification", "7697d3a6c90866c1846f0d3054d7f78384ab1ef9")
 
@@ -12,7 +12,7 @@ _SOURCE = ("WPI-AIM/dvrk_dynamics_identification", "7697d3a6c90866c1846f0d3054d7
 def _convert(raw: list[Path], folder: Path) -> None:
     measured = np.loadtxt(raw[0], delimiter=",")
     columns = {
-        "time_s": counted(measured, 200.0),
+        "time_s": count_rows(measured, 200.0),
         "position_rad": (measured[:, 0], 7),
         "velocity_rad_per_s": (measured[:, 1], 6),
         "torque_Nm": (measured[:, 2], 6),

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._recording import RawFile, Recording, counted, write
+from ._recording import RawFile, Recording, count_rows, write
 
 _SOURCE = ("radiang/dvrk_parameter_identification", "b044f8f66e38006a6b8a9fe750d8d3344854da87")
 _FOLDER = "dvrk_si/scripts/data/stribeck_test_3dof_svd"
@@ -17,7 +17,7 @@ def _convert(raw: list[Path], folder: Path) -> None:
         measured = np.loadtxt(result, delimiter=",")[start:]
         commanded = np.loadtxt(command, delimiter=",")[2, start : start + len(measured)]
         columns = {
-            "time_s": counted(measured, 100.0),
+            "time_s": count_rows(measured, 100.0),
             "position_m": (measured[:, 2], 7),
             "velocity_m_per_s": (measured[:, 5], 6),
             "force_N": (measured[:, 8], 6),

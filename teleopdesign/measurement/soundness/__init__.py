@@ -38,7 +38,7 @@ def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
         findings += check_segments(record)
         findings += check_reading(record)
         for signal in record_signals:
-            findings += _of_a_channel(signal, [s for s in record_signals if s is not signal])
+            findings += _check_channel(signal, [s for s in record_signals if s is not signal])
         for position, velocity in _pairs(record_signals):
             findings += check_velocity(position, velocity)
     if not any(f.topic == "sample clock" for f in findings):
@@ -48,7 +48,7 @@ def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
-def _of_a_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
+def _check_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
     constant = check_constant(signal)
     if constant or signal.channel.quantity == "velocity":
         return constant  # a velocity is held against the position, and used for nothing else

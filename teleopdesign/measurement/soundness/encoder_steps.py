@@ -22,7 +22,7 @@ MULTIPLES = range(2, 65)
 ENOUGH = 20_000
 
 
-def gridded(x: Array, step: float) -> float:
+def measure_griddedness(x: Array, step: float) -> float:
     """How close readings lie to whole multiples of a step, from any zero: 0 to 1."""
     thinned = x[:: max(1, len(x) // ENOUGH)]
     return float(np.abs(np.mean(np.exp(2j * np.pi * (thinned - thinned[0]) / step))))
@@ -30,11 +30,11 @@ def gridded(x: Array, step: float) -> float:
 
 def true_step(x: Array, stated: float) -> float | None:
     """The step that the readings move in: the stated one or a multiple; None: neither."""
-    if gridded(x, stated) < ON_GRID:
+    if measure_griddedness(x, stated) < ON_GRID:
         return None
     reached, ratio = float(np.ptp(x)), round(reading_step(x) / stated)
     multiples = [k for k in (*MULTIPLES, ratio) if k > 1 and k * stated < 0.1 * reached]
-    on = [k for k in multiples if gridded(x, k * stated) > ON_GRID]
+    on = [k for k in multiples if measure_griddedness(x, k * stated) > ON_GRID]
     return stated * max(on, default=1)
 
 
@@ -66,7 +66,7 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
             f"{_as_written(signal, step):.4g} at channels.{signal.name}."
         )
     else:
-        swapped = [o.name for o in others if _on_these(o, stated)]
+        swapped = [o.name for o in others if _shares_steps(o, stated)]
         text = f"is not read in steps of the stated {stated:.4g} {signal.unit}"
         if swapped:
             text += f", but {swapped[0]} is: are the two columns swapped?"
@@ -86,7 +86,7 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     ]
 
 
-def _on_these(other: Signal, stated: float) -> bool:
+def _shares_steps(other: Signal, stated: float) -> bool:
     """Whether another channel moves in the stated steps; a much finer one does so by chance."""
     alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
-    return alike and gridded(other.values, stated) > ON_GRID
+    return alike and measure_griddedness(other.values, stated) > ON_GRID

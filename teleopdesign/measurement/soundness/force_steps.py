@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...finding import Finding
-from .encoder_steps import ON_GRID, gridded
+from .encoder_steps import ON_GRID, measure_griddedness
 from .signal import Signal
 
 #: 1: rounding error over the signal's standard deviation from which a step is reported; a hundredth
@@ -24,7 +24,7 @@ def check_force_steps(signal: Signal) -> list[Finding]:
         return []
     step, spread = signal.step, float(np.std(signal.values))
     error = step / np.sqrt(12.0)  # of a value anywhere within its step
-    if error < COARSE * spread or gridded(signal.values, step) < ON_GRID:
+    if error < COARSE * spread or measure_griddedness(signal.values, step) < ON_GRID:
         return []
     levels = np.round((signal.values - signal.values[0]) / step)
     changes = np.abs(np.diff(levels))

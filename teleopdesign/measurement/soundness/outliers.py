@@ -32,7 +32,7 @@ def lone_samples(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]
         return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0)
     # x minus the cubic through its four neighbours
     off = np.pad(np.diff(x, 4) / 6.0, 2)
-    at, size, score = _explained(off, {1: -4.0 / 6.0, 2: 1.0 / 6.0}, _ROUNDED_LONE * step)
+    at, size, score = _match_events(off, {1: -4.0 / 6.0, 2: 1.0 / 6.0}, _ROUNDED_LONE * step)
     # beside a lone sample both sides agree in level and slope; at a step their levels differ by
     # twice its size, at a kink their slopes by three times
     before, after = 0.5 * (x[at - 1] - x[at - 3]), 0.5 * (x[at + 3] - x[at + 1])
@@ -47,10 +47,10 @@ def jumps(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]:
         return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0)
     change = np.diff(x)
     leap = np.pad(change[1:-1] - 0.5 * (change[:-2] + change[2:]), 1)
-    return _explained(leap, {1: -0.5}, _ROUNDED_JUMP * step)
+    return _match_events(leap, {1: -0.5}, _ROUNDED_JUMP * step)
 
 
-def _explained(
+def _match_events(
     off: Array, left: dict[int, float], floor: float
 ) -> tuple[NDArray[np.intp], Array, Array]:
     """Places where one event of the shape `left` (distance -> part of its size) explains all."""
@@ -75,7 +75,7 @@ def check_outliers(signal: Signal) -> list[Finding]:
         at, size, _ = lone_samples(x, signal.rounded_to)
         is_outlier = x[at] != x[at - 1]
         if signal.channel.quantity == "actuator_force":
-            is_outlier &= _out_of_range(x, at)
+            is_outlier &= _mark_out_of_range(x, at)
         rows.append(at[is_outlier] + first)
         sizes.append(size[is_outlier])
     odd, off = np.concatenate(rows), np.concatenate(sizes)
@@ -101,7 +101,7 @@ def check_outliers(signal: Signal) -> list[Finding]:
     ]
 
 
-def _out_of_range(x: Array, at: NDArray[np.intp]) -> NDArray[np.bool_]:
+def _mark_out_of_range(x: Array, at: NDArray[np.intp]) -> NDArray[np.bool_]:
     rest = np.delete(x, at)
     low, high = float(rest.min()), float(rest.max())
     margin = OUT_OF_RANGE * (high - low)

@@ -78,7 +78,7 @@ class Signal:
         )
 
 
-def written(experiment: Experiment, key: str) -> str:
+def channel_label(experiment: Experiment, key: str) -> str:
     """A channel's name as the user of one body writes it, without "device."."""
     return key.removeprefix("device.") if tuple(experiment.bodies) == ONE_BODY else key
 
@@ -95,7 +95,7 @@ def signals(experiment: Experiment) -> list[Signal]:
             step = reading_step(values[middle : middle + ENOUGH])
             rows.append(
                 Signal(
-                    written(experiment, key),
+                    channel_label(experiment, key),
                     unit,
                     channel,
                     record,

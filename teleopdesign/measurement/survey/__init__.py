@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
-from ..doors._log import Log, listed
-from .clock import duration_of, numeric_columns, on_one_grid, time_column
+from ..doors._log import Log, join_names
+from .clock import duration_of, interpolate_columns, numeric_columns, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
 from .position import axis_of, describe_position, find_position
@@ -23,7 +23,7 @@ __all__ = [
     "Choices",
     "Survey",
     "SurveyedColumn",
-    "same_columns",
+    "require_same_columns",
     "spans_of",
     "survey_log",
 ]
@@ -48,12 +48,12 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         if name is not None and name != NONE and name not in raw:
             why = f"column {name!r}: {unread[name]}" if name in unread else f"no column {name!r}"
             raise ExperimentError(
-                f"{file}: {key}: {why}, found {listed(raw)}{did_you_mean(name, raw)}"
+                f"{file}: {key}: {why}, found {join_names(raw)}{did_you_mean(name, raw)}"
             )
     _check_units(choices, raw, file)
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
-    time, columns = on_one_grid(raw, log, time_name, unit, choices, file)
+    time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     duration = duration_of(raw, time_name, unit, choices)
     survey = Survey("", {}, duration, guesses, time, columns, unread=unread)
     if time_name is not None:
@@ -74,7 +74,7 @@ def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
     for column, unit in choices.units.items():
         if column not in raw:
             raise ExperimentError(
-                f"{file}: unit of {column!r}: no such column, found {listed(raw)}"
+                f"{file}: unit of {column!r}: no such column, found {join_names(raw)}"
                 f"{did_you_mean(column, raw)}"
             )
         if unit != "counts" and not is_unit(unit):
@@ -107,7 +107,7 @@ def spans_of(duration: float) -> tuple[tuple[float, float], tuple[float, float]]
     return (0.0, cut), (cut, math.floor(duration) + 1.0)
 
 
-def same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
+def require_same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
     """Raise an ExperimentError where a later log lacks a column of the first."""
     for log, file in zip(logs[1:], files[1:], strict=True):
         missing = [n for n in logs[0].names if n not in log.names]

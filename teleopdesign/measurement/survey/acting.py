@@ -44,7 +44,7 @@ def current_that_acted(
     if not measured:
         return None
     best = max(measured, key=lambda name: scores[name])
-    share = _not_followed(columns[force].values, columns[best].values)
+    share = _unexplained_share(columns[force].values, columns[best].values)
     return (best, share**0.5) if share > FOLLOWED else None
 
 
@@ -56,7 +56,7 @@ def _is_current(column: SurveyedColumn) -> bool:
     return column.unit in ("A", "mA") or column.unit is None and named
 
 
-def _not_followed(wanted: Array, measured: Array) -> float:
+def _unexplained_share(wanted: Array, measured: Array) -> float:
     """Part of the squares of what was measured that what was wanted does not lead to.
 
     What is left in one row is multiplied with what is left in the next: noise of single rows, and

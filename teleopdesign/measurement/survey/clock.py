@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, quote
 from ...quantity import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text
-from ..doors._log import Log, listed
+from ..doors._log import Log, join_names
 from ..numbers_in_cells import numbers_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
@@ -42,14 +42,14 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
             unread[name] = f"numbers in {finite:.0%} of its rows"
     if not raw:
         raise ExperimentError(
-            f"{file}: found no column of numbers among {listed(log.names)}{reasons(unread)}"
+            f"{file}: found no column of numbers among {join_names(log.names)}{reasons(unread)}"
         )
     return raw, unread
 
 
 def _without_name(message: str, column: str, file: str) -> str:
     """What a message says of a column, without the names of the file and of the column."""
-    short = message.removeprefix(f"{file}: ").removeprefix("column ").removeprefix(quoted(column))
+    short = message.removeprefix(f"{file}: ").removeprefix("column ").removeprefix(quote(column))
     return short.lstrip(":, ")
 
 
@@ -105,7 +105,7 @@ def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
 def duration_of(
     raw: Mapping[str, Array], time_name: str | None, unit: str, choices: Choices
 ) -> float:
-    """Seconds from the first to the last row of a log, of which `on_one_grid` looks at a part."""
+    """Seconds from the first to the last row of a log; `interpolate_columns` looks at a part."""
     if time_name is None:
         return (max(map(len, raw.values())) - 1) / (choices.sample_rate or 1000.0)
     return float(np.nanmax(raw[time_name]) - np.nanmin(raw[time_name])) * si_factor(
@@ -113,7 +113,7 @@ def duration_of(
     )
 
 
-def on_one_grid(
+def interpolate_columns(
     raw: Mapping[str, Array],
     log: Log,
     time_name: str | None,

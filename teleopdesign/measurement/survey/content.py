@@ -116,7 +116,7 @@ def reasons(unread: Mapping[str, str], most: int = 3) -> str:
     return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""
 
 
-def alike(column: str, others: Sequence[str], what: str) -> str:
+def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:
     """Why a column is a guess that others sound like as well."""
     named = ", ".join(map(repr, others[:3])) + (", ..." if len(others) > 3 else "")
     return f"{column!r} is taken for {what}: {named} may be it as well"

@@ -10,7 +10,7 @@ from typing import Any
 from ...errors import ExperimentError
 from ...quantity import is_unit, measures, si_factor, unit_of
 from ..column_names import is_wanted, likeness, unit_in_name
-from ..doors._log import listed
+from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force
 from .acting import current_that_acted
 from .content import (
@@ -20,15 +20,15 @@ from .content import (
     Choices,
     Survey,
     SurveyedColumn,
-    alike,
     as_likely,
+    explain_ambiguity,
     is_unit_of,
     moves,
     reasons,
     rises,
     sample_time_of,
 )
-from .position import unwrapped, wrap_of
+from .position import unwrap_column, wrap_of
 
 #: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
 PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
@@ -55,7 +55,7 @@ def describe_forces(
     """The force that is commanded, the force that is measured, their units and signs."""
     h = sample_time_of(survey)
     entry = survey.channels["position"]
-    x = unwrapped(survey.columns[position].values, wrap_of(survey.columns[position].values))
+    x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
     used = {position, velocity, time_name}
     free = {
         n: c
@@ -108,7 +108,7 @@ def _force_that_drives(
         raise ExperimentError(
             f"{file}: found no column that could be a force beside "
             f"{survey.channels['position']['column']!r}, "
-            f"found {listed(survey.columns)}{reasons(survey.unread)}"
+            f"found {join_names(survey.columns)}{reasons(survey.unread)}"
         )
     force = max(scores, key=lambda n: scores[n])
     why = None
@@ -122,7 +122,7 @@ def _force_that_drives(
         share = physics[force].explained
         why = f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
-        why = alike(force, others, "the actuator's force")
+        why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
@@ -188,7 +188,7 @@ def _hand_by_motion(
     command alone, the column takes a good part away, with a factor of one.
     """
     x, h = motion
-    u = survey.columns[force].values * _to_si(survey, "actuator_force")
+    u = survey.columns[force].values * _si_factor(survey, "actuator_force")
     alone = explain_force(u, x, h)
     best: tuple[float, str] | None = None
     for name, column in free.items():
@@ -234,11 +234,11 @@ def _position_to_si(survey: Survey) -> float:
 def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | None) -> None:
     """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
     x, h = motion
-    u = survey.columns[force].values * _to_si(survey, "actuator_force")
+    u = survey.columns[force].values * _si_factor(survey, "actuator_force")
     whole = explain_force(u, x, h)
     with_hand = whole
     if hand is not None:
-        f = survey.columns[hand].values * _to_si(survey, "interaction_force")
+        f = survey.columns[hand].values * _si_factor(survey, "interaction_force")
         by_sign = {s: explain_force(u + s * f, x, h) for s in (1.0, -1.0)}
         better = max(by_sign, key=lambda s: by_sign[s].explained)
         if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
@@ -274,7 +274,7 @@ def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | 
         survey.notes.append(f"forces and positions are those behind the gear of {ratio:g}")
 
 
-def _to_si(survey: Survey, key: str) -> float:
+def _si_factor(survey: Survey, key: str) -> float:
     """Factor of a force from its column to SI, as proposed."""
     from ..conversion import conversion_of
     from ..toml_table import Table

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import ExperimentError
 from ...quantity import measures, si_factor
 from ..column_names import is_wanted, likeness, words_of
-from ..doors._log import listed
+from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from .content import (
     SURE_NAME,
@@ -18,8 +18,8 @@ from .content import (
     Choices,
     Survey,
     SurveyedColumn,
-    alike,
     as_likely,
+    explain_ambiguity,
     is_unit_of,
     moves,
     reasons,
@@ -36,7 +36,7 @@ MOST_ANGLE = 50
 SAME_TIME = 0.1
 
 
-def unwrapped(x: Array, jump: float | None) -> Array:
+def unwrap_column(x: Array, jump: float | None) -> Array:
     """A column without its wraps."""
     return x if jump is None else np.asarray(np.unwrap(x, period=jump))
 
@@ -81,7 +81,7 @@ def find_position(
     """The column of the position, and that of its velocity if there is one."""
     h = sample_time_of(survey)
     moving = {n: c for n, c in survey.columns.items() if moves(c) and not rises(c.values)}
-    flat = {n: unwrapped(c.values, wrap_of(c.values)) for n, c in moving.items()}
+    flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
     derivative: dict[str, tuple[str, float]] = {}
     scores: dict[str, float] = {}
     for name, column in moving.items():
@@ -102,7 +102,7 @@ def find_position(
         best = max(scores, key=lambda n: scores[n])
     else:
         raise ExperimentError(
-            f"{file}: found no column that moves among {listed(survey.columns) or 'none'}"
+            f"{file}: found no column that moves among {join_names(survey.columns) or 'none'}"
             f"{reasons(survey.unread)}"
         )
     if choices.position is None and likeness(best, "position") < SURE_NAME:
@@ -113,7 +113,7 @@ def find_position(
         why = "its derivative is there too" if best in derivative else why
         survey.guesses["channels.position.column"] = f"{best!r} is taken for the position: {why}"
     elif choices.position is None and (others := as_likely(scores, best)):
-        survey.guesses["channels.position.column"] = alike(best, others, "the position")
+        survey.guesses["channels.position.column"] = explain_ambiguity(best, others, "the position")
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
@@ -207,7 +207,7 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
     if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
         return
     h = sample_time_of(survey)
-    whole = unwrapped(column.values, wrap_of(column.values))
+    whole = unwrap_column(column.values, wrap_of(column.values))
     factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
     slower = factor * si_factor(said, quantity="velocity", axis=survey.axis)
     slower /= si_factor(unit, quantity="position", axis=survey.axis)
@@ -239,7 +239,7 @@ def _position_unit(
     survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
 ) -> tuple[str, str]:
     """A unit where the name says none: from the velocity's, or from the range."""
-    whole = unwrapped(column.values, wrap_of(column.values))
+    whole = unwrap_column(column.values, wrap_of(column.values))
     reach = float(np.ptp(whole))
     if velocity is not None and (said := survey.columns[velocity].unit):
         factor, _ = derivative_factor(

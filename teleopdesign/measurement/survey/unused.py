@@ -20,7 +20,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .position import DERIVATIVE, derivative_factor, unwrapped, wrap_of
+from .position import DERIVATIVE, derivative_factor, unwrap_column, wrap_of
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
@@ -62,7 +62,7 @@ def _why_no_channel(column: SurveyedColumn, survey: Survey) -> str:
         return "what was wanted, not what was measured"
     x = survey.columns[position].values
     jump = wrap_of(x)
-    _, agree = derivative_factor(unwrapped(x, jump), column.values, sample_time_of(survey))
+    _, agree = derivative_factor(unwrap_column(x, jump), column.values, sample_time_of(survey))
     if agree > DERIVATIVE and "velocity" in survey.channels:
         return f"a second velocity of {position!r}"
     if agree > DERIVATIVE:

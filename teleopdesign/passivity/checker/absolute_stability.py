@@ -51,11 +51,12 @@ from math import isnan
 from typing import Any
 
 from .algebra import Quotient
-from .effort import bounded, need
+from .effort import bound_effort, need
 from .fields import expect_fields, read_matrix
 from .polynomials import (
     Polynomial,
     add,
+    coefficient_list,
     derivative,
     divide,
     first_root,
@@ -64,7 +65,6 @@ from .polynomials import (
     is_free_of_growth,
     is_non_negative,
     is_positive_real,
-    listed,
     multiply,
     odd_part,
     real_part,
@@ -99,9 +99,11 @@ def state_absolute_stability(c: dict[str, Any]) -> str:
     algebra, rows, text = read_matrix(c["impedance"], (2,))
     one = Quotient(algebra.number(1), {})
     below = [[algebra.over(one, e.below, {}) for e in row] for row in rows]
-    with bounded(algebra.left):
+    with bound_effort(algebra.left):
         z11, z12, z21, z22 = (
-            coprime(listed(rows[i][j].above), listed(below[i][j])) for i in (0, 1) for j in (0, 1)
+            coprime(coefficient_list(rows[i][j].above), coefficient_list(below[i][j]))
+            for i in (0, 1)
+            for j in (0, 1)
         )
         for condition in conditions((z11, z12, z21, z22)):
             need(condition.holds, f"not shown to be absolutely stable: {condition}")
@@ -137,7 +139,7 @@ def _positive_real(name: str, z: Ratio) -> Condition:
     if not is_free_of_growth(z[1]):
         where = "a pole in the open right half plane"
     elif not is_non_negative(real := real_part(*z)):
-        where = f"its real part is negative {_beside(real)}"
+        where = f"its real part is negative {_describe_place(real)}"
     holds = is_positive_real(*z)
     return Condition(f"{name} is positive real", holds, "" if holds else where)
 
@@ -171,7 +173,7 @@ def _inequality(z: Entries) -> Iterator[Condition]:
         ("(2 Re z11 Re z22 - Re z12 z21)^2 >= abs(z12 z21)^2 on the axis", twice),
     ):
         holds = is_non_negative(p)
-        yield Condition(name, holds, "" if holds else _beside(p))
+        yield Condition(name, holds, "" if holds else _describe_place(p))
 
 
 def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
@@ -192,7 +194,7 @@ def _real_ratio(z: Ratio) -> tuple[Polynomial, Polynomial]:
     return (divide(r, common)[0], short) if is_non_negative(short) else (r, d)
 
 
-def _beside(p: Polynomial) -> str:
+def _describe_place(p: Polynomial) -> str:
     """About where p < 0 begins, in rad/s."""
     odd = odd_part(p)
     x = first_root([Fraction(-1)], odd)
@@ -202,8 +204,8 @@ def _beside(p: Polynomial) -> str:
 def _residues(z: Entries) -> Iterator[Condition]:
     """Condition 4: at 0, at infinity, and at the poles j w that z12 and z21 share."""
     name = "the residues have 2 k11 k22 - Re k12 k21 >= abs(k12 k21)"
-    yield Condition(f"{name} at s = 0", _balanced([_at_zero(one) for one in z]))
-    yield Condition(f"{name} at infinity", _balanced([_at_infinity(one) for one in z]))
+    yield Condition(f"{name} at s = 0", _is_balanced([_residue_at_zero(one) for one in z]))
+    yield Condition(f"{name} at infinity", _is_balanced([_residue_at_infinity(one) for one in z]))
     shared = both = greatest_common_divisor(axis_poles(z[1][1]), axis_poles(z[2][1]))
     for one in (z[0], z[3]):
         both = greatest_common_divisor(both, axis_poles(one[1]))
@@ -242,17 +244,17 @@ def axis_poles(q: Polynomial) -> Polynomial:
     return without_zero(greatest_common_divisor(*halves(q)))
 
 
-def _at_zero(z: Ratio) -> Fraction:
+def _residue_at_zero(z: Ratio) -> Fraction:
     """Residue at s = 0; 0 where no simple pole is."""
     p, q = z
     return value(p, 0) / q[1] if q[0] == 0 and q[1] != 0 else Fraction(0)
 
 
-def _at_infinity(z: Ratio) -> Fraction:
+def _residue_at_infinity(z: Ratio) -> Fraction:
     """Coefficient of s; 0 where z does not grow like s."""
     p, q = z
     return p[-1] / q[-1] if len(p) == len(q) + 1 else Fraction(0)
 
 
-def _balanced(k: Sequence[Fraction]) -> bool:
+def _is_balanced(k: Sequence[Fraction]) -> bool:
     return 2 * k[0] * k[3] - k[1] * k[2] >= abs(k[1] * k[2])

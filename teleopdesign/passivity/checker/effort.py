@@ -31,7 +31,7 @@ def need(condition: object, problem: str) -> None:
 
 
 @contextmanager
-def bounded(left: list[int]) -> Iterator[None]:
+def bound_effort(left: list[int]) -> Iterator[None]:
     """Within it polynomials spend from `left`, a list of one number, and are refused below 0."""
     token = _LEFT.set(left)
     try:

@@ -26,7 +26,7 @@ def polynomial(coefficients: Iterable[Fraction | int]) -> Polynomial:
     return p
 
 
-def listed(powers: Mapping[tuple[int, ...], Fraction]) -> Polynomial:
+def coefficient_list(powers: Mapping[tuple[int, ...], Fraction]) -> Polynomial:
     """From (power,) -> coefficient."""
     highest = max(powers, default=(-1,))[0]
     return polynomial(powers.get((k,), Fraction(0)) for k in range(highest + 1))

@@ -14,17 +14,17 @@ from collections.abc import Sequence
 from typing import Any
 
 from .algebra import Quotient
-from .effort import bounded, need
+from .effort import bound_effort, need
 from .fields import expect_fields, read_matrix
 from .polynomials import (
     Polynomial,
     add,
+    coefficient_list,
     divide,
     greatest_common_divisor,
     halves,
     is_hurwitz,
     is_non_negative,
-    listed,
     multiply,
     polynomial,
     real_part,
@@ -40,9 +40,9 @@ def state_positive_real(c: dict[str, Any]) -> str:
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, z, text = read_matrix(c["impedance"], SIZES)
     below = {n: max(e.below.get(n, 0) for row in z for e in row) for n in algebra.bases}
-    q = listed(algebra.over(Quotient(algebra.number(1), {}), below, {}))
-    above = [[listed(algebra.over(e, below, e.below)) for e in row] for row in z]
-    with bounded(algebra.left):
+    q = coefficient_list(algebra.over(Quotient(algebra.number(1), {}), below, {}))
+    above = [[coefficient_list(algebra.over(e, below, e.below)) for e in row] for row in z]
+    with bound_effort(algebra.left):
         _check_stable(above, q)
         _check_resistive(above, q)
     return f"Z(s) = [{text}] is positive real: analytic with Z + Z^H >= 0 for Re s > 0"
@@ -65,12 +65,9 @@ def _check_stable(above: Matrix, q: Polynomial) -> None:
 
 def _check_resistive(above: Matrix, q: Polynomial) -> None:
     """Refuse unless all principal minors of Z + Z^H are >= 0 on the axis; Z = above/q."""
-    size, q_late = len(above), _mirrored(q)
+    size, q_late = len(above), _mirror(q)
     h = [
-        [
-            add(multiply(above[i][j], q_late), multiply(_mirrored(above[j][i]), q))
-            for j in range(size)
-        ]
+        [add(multiply(above[i][j], q_late), multiply(_mirror(above[j][i]), q)) for j in range(size)]
         for i in range(size)
     ]
     weight = real_part(q, q)
@@ -78,16 +75,16 @@ def _check_resistive(above: Matrix, q: Polynomial) -> None:
         for chosen in itertools.combinations(range(size), number):
             real, odd = halves(minor(h, chosen, chosen))
             need(not odd, "not positive real: odd on the axis")
-            real = _divided(real, weight)
+            real = _divide_out(real, weight)
             need(is_non_negative(real), "not positive real: Re Z < 0 on the axis")
 
 
-def _mirrored(p: Polynomial) -> Polynomial:
+def _mirror(p: Polynomial) -> Polynomial:
     """p(-s), which is its conjugate on the axis."""
     return [(-1) ** k * c for k, c in enumerate(p)]
 
 
-def _divided(p: Polynomial, weight: Polynomial) -> Polynomial:
+def _divide_out(p: Polynomial, weight: Polynomial) -> Polynomial:
     """p by a polynomial that is >= 0 on the axis, as often as that goes: the same signs."""
     while p and len(weight) > 1:
         quotient, rest = divide(p, weight)

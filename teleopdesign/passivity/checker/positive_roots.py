@@ -32,29 +32,29 @@ def has_positive_root(p: Sequence[Fraction]) -> bool:
     whole = [(c * below).numerator for c in p]
     lead = abs(whole[-1])
     reach = max(1 + max(abs(c) for c in whole) // lead, 1).bit_length()
-    return _in_unit([c << (reach * k) for k, c in enumerate(whole)])
+    return _has_root_in_unit([c << (reach * k) for k, c in enumerate(whole)])
 
 
-def _in_unit(first: list[int]) -> bool:
+def _has_root_in_unit(first: list[int]) -> bool:
     """Whether there is a root with 0 < x < 1."""
     waiting = [first]
     while waiting:
         p = waiting.pop()
-        changes = variations(_shifted(p[::-1]))
+        changes = variations(_shift_by_one(p[::-1]))
         if changes % 2:
             return True
         if not changes:
             continue
         n = len(p) - 1
         left = [c << (n - k) for k, c in enumerate(p)]
-        right = _shifted(left)
+        right = _shift_by_one(left)
         if right[0] == 0:  # the middle itself
             return True
         waiting += [right, left]
     return False
 
 
-def _shifted(p: Sequence[int]) -> list[int]:
+def _shift_by_one(p: Sequence[int]) -> list[int]:
     """p(x + 1), by sums alone."""
     spend(len(p) * len(p) // 2, (Fraction(max(map(abs, p))),), _ONE)
     p = list(p)

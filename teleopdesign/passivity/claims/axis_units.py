@@ -23,7 +23,7 @@ _UNIT = "|".join(sorted(map(re.escape, _ROTARY), key=len, reverse=True))
 _MEASURE = re.compile(rf"(?<=\d )({_UNIT})(?![\w/^*]| m\b| s/)")
 
 
-def in_units_of(axis: str, claim: Claim) -> Claim:
+def use_units_of(axis: str, claim: Claim) -> Claim:
     """The claim with all its texts in the units of that axis."""
     if axis != "revolute":
         return claim
@@ -34,14 +34,14 @@ def in_units_of(axis: str, claim: Claim) -> Claim:
         Evidence: ("searched",),
         Unknown: ("why",),
     }
-    changed = {name: in_rotary_units(getattr(verdict, name)) for name in texts[type(verdict)]}
+    changed = {name: use_rotary_units(getattr(verdict, name)) for name in texts[type(verdict)]}
     if isinstance(verdict, Proof | Evidence):
         first, _, rest = verdict.unit.partition(" of ")
         unit = _ROTARY.get(first, first)
         changed["unit"] = f"{unit} of {rest}" if rest else unit
-    return Claim(in_rotary_units(claim.statement), replace(verdict, **changed))
+    return Claim(use_rotary_units(claim.statement), replace(verdict, **changed))
 
 
-def in_rotary_units(text: str) -> str:
+def use_rotary_units(text: str) -> str:
     """The text with units behind numbers as on a revolute axis."""
     return _MEASURE.sub(lambda match: _ROTARY[match.group(1)], text)

@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from ...arguments import checked
+from ...arguments import check_types
 from ...errors import ModelError
 from ...plain_data import write_text
 from ..checker import Refused, check, load
@@ -24,7 +24,7 @@ from ..checker import Refused, check, load
 Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
 
 
-@checked
+@check_types
 @dataclass(frozen=True, repr=False)
 class Certificate:
     """What the checker reads; `content` is plain JSON data with a digest."""
@@ -72,16 +72,16 @@ def read_certificate(path: str | Path) -> Certificate:
 
 def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
     """That a matrix of rational functions of s (6x6 at most) is positive real."""
-    rows = [[_written(e) for e in row] for row in impedance]
-    return _sealed({"kind": "positive real", "title": title, "impedance": rows})
+    rows = [[_checker_text(e) for e in row] for row in impedance]
+    return _seal({"kind": "positive real", "title": title, "impedance": rows})
 
 
 def absolute_stability_certificate(
     title: str, impedance: Sequence[Sequence[sp.Expr]]
 ) -> Certificate:
     """That a 2x2 matrix of rational functions of s is absolutely stable, residues included."""
-    rows = [[_written(e) for e in row] for row in impedance]
-    return _sealed({"kind": "absolute stability", "title": title, "impedance": rows})
+    rows = [[_checker_text(e) for e in row] for row in impedance]
+    return _seal({"kind": "absolute stability", "title": title, "impedance": rows})
 
 
 def storage_certificate(
@@ -123,11 +123,11 @@ def storage_certificate(
         "positive": _text(positive),
         "nonnegative": _text(nonnegative),
         "rates": _text(rates),
-        "supply": _written(supply),
-        "storage": _written(storage),
+        "supply": _checker_text(supply),
+        "storage": _checker_text(storage),
         "signs": list(signs),
         "invariant": {
-            n: {"expression": _written(h), "rate": _written(rate)}
+            n: {"expression": _checker_text(h), "rate": _checker_text(rate)}
             for n, (h, rate) in invariant.items()
         },
         "proofs": {
@@ -136,7 +136,7 @@ def storage_certificate(
         },
         "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
     }
-    return _sealed(content)
+    return _seal(content)
 
 
 def _cases(number: int) -> list[str]:
@@ -147,14 +147,14 @@ def _cases(number: int) -> list[str]:
 
 
 def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:
-    return {name: _written(e) for name, e in expressions.items()}
+    return {name: _checker_text(e) for name, e in expressions.items()}
 
 
 def _terms(terms: Sequence[Term]) -> list[list[object]]:
-    return [[_written(w), dict(powers), _written(e)] for w, powers, e in terms]
+    return [[_checker_text(w), dict(powers), _checker_text(e)] for w, powers, e in terms]
 
 
-def _written(expression: sp.Expr | int) -> str:
+def _checker_text(expression: sp.Expr | int) -> str:
     """Text that the checker reads; ModelError for what is not rational, floats included."""
     e = sp.sympify(expression)
     for part in sp.preorder_traversal(e):
@@ -164,7 +164,7 @@ def _written(expression: sp.Expr | int) -> str:
     return str(e)
 
 
-def _sealed(content: dict[str, Any]) -> Certificate:
+def _seal(content: dict[str, Any]) -> Certificate:
     """With the digest that `checker` expects."""
     text = json.dumps(content, sort_keys=True)
     return Certificate({**content, "digest": hashlib.sha256(text.encode()).hexdigest()})

@@ -107,7 +107,7 @@ class Evidence(ByValue):
         return f"{side} it: {self.searched}{margin}".rstrip()
 
 
-def accepted(
+def prove_by_certificate(
     method: str,
     certificate: Callable[[], Certificate],
     margin: float = float("nan"),

@@ -49,7 +49,7 @@ def read_record(path: str | Path) -> Counterexample:
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
-        record = _made(content)
+        record = _make_counterexample(content)
         with np.errstate(over="raise", invalid="raise"):
             stated, replayed = float(content["energy"]), record.energy
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as problem:
@@ -59,7 +59,7 @@ def read_record(path: str | Path) -> Counterexample:
     return record
 
 
-def _made(c: dict[str, Any]) -> Counterexample:
+def _make_counterexample(c: dict[str, Any]) -> Counterexample:
     kind = c["kind"]
     strokes = int(c.get("rounds", 1)) * max(len(c.get(n, ())) for n in ("turning_points", "legs"))
     if not 0 <= strokes <= MOST_STROKES:
@@ -113,7 +113,7 @@ def _read(text: str, *names: sp.Symbol) -> sp.Expr:
 def _growing_mode(c: dict[str, Any]) -> GrowingMode:
     z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
     first, second = (
-        CLAMPED if held == "clamped" else _held(*(_fraction(x) for x in held))
+        CLAMPED if held == "clamped" else _make_termination(*(_fraction(x) for x in held))
         for held in c["terminations"]
     )
     one, other = (complex(*v) for v in c["velocity"])
@@ -124,7 +124,7 @@ def _growing_mode(c: dict[str, Any]) -> GrowingMode:
     return mode
 
 
-def _held(damping: Fraction, inertia: Fraction, stiffness: Fraction) -> Termination:
+def _make_termination(damping: Fraction, inertia: Fraction, stiffness: Fraction) -> Termination:
     return Termination(damping, inertia, stiffness)
 
 

@@ -70,7 +70,7 @@ def excludes_zero_over(
 ) -> bool:
     """Whether it is shown that the polynomials are nowhere zero together; see above."""
     kept = [p for p in parts if not p.is_zero]
-    return bool(kept) and _holds(kept, ends, scale, effort, _apart_from_zero)
+    return bool(kept) and _holds(kept, ends, scale, effort, _is_apart_from_zero)
 
 
 def _factors(poly: sp.Poly) -> tuple[sp.Rational, list[tuple[sp.Poly, int]]]:
@@ -104,7 +104,7 @@ def _holds(
             axis = _widest(cell)
             if axis is None:
                 return False
-            parts = [_halved(b, axis) for b in cell]
+            parts = [_halve(b, axis) for b in cell]
             cells += [[a for a, _ in parts], [b for _, b in parts]]
     return True
 
@@ -117,14 +117,14 @@ def _non_negative(cell: list[Any]) -> Answer:
     return "no" if any(x < 0 for x in corners) else "halve"
 
 
-def _apart_from_zero(cell: list[Any]) -> Answer:
+def _is_apart_from_zero(cell: list[Any]) -> Answer:
     """Whether a line through zero has all coefficients strictly on one side."""
     if any((b > 0).all() or (b < 0).all() for b in cell):
         return "yes"
     if all(b[(0,) * b.ndim] == 0 for b in cell):
         return "no"
     if len(cell) == 2:
-        near = [_rounded(b) for b in cell]
+        near = [_round_coefficients(b) for b in cell]
         u, v = (round(1024 * float(f.mean())) for f in near)
         if (u * near[0] + v * near[1]).min() > 0:
             sizes = [max(abs(x) for x in b.flat) for b in cell]
@@ -133,7 +133,7 @@ def _apart_from_zero(cell: list[Any]) -> Answer:
     return "halve"
 
 
-def _rounded(b: Any) -> np.ndarray:
+def _round_coefficients(b: Any) -> np.ndarray:
     """Coefficients over the largest of them, as floats: to choose by, never to decide by."""
     size = max(abs(x) for x in b.flat)
     shift = max(0, int(size).bit_length() - 60)
@@ -144,14 +144,14 @@ def _rounded(b: Any) -> np.ndarray:
 def _widest(cell: list[Any]) -> int | None:
     """The variable along which coefficients differ most, against the size of each polynomial."""
     spread = np.zeros(cell[0].ndim)
-    for f in map(_rounded, cell):
+    for f in map(_round_coefficients, cell):
         for axis in range(f.ndim):
             if f.shape[axis] > 1:
                 spread[axis] += np.abs(np.diff(f, axis=axis)).max() * (f.shape[axis] - 1)
     return int(spread.argmax()) if spread.any() else None
 
 
-def _halved(b: Any, axis: int) -> tuple[Any, Any]:
+def _halve(b: Any, axis: int) -> tuple[Any, Any]:
     """Coefficients over both halves of that variable's range, times 2^d."""
     row = np.moveaxis(b, axis, 0)
     d = len(row) - 1
@@ -176,14 +176,14 @@ def _coefficients(poly: sp.Poly, degrees: Sequence[int], ends: Ends, scale: Frac
     ratios = np.array([scale**k / comb(d, k) for k in range(d + 1)], dtype=object)
     b = (b * ratios.reshape(-1, *[1] * (b.ndim - 1)))[..., None]
     for axis, (low, high) in enumerate(ends, start=1):
-        b = np.moveaxis(_over(np.moveaxis(b, axis, 0), low, high), 0, axis)
+        b = np.moveaxis(_bernstein_coefficients(np.moveaxis(b, axis, 0), low, high), 0, axis)
     shared = lcm(*(x.denominator for x in b.flat))
     out = np.empty(b.shape, dtype=object)
     out[...] = np.frompyfunc(lambda x: int(x * shared), 1, 1)(b)
     return out
 
 
-def _over(a: Any, low: Fraction, high: Fraction) -> Any:
+def _bernstein_coefficients(a: Any, low: Fraction, high: Fraction) -> Any:
     """From powers of a variable to Bernstein coefficients over its range, along the first axis."""
     d, width = len(a) - 1, high - low
     shifted = [

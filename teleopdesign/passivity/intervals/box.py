@@ -10,11 +10,11 @@ from itertools import product
 
 import numpy as np
 
-from ...controllers import as_written
+from ...controllers import exact_decimal
 from ...diagrams import Diagram
 from ...errors import ModelError, did_you_mean
-from ...expectations import described
-from ..ports import judged, nonlinear_parts
+from ...expectations import describe_value
+from ..ports import drop_absent_effects, nonlinear_parts
 
 #: vertices that are looked at: 2^8, eight intervals
 MOST_VERTICES = 256
@@ -32,7 +32,9 @@ class ValueBox:
     def exact(self) -> tuple[tuple[Fraction, Fraction], ...]:
         """The intervals as rational numbers."""
         ends = zip(self.low, self.high, strict=True)
-        return tuple((Fraction(str(as_written(a))), Fraction(str(as_written(b)))) for a, b in ends)
+        return tuple(
+            (Fraction(str(exact_decimal(a))), Fraction(str(exact_decimal(b)))) for a, b in ends
+        )
 
     @property
     def centre(self) -> np.ndarray:
@@ -80,7 +82,7 @@ def box_of(
         if name not in known:
             raise ModelError(f'{diagram.name}: no parameter "{name}"{did_you_mean(name, known)}')
         if not isinstance(ends, tuple | list) or len(ends) != 2:
-            raise ModelError(f"{name}: found {described(ends)}, expected (low, high)")
+            raise ModelError(f"{name}: found {describe_value(ends)}, expected (low, high)")
         if not all(math.isfinite(x) for x in ends) or ends[0] > ends[1]:
             low, high = map(float, ends)
             raise ModelError(f"{name}: found {low:g} to {high:g}, expected low <= high")
@@ -100,5 +102,7 @@ def nonlinear_within(diagram: Diagram, box: ValueBox) -> tuple[str, ...]:
     An effect may be absent at one value, such as the middle: at one end of its interval it is not.
     """
     points = (box.centre, np.array(box.low), np.array(box.high))
-    parts = (nonlinear_parts(judged(diagram.with_values(box.named(x)))) for x in points)
+    parts = (
+        nonlinear_parts(drop_absent_effects(diagram.with_values(box.named(x)))) for x in points
+    )
     return tuple(dict.fromkeys(name for names in parts for name in names))

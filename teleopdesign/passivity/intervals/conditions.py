@@ -44,7 +44,7 @@ class Conditions:
 
     def is_hurwitz(self, p: sp.Poly) -> bool:
         """Whether all roots have a negative real part, everywhere in the box."""
-        if p.is_zero or not self.nonzero(leading(p)):
+        if p.is_zero or not self.nonzero(leading_coefficient(p)):
             return False
         if not is_hurwitz(self.middle(p)):
             return False
@@ -87,8 +87,8 @@ def two_port_is_passive(ask: Conditions, z: sp.Matrix, *, margin: Fraction = Fra
     # n12 conj d + conj(n21) d on the axis: conj turns the sign of what is odd
     even, odd = a + c, b - e
     x = sp.Poly(X, X, *ask.symbols, domain="QQ")
-    twice = _without(4 * e11 * e22 - even * even - x * odd * odd, real_part(d, d))
-    return _all_non_negative(ask, (e11, e22, twice), residues, scale(ask.middle(d)))
+    twice = _divide_out(4 * e11 * e22 - even * even - x * odd * odd, real_part(d, d))
+    return _are_all_non_negative(ask, (e11, e22, twice), residues, scale(ask.middle(d)))
 
 
 def two_port_is_stable(ask: Conditions, z: sp.Matrix) -> bool:
@@ -102,12 +102,12 @@ def two_port_is_stable(ask: Conditions, z: sp.Matrix) -> bool:
     e11, e22, size = real_part(n11, d), real_part(n22, d), real_part(d, d)
     re, im = cross(n12 * n21, d * d)
     x = sp.Poly(X, X, *ask.symbols, domain="QQ")
-    llewellyn = _without(2 * e11 * e22 - re, size)
-    square = _without(4 * e11 * e22 * (e11 * e22 - re) - x * im * im, size)
-    return _all_non_negative(ask, (e11, e22, llewellyn, square), residues, scale(ask.middle(d)))
+    llewellyn = _divide_out(2 * e11 * e22 - re, size)
+    square = _divide_out(4 * e11 * e22 * (e11 * e22 - re) - x * im * im, size)
+    return _are_all_non_negative(ask, (e11, e22, llewellyn, square), residues, scale(ask.middle(d)))
 
 
-def _all_non_negative(
+def _are_all_non_negative(
     ask: Conditions,
     polys: Sequence[sp.Poly],
     residues: Sequence[Sequence[sp.Poly]],
@@ -147,7 +147,7 @@ def _common(
     return n, d, [infinite, *([zero] if zero else [])]
 
 
-def _without(p: sp.Poly, size: sp.Poly) -> sp.Poly:
+def _divide_out(p: sp.Poly, size: sp.Poly) -> sp.Poly:
     """The polynomial divided by abs(d)^2 > 0 as often as that goes."""
     while size.degree() > 0 and not p.is_zero:
         quotient, rest = sp.div(p, size)
@@ -157,7 +157,7 @@ def _without(p: sp.Poly, size: sp.Poly) -> sp.Poly:
     return p
 
 
-def leading(p: sp.Poly) -> sp.Poly:
+def leading_coefficient(p: sp.Poly) -> sp.Poly:
     """Coefficient of the highest power of s, in x (not there) and the symbols."""
     return _coefficient(p, p.degree())
 

@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from ...blocks import Body
-from ...controllers import Controller, Stage, as_written, in_exact_numbers, parameter_symbol
+from ...controllers import Controller, Stage, exact_decimal, make_exact, parameter_symbol
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
@@ -92,7 +92,7 @@ def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
     of a law that takes the velocity of another motion than its input
     raises ModelError: a block known by its name only
     """
-    whole = _apart(diagram)
+    whole = _separate_structures(diagram)
     linear = linear_blocks(whole)
     symbols = {n: sp.Dummy(f"v{k}", real=True) for k, n in enumerate(box.names)}
     blocks, actuation = dict(linear.blocks), dict(linear.actuation)
@@ -134,8 +134,8 @@ def _forms(
         return None
     if not set(symbols) <= set(parameters):
         return None
-    placed = {x: symbols.get(n, as_written(v)) for x, (n, v) in numbers.items()}
-    first, second = (in_exact_numbers(sp.sympify(f).subs(placed)) for f in forms)
+    placed = {x: symbols.get(n, exact_decimal(v)) for x, (n, v) in numbers.items()}
+    first, second = (make_exact(sp.sympify(f).subs(placed)) for f in forms)
     return first, second
 
 
@@ -143,7 +143,7 @@ def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Exp
     """Of one stage as stated, with its parameters that are symbols; nothing is cancelled."""
 
     def placed(name: str, value: float) -> sp.Expr:
-        return symbols.get(f"{stage.name}.{name}", as_written(value))
+        return symbols.get(f"{stage.name}.{name}", exact_decimal(value))
 
     if "denominator_0" in stage.values:
         return sp.Add(
@@ -159,8 +159,8 @@ def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Exp
     return (S * sp.eye(n) - sp.Matrix(n, n, lambda i, j: rates[i][j])).det(method="berkowitz")
 
 
-def _apart(diagram: Diagram) -> Diagram:
-    """As `judged` has it, bodies with a structure apart; no linear form is made."""
+def _separate_structures(diagram: Diagram) -> Diagram:
+    """As `drop_absent_effects` has it, bodies with a structure apart; no linear form is made."""
     for part in diagram.bodies:
         if isinstance(part.body, Body):
             diagram = diagram.with_block(part.name, without_absent(part.body))
@@ -178,8 +178,8 @@ def _agrees(family: Family, diagram: Diagram, box: ValueBox) -> bool:
     blocks_compared = ("",) if parted else tuple(varied)
     for point in (np.array(box.low), np.array(box.high), *box.inside(_COMPARED, 0)):
         values = box.named(point)
-        there = _apart(diagram.with_values(values))
-        placed = {family.symbols[n]: as_written(v) for n, v in values.items()}
+        there = _separate_structures(diagram.with_values(values))
+        placed = {family.symbols[n]: exact_decimal(v) for n, v in values.items()}
         for one in blocks_compared:
             exact = linear_blocks(there, only=one)
             for here, forms in (

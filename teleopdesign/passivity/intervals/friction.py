@@ -20,7 +20,7 @@ from ...diagrams import Diagram
 from ..claims.claim import Claim
 from ..diagram_claims import composed_claim
 from ..friction_pairs import FrictionPair, friction_pairs, pair_claims
-from ..ports import judged, nonlinear_parts, ports, without_friction
+from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction
 from .box import ValueBox
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive
 from .family import family_of
@@ -31,9 +31,9 @@ _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("
 
 
 def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]:
-    """What is known of the passivity of a diagram with friction over a box; see `_made`."""
+    """What is known of the passivity of a diagram with friction over a box."""
     points = [*box.vertices(), box.centre]
-    answers = [(point, *_at(middle.with_values(box.named(point)))) for point in points]
+    answers = [(point, *_claims_at(middle.with_values(box.named(point)))) for point in points]
     made: dict[str, Any] = {
         "statement": f"its ports are {'together ' * (claim == 'passive')}{claim}",
         "worst": box.named(box.centre),
@@ -62,9 +62,9 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]
     return {**made, "status": "evidence", "how": how, "at_worst": answers[-1][1]}
 
 
-def _at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
+def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
     """The composed proof at a point, None where there is none, and claims on its friction."""
-    there = judged(diagram)
+    there = drop_absent_effects(diagram)
     pairs = friction_pairs(there)
     composed = composed_claim(there, ports(there), pairs)
     others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
@@ -73,7 +73,7 @@ def _at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
 
 def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
     """Whether every varied value of friction stands in the two conditions alone."""
-    for pair in friction_pairs(judged(middle)):
+    for pair in friction_pairs(drop_absent_effects(middle)):
         body, law = pair.body.body, pair.cancellation
         assert isinstance(body, Body)
         effects = {e.name for e in body.effects if e.role.startswith("friction")}
@@ -97,7 +97,7 @@ def _is_of(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
     return value in known.get(part, ())
 
 
-def _in_friction(name: str, pairs: list[FrictionPair]) -> bool:
+def _belongs_to_friction(name: str, pairs: list[FrictionPair]) -> bool:
     """Whether a value is one of friction or its cancellation, and not of the linear rest."""
     block, _, rest = name.partition(".")
     laws = [pair.cancellation.name for pair in pairs if pair.cancellation is not None]
@@ -107,12 +107,12 @@ def _in_friction(name: str, pairs: list[FrictionPair]) -> bool:
 
 def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
     """Whether what is left without friction and its cancellation is passive over its values."""
-    rest = judged(middle)
+    rest = drop_absent_effects(middle)
     pairs = friction_pairs(rest)
     for pair in pairs:
         gone = [pair.cancellation.name] if pair.cancellation else []
         rest = without_friction(rest, pair.body.motion, *gone)
-    other_values = tuple(n for n in box.names if not _in_friction(n, pairs))
+    other_values = tuple(n for n in box.names if not _belongs_to_friction(n, pairs))
     if nonlinear_parts(rest):
         return False
     if not other_values:

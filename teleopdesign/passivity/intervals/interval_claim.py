@@ -10,7 +10,7 @@ import numpy as np
 
 from ...by_value import ByValue
 from ...notebook import html_table
-from ...quantity import after_number
+from ...quantity import unit_after_number
 from ..claims.claim import Claim
 from .box import ValueBox
 from .worst import Worst
@@ -64,10 +64,10 @@ class IntervalClaim(ByValue):
         }[self.status]
 
     def __repr__(self) -> str:
-        measures = {n: after_number(self.units.get(n, "1")) for n in self.worst}
+        measures = {n: unit_after_number(self.units.get(n, "1")) for n in self.worst}
         where = ", ".join(f"{n} = {v:.6g}{measures[n]}" for n, v in self.worst.items())
         lines = [f"{self.known}: {self.statement}", f"    {self.how}"]
-        unit = after_number(self.unit)
+        unit = unit_after_number(self.unit)
         if not np.isnan(self.margin):
             lines.append(f"    worst margin {self.margin:.6g}{unit} at {where or 'its values'}")
         if not np.isnan(self.proved_margin):

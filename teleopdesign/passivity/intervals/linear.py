@@ -9,14 +9,14 @@ from functools import reduce
 import numpy as np
 import sympy as sp
 
-from ...controllers import as_written
+from ...controllers import exact_decimal
 from ...diagrams import Diagram
 from ...errors import ModelError
 from ...realise.lti import S
 from ..claims.claim import Claim, Unknown
 from ..linear.polynomials import is_hurwitz
 from ..linear_diagrams import linear_claims
-from ..ports import judged, ports
+from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
 from .box import ValueBox, nonlinear_within
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
@@ -43,28 +43,28 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
     ask = Conditions.over(box, family.symbols)
     polynomial = ask.poly(family.characteristic())
     worst = search_worst(pole_margin(polynomial, ask.symbols), box, points=points, seed=seed)
-    if worst.margin <= 0 and not is_hurwitz(_at(polynomial, ask, worst.point)):
+    if worst.margin <= 0 and not is_hurwitz(_polynomial_at(polynomial, ask, worst.point)):
         how = (
             f"a pole with real part {-worst.margin:.6g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
         return parts_of(statement, "refuted", worst, box, "1/s", how)
     if not ask.is_hurwitz(polynomial):
-        return parts_of(statement, "evidence", worst, box, "1/s", _no_proof(ask))
+        return parts_of(statement, "evidence", worst, box, "1/s", _explain_no_proof(ask))
     how = _how(ask, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
-    bound = next((c for c in shifts if c > 0 and ask.is_hurwitz(_shifted(polynomial, c))), 0)
+    bound = next((c for c in shifts if c > 0 and ask.is_hurwitz(_shift_roots(polynomial, c))), 0)
     return parts_of(statement, "proved", worst, box, "1/s", how, proved_margin=float(bound))
 
 
-def _shifted(polynomial: sp.Poly, left: Fraction) -> sp.Poly:
+def _shift_roots(polynomial: sp.Poly, left: Fraction) -> sp.Poly:
     """The polynomial whose roots lie further right by that much."""
     expression = polynomial.as_expr().subs(S, S - sp.Rational(str(left)))
     return sp.Poly(expression, *polynomial.gens, domain="QQ")
 
 
-def _at(polynomial: sp.Poly, ask: Conditions, point: np.ndarray) -> sp.Poly:
-    values = {x: as_written(float(v)) for x, v in zip(ask.symbols, point, strict=True)}
+def _polynomial_at(polynomial: sp.Poly, ask: Conditions, point: np.ndarray) -> sp.Poly:
+    values = {x: exact_decimal(float(v)) for x, v in zip(ask.symbols, point, strict=True)}
     return sp.Poly(polynomial.as_expr().subs(values), S, domain="QQ")
 
 
@@ -87,7 +87,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     if (
         exact.holds
         and family.is_rational
-        and _proved(ask, z, claim)
+        and _is_proved(ask, z, claim)
         and hides_no_growth(ask, family, z)
     ):
         bound = 0.0 if stable else _bound(ask, z, worst.margin)
@@ -98,7 +98,11 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         )
     status: Status = "evidence" if exact.holds else "unknown"
     worst = replace(worst, margin=max(worst.margin, 0.0)) if exact.holds else worst
-    how = _no_proof(ask) if family.is_rational else "with a dead time nothing is proved over a box"
+    how = (
+        _explain_no_proof(ask)
+        if family.is_rational
+        else "with a dead time nothing is proved over a box"
+    )
     if status == "unknown":
         how = f"at the worst point found: {exact.verdict}"
     return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
@@ -120,7 +124,7 @@ def _margin(family: Family, z: sp.Matrix, box: ValueBox, claim: str) -> MarginFu
     return port_margin(family, z, stable=stable, poles=poles, box=box)
 
 
-def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
+def _is_proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
     if z.shape == (1, 1):
         return one_port_is_passive(ask, z[0, 0])
     return (two_port_is_stable if claim == "absolutely stable" else two_port_is_passive)(ask, z)
@@ -156,7 +160,7 @@ def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> float:
 
 def _settle(alone: Diagram, box: ValueBox, point: np.ndarray, claim: str) -> Claim:
     """The claim at a point alone, by the exact tests."""
-    there = judged(alone.with_values(box.named(point)))
+    there = drop_absent_effects(alone.with_values(box.named(point)))
     try:
         claims = linear_claims(there, ports(there))
     except ModelError as problem:  # dead times of a form that the tests at a point do not take
@@ -170,7 +174,7 @@ def _point_by_point(
     """Where the values are not in the linear form as such: each point by itself."""
 
     def one(diagram: Diagram) -> Claim:
-        there = judged(diagram)
+        there = drop_absent_effects(diagram)
         return linear_claims(there, ports(there))[-1 if claim == "absolutely stable" else 0].claim
 
     made = judge_at_points(alone, box, one, points, seed)
@@ -193,7 +197,7 @@ def _how(ask: Conditions, what: str) -> str:
     )
 
 
-def _no_proof(ask: Conditions) -> str:
+def _explain_no_proof(ask: Conditions) -> str:
     return (
         f"no proof over the whole box: not shown on {ask.effort.cells} parts of it, or poles on "
         "the axis that no condition covers, or modes inside that no port shows"

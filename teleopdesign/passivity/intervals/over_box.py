@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ...arguments import checked
+from ...arguments import check_types
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ...errors import ModelError
-from ...expectations import described
-from ..claims.axis_units import in_rotary_units
-from ..ports import judged, ports, without_holding
+from ...expectations import describe_value
+from ..claims.axis_units import use_rotary_units
+from ..ports import drop_absent_effects, ports, without_holding
 from .at_points import judge_at_points
 from .box import box_of, nonlinear_within
 from .friction import judge_friction
@@ -19,7 +19,7 @@ from .interval_claim import IntervalClaim, Parts
 from .linear import CLAIMS, judge_linear, judge_stability
 
 
-@checked
+@check_types
 def claim_over_intervals(
     diagram: Diagram,
     intervals: Mapping[str, tuple[float, float]],
@@ -45,10 +45,10 @@ def claim_over_intervals(
     if callable(claim):
         return _finish(diagram, intervals, judge_at_points(middle, box, claim, points, seed))
     if claim not in CLAIMS:
-        raise ModelError(f"claim: found {described(claim)}, expected {', '.join(CLAIMS)}")
+        raise ModelError(f"claim: found {describe_value(claim)}, expected {', '.join(CLAIMS)}")
     if claim == "stable":
         return _finish(diagram, intervals, judge_stability(middle, box, points, seed))
-    alone = without_holding(judged(middle))
+    alone = without_holding(drop_absent_effects(middle))
     away = [n for n in box.names if not without_holding(middle).has(n.partition(".")[0])]
     if away:
         raise ModelError(f'{away[0]}: holds a port, and no part of what is "{claim}": see "stable"')
@@ -70,7 +70,7 @@ def _finish(
     worst = {n: made["worst"].get(n, v) for n, v in starts.items()}
     within = ", ".join(f"{n} {float(a):g} to {float(b):g}" for n, (a, b) in intervals.items())
     axis = first_axis(diagram)
-    turned = in_rotary_units if axis == "revolute" else str
+    turned = use_rotary_units if axis == "revolute" else str
     unit = turned(f"1 {made['unit']}")[2:]
     return IntervalClaim(
         **{

@@ -13,7 +13,7 @@ import sympy as sp
 from ...derive import symbol_values, transfer
 from ...diagrams import Diagram
 from ...realise.lti import linear_blocks
-from ...realise.tips import led, linear_tips
+from ...realise.tips import led_motion, linear_tips
 from ..declarations import falsely_linear
 from .impedance import Impedance, impedance
 
@@ -27,7 +27,7 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
     are frozen, m/s: what holds there is a statement about that linear system only
     raises ModelError: a block without values, or with a dead time
     """
-    apart, motion = linear_tips(diagram), led(diagram, "L")
+    apart, motion = linear_tips(diagram), led_motion(diagram, "L")
     motion = motion if motion in apart.signals else "L"
     linear = linear_blocks(apart, speed=speed)
     form = transfer(apart.opened("K"), "E", (motion,), given=motion)[motion]

@@ -31,7 +31,7 @@ from ...diagrams import Block, Control, Diagram, Moving, with_shared_states
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
-from ..ports import Port, placed, ports
+from ..ports import Port, arrange_coefficients, ports
 from .impedance import exact, impedance
 from .in_full import (
     Equation,
@@ -64,7 +64,7 @@ def growth_within(diagram: Diagram) -> float | None:
     forms = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
     if linear.dead_times or any(e.has(sp.exp) for row in forms for e in row.values()):
         return None
-    whole, shown = _whole(diagram, forms, at)
+    whole, shown = _whole_determinant(diagram, forms, at)
     if whole.is_zero:
         return None
     if not _is_free_of_growth(whole):
@@ -121,7 +121,7 @@ def _is_free_of_growth(p: sp.Poly) -> bool:
     return is_free_of_growth(polynomial(fraction(c) for c in p.all_coeffs()[::-1]))
 
 
-def _whole(
+def _whole_determinant(
     diagram: Diagram, forms: list[dict[str, sp.Expr]], at: Sequence[Port]
 ) -> tuple[sp.Poly, sp.Matrix]:
     """det of all equations, with what blocks cancel; and motions of the ports for their forces."""
@@ -129,13 +129,13 @@ def _whole(
     forces = [port.force for port in at]
     if len(forms) != len(unknown):
         return sp.Poly(0, S, domain="QQ"), sp.zeros(0)
-    matrix = placed(forms, unknown)
+    matrix = arrange_coefficients(forms, unknown)
     above, below = ratio(matrix.domain.to_sympy(matrix.det()))
     if above.is_zero:
         return above, sp.zeros(0)
     whole, rest = (above * denominators(diagram)).div(below)
     assert rest.is_zero
-    answers = matrix.lu_solve(placed(forms, forces)).to_Matrix()
+    answers = matrix.lu_solve(arrange_coefficients(forms, forces)).to_Matrix()
     weights = sp.Matrix([[exact(port.weights.get(n, 0)) for n in unknown] for port in at])
     return whole, weights * answers
 
@@ -144,14 +144,14 @@ def _drives_itself(whole: sp.Poly, shown: sp.Matrix, equations: list[Equation]) 
     """Whether a mode on the axis may grow as a power of time that the forms do not show."""
     mirror = whole.compose(sp.Poly(-S, S, domain="QQ"))
     for factor, _ in sp.gcd(whole, mirror).factor_list()[1]:
-        order, divisors = _shown(shown, factor)
+        order, divisors = _count_shown(shown, factor)
         hidden = _multiplicity(whole, factor) - order
         if hidden and _nullity(equations, factor) != divisors + hidden:
             return True
     return False
 
 
-def _shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
+def _count_shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
     """Sum of the exponents of its poles there, and how many divisors they are (Smith, McMillan).
 
     Elimination by the entry of the highest pole: what it divides keeps no higher one.

@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 import sympy as sp
 
-from ...arguments import described
+from ...arguments import describe_value
 from ...controllers import resolvent
 from ...errors import ModelError
 from ...realise.lti import S
@@ -56,10 +56,12 @@ class Impedance:
 
     def __reduce__(self) -> Any:
         # sympy pickles a polynomial without the domain of its coefficients
-        return _of_domains, tuple((poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q))
+        return _impedance_of_domains, tuple(
+            (poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q)
+        )
 
 
-def _of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Impedance:
+def _impedance_of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Impedance:
     return Impedance(*(sp.Poly(e, S, domain=domain) for e, domain in (p, q)))
 
 
@@ -120,7 +122,7 @@ def exact(number: Any) -> sp.Rational:
         return sp.Rational(repr(value))
     except (TypeError, ValueError, OverflowError):
         raise ModelError(
-            f"passivity: expected a finite real number, found {described(number)}"
+            f"passivity: expected a finite real number, found {describe_value(number)}"
         ) from None
 
 
@@ -129,10 +131,10 @@ def _from_sympy(system: Any) -> Impedance:
         e = sp.sympify(system, strict=True)  # a text would be run
     except (sp.SympifyError, TypeError, AttributeError):
         raise ModelError(
-            f"impedance: expected an expression in s, found {described(system)}"
+            f"impedance: expected an expression in s, found {describe_value(system)}"
         ) from None
     if not isinstance(e, sp.Expr) or e.is_Matrix:
-        raise ModelError(f"impedance: expected an expression in s, found {described(system)}")
+        raise ModelError(f"impedance: expected an expression in s, found {describe_value(system)}")
     e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
     if others := {x.name for x in e.free_symbols - {S}}:
         raise ModelError(f"impedance: values are needed for {', '.join(sorted(others))}")

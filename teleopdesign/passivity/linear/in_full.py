@@ -16,8 +16,8 @@ from ...blocks import Body
 from ...controllers import (
     Controller,
     Stage,
-    as_written,
-    in_exact_numbers,
+    exact_decimal,
+    make_exact,
     parameter_symbol,
     resolvent,
 )
@@ -44,12 +44,12 @@ _DRIVE, _MOVED = sp.Symbol("drive"), sp.Symbol("moved")
 
 def polynomial_in_s(expression: sp.Expr | int) -> sp.Poly:
     """As polynomial in `S` with exact numbers; PolynomialError where it is none."""
-    return sp.Poly(in_exact_numbers(sp.sympify(expression)), S, domain="QQ")
+    return sp.Poly(make_exact(sp.sympify(expression)), S, domain="QQ")
 
 
 def ratio(form: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
     """Numerator and denominator of a rational form in `S`, coprime."""
-    above, below = sp.fraction(sp.cancel(in_exact_numbers(sp.sympify(form))))
+    above, below = sp.fraction(sp.cancel(make_exact(sp.sympify(form))))
     return polynomial_in_s(above), polynomial_in_s(below)
 
 
@@ -69,12 +69,12 @@ def stage_rows(
     signals = {"input": _DRIVE, "velocity": velocity, "speed": sp.S(0), "travel_rate": velocity}
     made = alone.equation("law", {**signals, "period": sp.S(0)})
     numbers = {
-        parameter_symbol("law", n): known.get(n, as_written(x)) for n, x in alone.names().items()
+        parameter_symbol("law", n): known.get(n, exact_decimal(x)) for n, x in alone.names().items()
     }
     unknown = [*made.rates, _DRIVE, _MOVED]
 
     def row(expression: sp.Expr) -> list[sp.Expr]:
-        placed = in_exact_numbers(sp.sympify(expression).subs(numbers))
+        placed = make_exact(sp.sympify(expression).subs(numbers))
         return [sp.diff(placed, x) for x in unknown]
 
     return [row(rate) for rate in made.rates.values()], row(made.output)
@@ -95,11 +95,11 @@ def effect_forms(part: object) -> tuple[list[sp.Expr], list[sp.Expr]]:
     body = getattr(part, "body", None)
     if not isinstance(body, Body):
         return [], []
-    numbers = {s: as_written(x) for s, x in body.numbers().items()}
+    numbers = {s: exact_decimal(x) for s, x in body.numbers().items()}
 
     def of(effects: Iterable[Effect]) -> list[sp.Expr]:
         forms = (e.linear_form(S) for e in effects)
-        return [in_exact_numbers(sp.sympify(f).subs(numbers)) for f in forms if f is not None]
+        return [make_exact(sp.sympify(f).subs(numbers)) for f in forms if f is not None]
 
     acting = [e for e in body.effects if e.role == "actuation"]
     return of(e for e in body.effects if e not in acting), of(acting)
@@ -206,7 +206,7 @@ def _impedance(
 ) -> list[tuple[str, sp.Poly]]:
     body = part.body
     assert isinstance(body, Body)
-    inertia = sp.Poly(as_written(body.parameters["inertia"].value) * S**2, S, domain="QQ")
+    inertia = sp.Poly(exact_decimal(body.parameters["inertia"].value) * S**2, S, domain="QQ")
     return [(part.motion, inertia), *(writer.through(form, part.motion) for form in forms)]
 
 

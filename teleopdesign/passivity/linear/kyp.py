@@ -179,7 +179,8 @@ def _candidates(made: Realisation) -> list[FractionRows]:
         for digits in (1, 2, 3, 4, 6, 9, 12):
             upper = np.triu(solved[1] * size)
             p = [
-                [_rounded(upper[min(i, j), max(i, j)], digits) for j in range(n)] for i in range(n)
+                [_round_fraction(upper[min(i, j), max(i, j)], digits) for j in range(n)]
+                for i in range(n)
             ]
             if made.d == 0:
                 for k, x in enumerate(made.c):
@@ -188,7 +189,7 @@ def _candidates(made: Realisation) -> list[FractionRows]:
     return matrices
 
 
-def _rounded(x: float, digits: int) -> Fraction:
+def _round_fraction(x: float, digits: int) -> Fraction:
     return Fraction(float(x)).limit_denominator(10**digits)
 
 

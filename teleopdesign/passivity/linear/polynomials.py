@@ -128,9 +128,9 @@ def even_part(p: sp.Poly, q: sp.Poly) -> sp.Poly:
 def halves(p: sp.Poly) -> tuple[sp.Poly, sp.Poly]:
     """(a, b) with p(j w) = a(w^2) + j w b(w^2)."""
     rising = p.all_coeffs()[::-1]
-    return _alternating(rising[::2]), _alternating(rising[1::2])
+    return _alternate_signs(rising[::2]), _alternate_signs(rising[1::2])
 
 
-def _alternating(rising: Sequence[sp.Expr]) -> sp.Poly:
+def _alternate_signs(rising: Sequence[sp.Expr]) -> sp.Poly:
     signed = [(-1) ** k * c for k, c in enumerate(rising)]
     return sp.Poly(signed[::-1] or [0], X, domain="QQ")

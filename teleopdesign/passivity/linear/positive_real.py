@@ -15,7 +15,7 @@ import numpy as np
 import sympy as sp
 
 from ..claims.certificate import positive_real_certificate
-from ..claims.claim import Claim, Refutation, Unknown, accepted
+from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate
 from ..search.growing_wave import GrowingWave, growing_wave
 from .hidden_modes import UNSEEN, grows_unseen
 from .impedance import Impedance, MotionKind, exact, gaussian, impedance
@@ -75,7 +75,7 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     if grows_unseen(system):
         return Claim(statement, Unknown(UNSEEN))
     margin = damping_excess(z)
-    verdict = accepted(
+    verdict = prove_by_certificate(
         "the positive-real test",
         lambda: positive_real_certificate(statement, [[z.expression]]),
         float(margin.lower),
@@ -140,7 +140,7 @@ def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
     """
     z = impedance(system, motion=motion)
     at, lowest = _infimum(*real_part(z))
-    lower, upper = _verified(z, lowest)
+    lower, upper = _verify_bounds(z, lowest)
     return Excess(lower, upper, float(np.sqrt(at)))
 
 
@@ -173,7 +173,7 @@ def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
     return min(extremes, key=lambda pair: pair[1]) if extremes else (0.0, float("-inf"))
 
 
-def _verified(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:
+def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:
     """Bounds c- <= lowest <= c+ with Z - c- passive and Z - c+ not, by the exact test."""
     infinite = float("-inf"), float("-inf")
     if not np.isfinite(lowest):

@@ -60,7 +60,7 @@ class SimulatedMotion:
 
     def replay(self) -> float:
         """Energy released, J, from rest back to rest, simulated anew."""
-        return given_out(
+        return released_energy(
             self.diagram, self.strokes, port=self.port, computer=self.computer, give=self.give
         ).total
 
@@ -82,7 +82,7 @@ class SimulatedMotion:
         }
 
 
-def given_out(
+def released_energy(
     diagram: Diagram,
     strokes: Strokes,
     *,
@@ -145,7 +145,9 @@ def confirmed_motion(
     """
 
     def run(strokes: Strokes, *, finer: int = 1, give: float = give) -> Given:
-        return given_out(diagram, strokes, port=port, computer=computer, give=give, finer=finer)
+        return released_energy(
+            diagram, strokes, port=port, computer=computer, give=give, finer=finer
+        )
 
     first = run(strokes)
     if first.last_round <= 0:
@@ -196,7 +198,7 @@ def search_counterexample(
     on_the_way = [(0.0, 0.0)]
 
     def score(strokes: Strokes) -> float:
-        one = given_out(diagram, strokes, port=port, computer=computer, give=give)
+        one = released_energy(diagram, strokes, port=port, computer=computer, give=give)
         on_the_way.append((one.most, one.turned))
         return one.last_round / one.turned if one.turned else 0.0
 
@@ -204,7 +206,7 @@ def search_counterexample(
         (score(s), name, s) for name, s in families(rng, stroke=stroke, speed=speed, tries=tries)
     ]
     for _, name, strokes in sorted(motions, key=lambda one: -one[0])[:3]:
-        better = _refined(strokes, score, stroke=stroke, speed=speed)
+        better = _refine(strokes, score, stroke=stroke, speed=speed)
         confirmed = confirmed_motion(diagram, better, port=port, computer=computer, give=give)
         if confirmed is not None:
             return Claim(statement, Refutation(f"a motion found by search, {name}", confirmed))
@@ -221,7 +223,7 @@ def search_counterexample(
     return Claim(statement, Evidence(True, searched, -best, "of the energy turned over"))
 
 
-def _refined(
+def _refine(
     strokes: Strokes, score: Callable[[Strokes], float], *, stroke: float, speed: float
 ) -> Strokes:
     """The strokes with size and speed changed so that a larger share comes out."""

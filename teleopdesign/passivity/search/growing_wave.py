@@ -87,7 +87,7 @@ class GrowingWave:
         power = (f * v).sum(axis=1)
         weights = np.ones(len(t))  # Simpson's rule
         weights[1:-1:2], weights[2:-1:2] = 4, 2
-        return float(-(t[1] - t[0]) / 3 * beyond_rounding(weights * power))
+        return float(-(t[1] - t[0]) / 3 * drop_rounding(weights * power))
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""
@@ -101,7 +101,7 @@ class GrowingWave:
         }
 
 
-def beyond_rounding(terms: np.ndarray) -> float:
+def drop_rounding(terms: np.ndarray) -> float:
     """Their sum; 0 where it is no more than what the rounding of the terms may come to."""
     total = float(terms.sum())
     return total if abs(total) > ROUNDING * float(np.abs(terms).sum()) else 0.0
@@ -111,16 +111,16 @@ def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.n
     """Z at rate + j frequency, (n, n), to double precision; NaN where more digits change that."""
     # poles and zeros of badly scaled systems lie close together, and near s = 0 dead times leave
     # differences of numbers that agree in tens of digits
-    few = _evaluated(z, rate, frequency, digits=_DIGITS)
+    few = _evaluate_precisely(z, rate, frequency, digits=_DIGITS)
     for digits in (2 * _DIGITS, 4 * _DIGITS, 8 * _DIGITS):
-        more = _evaluated(z, rate, frequency, digits=digits)
+        more = _evaluate_precisely(z, rate, frequency, digits=digits)
         if np.allclose(few, more, rtol=1e-12, atol=0):
             return more
         few = more
     return np.full(z.shape, np.nan, dtype=complex)
 
 
-def _evaluated(
+def _evaluate_precisely(
     z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction, *, digits: int
 ) -> np.ndarray:
     """Z there in so many digits, then rounded to complex numbers."""
@@ -165,7 +165,7 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
 def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
     """Whether Z + Z* is positive there by far more than rounding takes, in double precision."""
     with np.errstate(all="ignore"):
-        value = np.array(_in_doubles(z)(np.complex128(s)), dtype=complex)
+        value = np.array(_compile_in_doubles(z)(np.complex128(s)), dtype=complex)
     if not np.all(np.isfinite(value)):
         return False
     lowest = np.linalg.eigvalsh((value + value.conj().T) / 2)[0]
@@ -173,7 +173,7 @@ def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
 
 
 @lru_cache(maxsize=8)
-def _in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list[list[complex]]]:
+def _compile_in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list[list[complex]]]:
     return cast(
         "Callable[[np.complex128], list[list[complex]]]", sp.lambdify(S, z.tolist(), "numpy")
     )
@@ -184,14 +184,14 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
 
     Re Z < 0 at its s is verified exactly.
     """
-    waves = [_beside_the_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
+    waves = [_find_beside_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
     growing = [w for w in waves if w is not None]
     # the one that grows fastest against its frequency is the plainest to look at
     best = max(growing, key=lambda w: w.rate / w.frequency, default=None)
     if best is not None and _share(best) > _WEAKEST:
         return best
     # a mode that grows shows more, where a zero beside it hides it from the axis
-    return _at_a_growing_mode(z) or best
+    return _find_at_growing_mode(z) or best
 
 
 def _share(wave: GrowingWave) -> float:
@@ -211,18 +211,18 @@ def halvings(start: Fraction, number: int) -> Iterable[Fraction]:
     return (start / 2**k for k in range(1, number + 1))
 
 
-def _beside_the_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
+def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
     """At about sqrt(x), with the fastest growth of a halving sequence for which Re Z < 0."""
     for digits in (20, 60, 200):  # enough for a dip in frequency that narrow, relative
         frequency = square_root(x, digits)
         for rate in halvings(frequency, 4 * digits):
-            wave = _checked(z, rate, frequency)
+            wave = _check_exactly(z, rate, frequency)
             if wave is not None:
                 return wave
     return None
 
 
-def _at_a_growing_mode(z: Impedance) -> GrowingWave | None:
+def _find_at_growing_mode(z: Impedance) -> GrowingWave | None:
     """Near a zero of Z + c in the right half plane: there Re Z = -c.
 
     The port held by a damper c > 0 moves with that growing mode by itself.
@@ -243,7 +243,7 @@ def _at_a_growing_mode(z: Impedance) -> GrowingWave | None:
                     for x in root.as_real_imag()
                 )
                 if rate > 0 and frequency >= 0:
-                    waves.append(_checked(z, rate, frequency))
+                    waves.append(_check_exactly(z, rate, frequency))
             growing = [w for w in waves if w is not None]
             if growing:
                 return max(growing, key=lambda w: w.rate)
@@ -260,7 +260,7 @@ def _middle(polynomial: sp.Poly) -> sp.Rational:
     return sp.Rational(10) ** round(decades)
 
 
-def _checked(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
+def _check_exactly(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
     """The wave if Re Z < 0 there, exactly."""
     value = z.at(rate, frequency)
     if value is None or value[0] >= 0:

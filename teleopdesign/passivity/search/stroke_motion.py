@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arguments import checked
+from ...arguments import check_types
 from ...simulate import Trajectory
 
 Array = NDArray[np.float64]
 
 
-@checked
+@check_types
 @dataclass(frozen=True)
 class Strokes:
     """From rest at 0 through turning points, round after round, back to rest at 0.

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ...frozen import Catalogue
 from ..claims.claim import Refutation
-from ..identified import about_device
+from ..identified import restate_for_device
 from ._theorem import Question, Theorem, TopicClaim, Wall
 
 __all__ = ["THEOREMS", "Question", "Theorem", "TopicClaim", "Wall", "settle"]
@@ -45,7 +45,7 @@ def settle(
             continue
         covered = theorem.covers(question)
         for one in theorem.claims(question):
-            claim = about_device(question.device, one.claim, besides=covered)
+            claim = restate_for_device(question.device, one.claim, besides=covered)
             one = replace(one, claim=claim)
             answers.append(_replay(theorem, one) if simulated else one)
     return answers

@@ -13,7 +13,7 @@ from ...errors import ModelError
 _ROUNDING = 1e-9
 
 
-def in_z(controller: Any, *, sample_time: float, z: sp.Symbol) -> Any:
+def discrete_transfer_function(controller: Any, *, sample_time: float, z: sp.Symbol) -> Any:
     """The transfer function of a system from python-control; anything else as it is.
 
     Exact in the numbers as they came.  raises ModelError: continuous time, another period, several

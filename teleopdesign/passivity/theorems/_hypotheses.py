@@ -87,7 +87,7 @@ def one_of(*values: Any) -> Hypothesis:
     return Hypothesis(text, lambda x: x in values, (max(values) + 1, min(values) - 1, 0.5))
 
 
-def under(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
+def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
     """A theorem on numbers with its hypotheses, one for each argument, checked at every call.
 
     raises ModelError: at the call, an argument that violates its hypothesis; where the theorem is
@@ -124,5 +124,5 @@ def hypotheses_of(function: Callable[..., Any]) -> Mapping[str, Hypothesis]:
     """Argument -> what the theorem needs of it; ModelError where a function states none."""
     stated = getattr(function, "hypotheses", None)
     if stated is None:
-        raise ModelError(f"{function.__name__}: states no hypotheses: see `under`")
+        raise ModelError(f"{function.__name__}: states no hypotheses: see `require_hypotheses`")
     return dict(stated)

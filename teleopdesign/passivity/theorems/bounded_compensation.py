@@ -20,11 +20,11 @@ from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Dahl, symmetric_cycle
 from . import _dahl_certificates as shown
 from ._cycle_simulation import simulate_cycle
-from ._hypotheses import POSITIVE, under
+from ._hypotheses import POSITIVE, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 
 
-@under(coulomb_level=POSITIVE, bound=POSITIVE)
+@require_hypotheses(coulomb_level=POSITIVE, bound=POSITIVE)
 def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
     """Is Coulomb friction passive beside any compensator whose force stays within `bound`?
 
@@ -82,9 +82,11 @@ def _claims(question: Question) -> list[TopicClaim]:
     device, bound = question.device, question.bound
     assert bound is not None
     acting = device.acting_force(bound)
-    claims = [TopicClaim("any law within the level", _bounded(device, acting), time="any")]
+    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time="any")]
     if question.estimates:
-        claims.append(TopicClaim("the same, damping counted", _at_every_speed(device, acting)))
+        claims.append(
+            TopicClaim("the same, damping counted", _compare_at_every_speed(device, acting))
+        )
     return claims
 
 
@@ -95,7 +97,7 @@ def _covers(question: Question) -> Sequence[str]:
     return () if math.isinf(question.device.acting_force(bound)) else question.device.actuation
 
 
-def _bounded(device: IdentifiedDevice, acting: float) -> Claim:
+def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
     """Whether the friction level covers any law that acts with no more than that, N."""
     if math.isinf(acting):
         why = "no bound is known of the force that the actuation makes of a command"
@@ -103,7 +105,7 @@ def _bounded(device: IdentifiedDevice, acting: float) -> Claim:
     return bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
 
 
-def _at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
+def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
     """Whether level and damping together cover a law that acts with no more than that, N."""
     least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
     margin = least - acting

@@ -20,12 +20,12 @@ from ..claims.claim import Claim, Evidence, Proof, Refutation
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
 from ._dahl_certificates import Values, d, f_D
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, WHOLE, under
+from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
 from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 
 
-@under(
+@require_hypotheses(
     motor_level=POSITIVE,
     link_level=NOT_NEGATIVE,
     transmission_stiffness=POSITIVE,
@@ -79,7 +79,7 @@ def any_environment(
     return Claim(statement, clamped.verdict)
 
 
-@under(
+@require_hypotheses(
     motor_level=POSITIVE,
     link_level=POSITIVE,
     transmission_stiffness=POSITIVE,
@@ -122,7 +122,9 @@ def free_motion(
         compensator_level=compensator_level,
         compensator_stiffness=compensator_stiffness,
     )
-    cycle = _worst_cycle(helps, against) if margin < 0 else _searched(helps, against, rng, paths)
+    cycle = (
+        _worst_cycle(helps, against) if margin < 0 else _search_cycle(helps, against, rng, paths)
+    )
     if cycle is not None and cycle.energy > 0:
         return Claim(statement, Refutation("a closed path of the motor", cycle))
     searched = (
@@ -163,13 +165,13 @@ def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
     return max(cycles, key=lambda c: c.energy / c.turning_points[0])
 
 
-def _searched(
+def _search_cycle(
     helps: Dahl, against: Sequence[Element], rng: np.random.Generator, paths: int
 ) -> Cycle | None:
     """The closed path that releases most, of those with steps and random ones; None if none."""
     lengths = [helps.level / helps.stiffness]
     lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
-    best = _stepped(helps, against, lengths)
+    best = _add_steps(helps, against, lengths)
     for _ in range(paths):
         scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
         points = scale * rng.standard_normal(rng.integers(2, 11))
@@ -179,7 +181,7 @@ def _searched(
     return best
 
 
-def _stepped(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
+def _add_steps(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
     """The cycle with a step back and forth at each reversal that releases most; None if none does.
 
     lengths: of the bristle and of the spring beside it, m

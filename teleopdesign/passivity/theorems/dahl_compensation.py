@@ -28,13 +28,13 @@ from ..rate_independent import (
 )
 from . import _dahl_certificates as shown
 from ._cycle_simulation import simulate_cycle
-from ._hypotheses import POSITIVE, under
+from ._hypotheses import POSITIVE, require_hypotheses
 from ._theorem import Question, Theorem, Time, TopicClaim
 from .bounded_compensation import amplitude_beyond_onset, positive_numbers, proof_of_level
-from .lugre import beside_bristle_damping
+from .lugre import add_bristle_damping
 
 
-@under(
+@require_hypotheses(
     coulomb_level=POSITIVE,
     compensator_level=POSITIVE,
     compensator_stiffness=POSITIVE,
@@ -239,7 +239,7 @@ def dahl_claim(
         return dahl_compensation(**values)
     softest = presliding.low if certain else presliding.estimate
     pair = dahl_compensation(**values, presliding_stiffness=softest, highest_level=high)
-    return beside_bristle_damping(
+    return add_bristle_damping(
         pair,
         coulomb_level=low,
         highest_level=high,

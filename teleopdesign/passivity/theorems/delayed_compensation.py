@@ -24,14 +24,14 @@ from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..search.growing_wave import GrowingWave, halvings, wave_of
 from ._dahl_certificates import Values, sigma_D
-from ._hypotheses import NOT_NEGATIVE, under
+from ._hypotheses import NOT_NEGATIVE, require_hypotheses
 from ._theorem import Theorem
 
 #: just above 0.2172336, minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
 
 
-def given_out_late(*, level: float, stiffness: float, amplitude: float, phase: float) -> float:
+def released_by_delay(*, level: float, stiffness: float, amplitude: float, phase: float) -> float:
     """Energy that a delayed Dahl compensator releases per cycle, J.
 
     N, N/m, m;  phase: w tau, rad
@@ -50,7 +50,7 @@ def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, del
     return float(np.pi * inertia * amplitude**2 * w**2 * np.sin(w * delay))
 
 
-@under(
+@require_hypotheses(
     damping=NOT_NEGATIVE,
     compensator_stiffness=NOT_NEGATIVE,
     delay=NOT_NEGATIVE,

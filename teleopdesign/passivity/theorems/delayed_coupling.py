@@ -19,11 +19,11 @@ from ..linear.impedance import decimal, exact
 from ..two_port.claims import absolutely_stable
 from ..two_port.two_port import teleoperator_two_port
 from ._dahl_certificates import Values
-from ._hypotheses import NOT_NEGATIVE, REAL, under
+from ._hypotheses import NOT_NEGATIVE, REAL, require_hypotheses
 from ._theorem import Theorem
 
 
-@under(
+@require_hypotheses(
     master_inertia=NOT_NEGATIVE,
     master_damping=REAL,
     slave_inertia=NOT_NEGATIVE,

@@ -27,7 +27,7 @@ from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..search.growing_wave import GrowingWave, halvings, wave_of
-from ._hypotheses import NOT_NEGATIVE, one_of, under
+from ._hypotheses import NOT_NEGATIVE, one_of, require_hypotheses
 from ._theorem import Theorem
 
 Order = Literal[1, 2]
@@ -65,7 +65,7 @@ def largest_passive_inertia(
     return damping / _maximum(delay, time_constant)[1]
 
 
-@under(
+@require_hypotheses(
     inertia=NOT_NEGATIVE,
     damping=NOT_NEGATIVE,
     cancelled=NOT_NEGATIVE,

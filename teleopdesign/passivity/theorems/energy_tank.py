@@ -16,11 +16,11 @@ import sympy as sp
 from ..claims.certificate import storage_certificate
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal, exact
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, under
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem
 
 
-@under(reserve=NOT_NEGATIVE, travel=POSITIVE)
+@require_hypotheses(reserve=NOT_NEGATIVE, travel=POSITIVE)
 def energy_tank(*, reserve: Any, travel: Any) -> Claim:
     """What do two ends with energy tanks (`energy_tanks`) release at most?
 

@@ -24,7 +24,7 @@ from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ._dahl_certificates import Values, abs_v, dahl_rate, v
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, under
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 
 _STRIBECK = EFFECTS["stribeck"]
@@ -82,7 +82,7 @@ class Jumps:
         return {"kind": "jumps", **vars(self), "energy": self.energy}
 
 
-@under(
+@require_hypotheses(
     coulomb_level=POSITIVE,
     static_level=POSITIVE,
     stiffness=POSITIVE,
@@ -125,7 +125,7 @@ def lugre_passivity(
     return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", jumps))
 
 
-def beside_bristle_damping(
+def add_bristle_damping(
     pair: Claim,
     *,
     coulomb_level: Any,

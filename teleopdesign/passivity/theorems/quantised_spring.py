@@ -23,7 +23,7 @@ import sympy as sp
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, under
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 
 
@@ -65,7 +65,7 @@ class Flip:
         return {"kind": "flip", **vars(self), "energy": self.energy}
 
 
-@under(
+@require_hypotheses(
     stiffness=NOT_NEGATIVE,
     damping=NOT_NEGATIVE,
     sample_time=POSITIVE,

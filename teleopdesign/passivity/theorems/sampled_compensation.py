@@ -26,7 +26,7 @@ from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ..search.stroke_motion import Strokes
 from ._cycle_simulation import simulate_cycle
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, under
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 from .bounded_compensation import bounded_compensation
 
@@ -117,7 +117,7 @@ class Trembling:
         return first + self.friction.leg(there, -self.back)[1]
 
 
-@under(
+@require_hypotheses(
     coulomb_level=POSITIVE,
     compensator_level=POSITIVE,
     compensator_stiffness=POSITIVE,

@@ -23,17 +23,17 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...arguments import described
+from ...arguments import describe_value
 from ...by_value import ByValue
 from ...errors import ModelError
 from ...realise.lti import S
 from ..claims.certificate import positive_real_certificate
-from ..claims.claim import Claim, Refutation, Unknown, accepted
+from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
 from ..search.growing_wave import ROUNDING, growing_wave
-from ._discrete_system import in_z
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, under
+from ._discrete_system import discrete_transfer_function
+from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 
 #: forward shift by one sample
@@ -45,7 +45,7 @@ _LONGEST_WAIT = (
 )
 
 
-@under(controller=FREE, damping=NOT_NEGATIVE, sample_time=POSITIVE, stiffness=REAL)
+@require_hypotheses(controller=FREE, damping=NOT_NEGATIVE, sample_time=POSITIVE, stiffness=REAL)
 def sampled_passivity(
     controller: Any, *, damping: Any, sample_time: Any, stiffness: Any = 0
 ) -> Claim:
@@ -58,7 +58,7 @@ def sampled_passivity(
     raises ModelError: not rational in z, or a sample time that is not positive
     """
     late = _positive(sample_time)
-    law = _law(in_z(controller, sample_time=float(late), z=Z))
+    law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
     b, k = exact(damping), exact(stiffness)
     operator = travel_operator(law, b, late, k)
     statement = (
@@ -68,7 +68,7 @@ def sampled_passivity(
     if is_positive_real(operator):
         text = f"{statement}: G((1 + s)/(1 - s)) is positive real"
         margin = float(late) * float(damping_excess(operator))
-        verdict = accepted(
+        verdict = prove_by_certificate(
             "the discrete positive-real test, by bilinear transformation",
             lambda: positive_real_certificate(text, [[operator.expression]]),
             margin,
@@ -91,12 +91,14 @@ def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -
     Arguments as in `sampled_passivity`.
     """
     late = _positive(sample_time)
-    law = _law(in_z(controller, sample_time=float(late), z=Z))
+    law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
     operator = travel_operator(law, sp.S(0), late, exact(stiffness))
     return max(-float(late) * float(damping_excess(operator)), 0.0)
 
 
-@under(coupling=FREE, master_damping=NOT_NEGATIVE, slave_damping=NOT_NEGATIVE, sample_time=POSITIVE)
+@require_hypotheses(
+    coupling=FREE, master_damping=NOT_NEGATIVE, slave_damping=NOT_NEGATIVE, sample_time=POSITIVE
+)
 def sampled_coupling(
     coupling: Any, *, master_damping: Any, slave_damping: Any, sample_time: Any
 ) -> Claim:
@@ -128,7 +130,7 @@ def _law(controller: Any) -> sp.Expr:
     except sp.SympifyError:
         e = None
     if not isinstance(e, sp.Expr):
-        wrong = described(controller)
+        wrong = describe_value(controller)
         raise ModelError(f"controller: found {wrong}, expected an expression of z, or a number")
     e = e.xreplace({x: Z for x in e.free_symbols if x.name == "z"})
     if e.free_symbols - {Z}:
@@ -175,7 +177,7 @@ class SampledWave(ByValue):
     def replay(self) -> float:
         """Energy released, J, simulated from rest by the controller's difference equation."""
         system = self.law, self.damping, self.sample_time, self.stiffness
-        return float(_released(self.travel, *system))
+        return float(_released_energy(self.travel, *system))
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""
@@ -225,13 +227,13 @@ def _largest(
 
     Energy is quadratic in the travel, so that its largest eigenvector is the best mixture.
     """
-    out = _released(np.array([one, other, one + other]), *system)
+    out = _released_energy(np.array([one, other, one + other]), *system)
     if not np.isfinite(out).all():
         return -np.inf, one  # a controller that leaves double precision on the way
     mixed = (out[2] - out[0] - out[1]) / 2
     share = np.linalg.eigh(np.array([[out[0], mixed], [mixed, out[1]]]))[1][:, -1]
     travel = share[0] * one + share[1] * other
-    return float(_released(travel, *system)), travel
+    return float(_released_energy(travel, *system)), travel
 
 
 def _factor(rate: Fraction, frequency: Fraction) -> complex:
@@ -239,7 +241,7 @@ def _factor(rate: Fraction, frequency: Fraction) -> complex:
     return (1 + s) / (1 - s) if s != 1 else complex(1e12)  # a single travel
 
 
-def _released(
+def _released_energy(
     travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
 ) -> np.ndarray:
     """Energy released, J, by each of the motions (..., n).

@@ -30,7 +30,7 @@ from ...controllers import laws_that_declare
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Dahl
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, under
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
 from ._theorem import Question, Theorem, Time, TopicClaim
 from ._velocity_certificates import held_command, ideal_contact, yielding_contact
 
@@ -99,7 +99,7 @@ class SteadyStrokes:
         }
 
 
-@under(
+@require_hypotheses(
     coulomb_level=POSITIVE,
     compensator_level=POSITIVE,
     smoothing_velocity=NOT_NEGATIVE,

@@ -29,12 +29,12 @@ from ..declarations import falsely_linear, is_shipped
 from ..linear.hidden_modes import body_hides_growth, hides_growth
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
-from ..ports import judged, without_holding
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, under
+from ..ports import drop_absent_effects, without_holding
+from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem
 
 
-@under(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
+@require_hypotheses(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
 def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) -> Claim:
     """Does a channel of waves release no more than came in, at both ends together?
 
@@ -83,7 +83,7 @@ def _certificate(values: dict[str, sp.Expr]) -> Certificate:
     )
 
 
-@under(master=FREE, slave=FREE, coupling=FREE, wave_impedance=POSITIVE)
+@require_hypotheses(master=FREE, slave=FREE, coupling=FREE, wave_impedance=POSITIVE)
 def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance: Any) -> Claim:
     """Is the teleoperator passive at hand and environment, for constant delays of any length?
 
@@ -115,7 +115,7 @@ def wave_claim(diagram: Diagram) -> Claim:
     raises ModelError: another wiring, a block without values, two wave impedances that differ, a
         slave's controller that is not linear
     """
-    alone = without_holding(judged(diagram))
+    alone = without_holding(drop_absent_effects(diagram))
     wave_impedance = _wave_impedance(alone)
     linear = linear_blocks(alone)
     if "P" in linear.left_out:

@@ -19,13 +19,21 @@ from ...errors import ModelError
 from ...realise.lti import S
 from ..checker.absolute_stability import conditions
 from ..claims.certificate import absolute_stability_certificate, positive_real_certificate
-from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict, accepted
+from ..claims.claim import (
+    Claim,
+    Evidence,
+    Proof,
+    Refutation,
+    Unknown,
+    Verdict,
+    prove_by_certificate,
+)
 from ..linear.impedance import impedance, readable
 from ..linear.polynomials import halves, where_negative
 from ..linear.positive_real import is_positive_real
 from ..search.growing_wave import GrowingWave, growing_wave, halvings, wave_of
 from .delayed_two_port import late_terms, obstacles
-from .exact_complex import Gaussian, rounded, value_at
+from .exact_complex import Gaussian, round_point, value_at
 from .growing_mode import entries_of, growing_mode
 from .growth_points import candidates, points_near_poles, points_of_growth
 from .resonances import resonances
@@ -67,7 +75,7 @@ def passive(system: TwoPort) -> Claim:
             return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
         why = "; ".join(hidden) or "no certificate is accepted"
         return Claim(statement, Unknown(f"{why}; no wave that takes energy out was found"))
-    return Claim(statement, Evidence(True, _swept(), margin, "N s/m"))
+    return Claim(statement, Evidence(True, _describe_sweep(), margin, "N s/m"))
 
 
 def absolutely_stable(system: TwoPort) -> Claim:
@@ -87,7 +95,9 @@ def _verdict(system: TwoPort, statement: str) -> Verdict:
     z = _rational(system)
     failed = [c for c in conditions(entries_of(z)) if not c.holds]
     if not failed:
-        return accepted(_METHOD, lambda: absolute_stability_certificate(statement, z.tolist()))
+        return prove_by_certificate(
+            _METHOD, lambda: absolute_stability_certificate(statement, z.tolist())
+        )
     mode = growing_mode(z)
     if mode is None:
         return Unknown(f"{failed[0]}; no termination that makes it grow was found")
@@ -102,10 +112,10 @@ def _late_verdict(system: TwoPort) -> Verdict:
     frequencies, margin = _lowest(system, stable_margin)
     hidden = obstacles(system, "absolutely stable")
     if margin >= 0 and not hidden:
-        return Evidence(True, _swept(), margin, "(relative)")
+        return Evidence(True, _describe_sweep(), margin, "(relative)")
     waves = {}
     for f in frequencies if margin < 0 else ():
-        for held, wave in _terminated(system, f):
+        for held, wave in _terminate(system, f):
             waves[wave] = held
     for held, wave in () if waves else _terminated_elsewhere(system):
         waves[wave] = held
@@ -122,7 +132,7 @@ def is_shown_unstable(system: TwoPort) -> bool:
         return isinstance(absolutely_stable(system).verdict, Refutation)
     frequencies, margin = _lowest(system, stable_margin)
     lowest = frequencies if margin < 0 else []
-    waves = (pair for f in lowest for pair in _terminated(system, f))
+    waves = (pair for f in lowest for pair in _terminate(system, f))
     return any(w.replay() > 0 < w.energy for _, w in chain(waves, _terminated_elsewhere(system)))
 
 
@@ -137,7 +147,7 @@ def _text(system: TwoPort) -> str:
     return "; ".join(rows).join("[]")
 
 
-def _swept() -> str:
+def _describe_sweep() -> str:
     return (
         "margin over 4001 frequencies from 1e-4 to 1e4 Hz and across resonances, refined at the "
         "lowest; poles, residues and the ends of the axis"
@@ -251,20 +261,20 @@ def _takes_out(system: TwoPort, at: Gaussian) -> bool:
 
 
 def _terminated_elsewhere(system: TwoPort) -> Iterator[tuple[str, GrowingWave]]:
-    """As `_terminated`, beside poles and in the open right half plane."""
+    """As `_terminate`, beside poles and in the open right half plane."""
     points = _points(system)
     values = list(system.at(points).reshape(-1, 4).T)
     for s, second, turned in candidates(values, points)[:40]:
         far = far_termination(s, second)
         z11, z12, z21, z22 = reversed(list(system.z)) if turned else system.z
         at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
-        wave = wave_of(sp.ImmutableMatrix([[at_port]]), *rounded(s))
+        wave = wave_of(sp.ImmutableMatrix([[at_port]]), *round_point(s))
         if wave is not None and wave.energy > 0:
             yield (f"{far}" if not turned else f"moved, port 1 {far}"), wave
             return
 
 
-def _terminated(system: TwoPort, frequency: float) -> Iterator[tuple[str, GrowingWave]]:
+def _terminate(system: TwoPort, frequency: float) -> Iterator[tuple[str, GrowingWave]]:
     """Passive terminations of port 2 with which port 1 releases energy, and the wave."""
     z = system.z
     value = system.over(np.array([frequency]))[0]

@@ -19,7 +19,7 @@ def grows_between(z: Entries, held: tuple[Ratio, Ratio]) -> bool:
 
     False also where the inverse does not exist.
     """
-    det, (z11, z22) = _closed(z, held)
+    det, (z11, z22) = _close_loop(z, held)
     if not det[0]:
         return False
     closed = (_product(one, (det[1], det[0])) for one in (z11, z[1], z[2], z22))
@@ -31,13 +31,13 @@ def hidden_poles(z: Entries, held: tuple[Ratio, Ratio], k: int) -> Polynomial:
 
     Those at which the loop's determinant is finite: the other port rests. Without a determinant: 1
     """
-    det, _ = _closed(z, held)
+    det, _ = _close_loop(z, held)
     if not det[0] or len(greatest_common_divisor(det[1], z[k][1])) > 1:
         return [Fraction(1)]
     return greatest_common_divisor(_product(z[k], (det[1], det[0]))[1], z[k][1])
 
 
-def _closed(z: Entries, held: tuple[Ratio, Ratio]) -> tuple[Ratio, tuple[Ratio, Ratio]]:
+def _close_loop(z: Entries, held: tuple[Ratio, Ratio]) -> tuple[Ratio, tuple[Ratio, Ratio]]:
     """Determinant and diagonal of Z + diag(held)."""
     z11, z22 = (_sum(one, end) for one, end in zip((z[0], z[3]), held, strict=True))
     loop = _product(z[1], z[2])

@@ -33,7 +33,7 @@ from ..checker.polynomials import (
     signs_at_roots,
     without_zero,
 )
-from .growing_mode import rising
+from .growing_mode import sort_by_power
 from .two_port import TwoPort
 
 Criterion = Literal["absolutely stable", "passive"]
@@ -64,7 +64,7 @@ def late_terms(entry: sp.Expr) -> tuple[Late, ...] | None:
     above, below = sp.fraction(sp.together(plain))
     if below.free_symbols & set(marks) or not above.is_polynomial(S, *marks):
         return None
-    q = rising(sp.Poly(below, S, domain="QQ"))
+    q = sort_by_power(sp.Poly(below, S, domain="QQ"))
     by_delay: dict[Fraction, Polynomial] = {}
     for exponents, c in sp.Poly(above, *marks, S).terms():
         *times, power = exponents
@@ -84,7 +84,11 @@ def obstacles(system: TwoPort, criterion: Criterion) -> tuple[str, ...]:
     z = [e for e in entries if e is not None]
     reasons = list(_growth(z))
     if not reasons:
-        reasons += [*_at_zero(z, criterion), *_on_the_axis(z, criterion), *_far_out(z, criterion)]
+        reasons += [
+            *_check_at_zero(z, criterion),
+            *_check_on_axis(z, criterion),
+            *_far_out(z, criterion),
+        ]
     return tuple(reasons)
 
 
@@ -94,7 +98,7 @@ def _growth(z: Sequence[tuple[Late, ...]]) -> Iterator[str]:
             yield f"{name} has a pole in the open right half plane"
 
 
-def _at_zero(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
+def _check_at_zero(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
     """Order of the pole, residues, and the inequality in the limit of low frequency; exact."""
     series = [_series(terms) for terms in z]
     for name, coefficients in zip(_NAMES, series, strict=True):
@@ -102,7 +106,7 @@ def _at_zero(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[st
             yield f"{name} has a multiple pole at s = 0"
             return
     k = [c.get(-1, Fraction(0)) for c in series]
-    if not _allowed([complex(x) for x in k], criterion, 0.0) or not _exactly(k, criterion):
+    if not _is_allowed([complex(x) for x in k], criterion, 0.0) or not _exactly(k, criterion):
         yield "the residues at s = 0 do not meet the criterion"
     for margin in _low_frequency(series, criterion):
         first = next((c for c in margin if c), Fraction(0))
@@ -150,16 +154,16 @@ def _low_frequency(
     if criterion == "passive":  # twice the Hermitian part
         re, im = add(re12, re21), add(im12, im21, -1)
         size = add(multiply(re, re), multiply(im, im))
-        yield _trusted(add(multiply([Fraction(4)], r1, r2), size, -1))
+        yield _trusted_coefficients(add(multiply([Fraction(4)], r1, r2), size, -1))
         return
     re = add(multiply(re12, re21), multiply(im12, im21), -1)
     im = add(multiply(re12, im21), multiply(im12, re21))
     a = add(multiply([Fraction(2)], r1, r2), re, -1)
-    yield _trusted(a)
-    yield _trusted(add(multiply(a, a), add(multiply(re, re), multiply(im, im)), -1))
+    yield _trusted_coefficients(a)
+    yield _trusted_coefficients(add(multiply(a, a), add(multiply(re, re), multiply(im, im)), -1))
 
 
-def _trusted(p: Polynomial) -> Polynomial:
+def _trusted_coefficients(p: Polynomial) -> Polynomial:
     """The coefficients that the truncated series determine."""
     return p[: _TERMS - 2]
 
@@ -174,7 +178,7 @@ def _parts(series: dict[int, Fraction]) -> tuple[Polynomial, Polynomial]:
     return real, imaginary
 
 
-def _on_the_axis(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
+def _check_on_axis(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
     """Residues at poles j w, w > 0, in floating point; a multiple pole of one term is refused."""
     shared = [Fraction(1)]
     for name, terms in zip(_NAMES, z, strict=True):
@@ -190,7 +194,7 @@ def _on_the_axis(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterato
     for x in _positive_roots(shared):
         s = 1j * x**0.5
         k = [_residue(terms, s) for terms in z]
-        if not _allowed(k, criterion, _ROUNDING):
+        if not _is_allowed(k, criterion, _ROUNDING):
             yield f"the residues at {x**0.5:.6g} rad/s do not meet the criterion"
 
 
@@ -212,7 +216,7 @@ def _residue(terms: Sequence[Late], s: complex) -> complex:
     return total
 
 
-def _allowed(k: Sequence[complex], criterion: Criterion, rounding: float) -> bool:
+def _is_allowed(k: Sequence[complex], criterion: Criterion, rounding: float) -> bool:
     k11, k12, k21, k22 = k
     tolerance = rounding * max(abs(x) for x in k)
     if min(k11.real, k22.real) < -tolerance or max(abs(k11.imag), abs(k22.imag)) > tolerance:

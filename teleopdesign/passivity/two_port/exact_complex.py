@@ -13,7 +13,7 @@ Gaussian = tuple[Fraction, Fraction]
 ZERO: Gaussian = (Fraction(0), Fraction(0))
 
 
-def rounded(s: complex) -> Gaussian:
+def round_point(s: complex) -> Gaussian:
     """A point to seven digits of its distance from the axis: finer than candidates lie apart."""
     rate, frequency = Fraction(s.real), Fraction(s.imag)
     finer = len(str(int(abs(s) / s.real))) - 1

@@ -43,11 +43,11 @@ from .exact_complex import (
     as_complex,
     divide,
     multiply,
-    rounded,
+    round_point,
     short,
     value_at,
 )
-from .growth_points import candidates, over, points_of_growth
+from .growth_points import candidates, evaluate_at, points_of_growth
 from .termination import (
     CLAMPED,
     Termination,
@@ -144,11 +144,11 @@ def entries_of(z: sp.ImmutableMatrix) -> Entries:
     ratios = []
     for entry in (z[0, 0], z[0, 1], z[1, 0], z[1, 1]):
         p, q = (sp.Poly(part, S, domain="QQ") for part in sp.fraction(sp.together(entry)))
-        ratios.append(coprime(rising(p), rising(q)))
+        ratios.append(coprime(sort_by_power(p), sort_by_power(q)))
     return ratios[0], ratios[1], ratios[2], ratios[3]
 
 
-def rising(p: sp.Poly) -> Polynomial:
+def sort_by_power(p: sp.Poly) -> Polynomial:
     """Coefficients as Fractions, lowest power first."""
     return polynomial(Fraction(int(c.p), int(c.q)) for c in reversed(p.all_coeffs()))
 
@@ -160,19 +160,21 @@ def growing_mode(impedance: sp.ImmutableMatrix) -> GrowingMode | None:
     """
     z = entries_of(impedance)
     points = points_of_growth(z)
-    values = [over(one, points) for one in z]
+    values = [evaluate_at(one, points) for one in z]
     for s, second, turned in candidates(values, points)[:_MOST_CANDIDATES]:
-        mode = _mode_at(impedance, z, rounded(s), far_termination(s, second), turned)
+        mode = _mode_at(impedance, z, round_point(s), far_termination(s, second), turned)
         if mode is not None:
             return mode
-    return _passed_on(impedance, z) or _narrow(impedance, z) or _at_a_pole(impedance, z)
+    return (
+        _mode_in_one_direction(impedance, z) or _narrow(impedance, z) or _find_at_pole(impedance, z)
+    )
 
 
 #: candidates that are tested exactly, a millisecond each
 _MOST_CANDIDATES = 40
 
 
-def _turned(z: Entries) -> Entries:
+def _exchange_ports(z: Entries) -> Entries:
     return z[3], z[2], z[1], z[0]
 
 
@@ -193,7 +195,7 @@ def _mode_at(
 
     turned: the far port is port 1
     """
-    z11, z12, z21, z22 = (value_at(one, at) for one in (_turned(z) if turned else z))
+    z11, z12, z21, z22 = (value_at(one, at) for one in (_exchange_ports(z) if turned else z))
     if z11 is None or z12 is None or z21 is None or z22 is None:
         return None
     at_port, ratio = z11, 0j
@@ -216,7 +218,7 @@ def _mode_at(
     return None
 
 
-def _passed_on(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
+def _mode_in_one_direction(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
     """The growing mode of z12 or z21 that the other one does not see: it moves one port alone."""
     for k, velocity in ((1, (1 + 0j, 0j)), (2, (0j, 1 + 0j))):
         for size in (1, 100, Fraction(1, 100)):
@@ -232,20 +234,20 @@ def _passed_on(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
 
 
 def _narrow(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """As `_near_the_axis`, with 40 digits: for inequalities that fail by little, or in a gap."""
+    """As `_points_near_axis`, with 40 digits: for inequalities that fail by little, or in a gap."""
     for x in _negative_places(z):
         w = square_root(x, 30)
         for k in range(4, 132, 8):
             at = short(w / 2**k, 6), w
             for turned in (False, True):
-                for far in _best_exact(_turned(z) if turned else z, at):
+                for far in _best_exact(_exchange_ports(z) if turned else z, at):
                     mode = _mode_at(impedance, z, at, far, turned)
                     if mode is not None:
                         return mode
     return None
 
 
-def _at_a_pole(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
+def _find_at_pole(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
     """Ever closer to a pole on the axis, far port free: for residues that fail by little."""
     poles = greatest_common_divisor(axis_poles(z[1][1]), axis_poles(z[2][1]))
     places = [square_root(x, 60) for x in positive_roots(_poly(poles), bits=200)]

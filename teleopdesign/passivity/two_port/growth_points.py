@@ -22,14 +22,14 @@ def points_of_growth(z: Entries) -> np.ndarray:
 
     Beside the axis where an inequality fails, beside poles, and on a grid over all of it.
     """
-    return np.array([*_near_the_axis(z), *points_near_poles(z)])
+    return np.array([*_points_near_axis(z), *points_near_poles(z)])
 
 
-def _near_the_axis(z: Entries) -> Iterator[complex]:
+def _points_near_axis(z: Entries) -> Iterator[complex]:
     """Beside some of the frequencies at which a sweep finds Llewellyn's margin negative."""
     sizes = np.abs([r for p, q in z for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
     w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])
-    value = np.stack([over(one, 1j * w) for one in z], axis=1).reshape(-1, 2, 2)
+    value = np.stack([evaluate_at(one, 1j * w) for one in z], axis=1).reshape(-1, 2, 2)
     with np.errstate(all="ignore"):
         margin = stable_margin(value)
     negative = np.flatnonzero(margin < 0)
@@ -74,12 +74,15 @@ def candidates(
     z11, z12, z21, z22 = values
     with np.errstate(all="ignore"):
         loop = z12 * z21
-    scored = [*_scored(z11, loop, z22, points, False), *_scored(z22, loop, z11, points, True)]
+    scored = [
+        *_score_points(z11, loop, z22, points, False),
+        *_score_points(z22, loop, z11, points, True),
+    ]
     scored.sort(key=lambda one: -one[0])
     return [one[1:] for one in scored]
 
 
-def _scored(
+def _score_points(
     z11: np.ndarray, loop: np.ndarray, z22: np.ndarray, points: np.ndarray, turned: bool
 ) -> list[tuple[float, complex, complex, bool]]:
     """Score: how far -z_in lies within the values of passive terminations, times growth."""
@@ -120,7 +123,7 @@ def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(second) & (s.imag > 0), second, 0)
 
 
-def over(one: Ratio, s: np.ndarray) -> np.ndarray:
+def evaluate_at(one: Ratio, s: np.ndarray) -> np.ndarray:
     """Numerical values at points s, (n,)."""
     p, q = ([float(c) for c in reversed(r)] or [0.0] for r in one)
     with np.errstate(all="ignore"):  # a point may be a pole

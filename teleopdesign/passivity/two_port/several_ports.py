@@ -16,9 +16,9 @@ from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import readable
 from ..search.growing_wave import GrowingWave, wave_of
-from .exact_complex import ZERO, Gaussian, add, multiply, rounded, value_at
-from .growing_mode import rising
-from .growth_points import over, points_near_poles, roots_of
+from .exact_complex import ZERO, Gaussian, add, multiply, round_point, value_at
+from .growing_mode import sort_by_power
+from .growth_points import evaluate_at, points_near_poles, roots_of
 
 #: of points of the right half plane, those whose waves are looked at exactly, the best first
 _MOST_CANDIDATES = 30
@@ -56,8 +56,8 @@ def passive_together(z: sp.Matrix) -> Claim:
 
 def _wave_out_of(z: sp.ImmutableMatrix) -> GrowingWave | None:
     ratios = [_ratio(entry) for entry in z]
-    points = np.array([*_beside_the_axis(ratios), *points_near_poles(ratios)])
-    values = np.moveaxis(np.array([over(r, points) for r in ratios]), 0, 1)
+    points = np.array([*_points_beside_axis(ratios), *points_near_poles(ratios)])
+    values = np.moveaxis(np.array([evaluate_at(r, points) for r in ratios]), 0, 1)
     values = values.reshape(-1, *z.shape)
     finite = np.isfinite(values).all(axis=(1, 2))
     points, values = points[finite], values[finite]
@@ -66,7 +66,7 @@ def _wave_out_of(z: sp.ImmutableMatrix) -> GrowingWave | None:
     for k in np.argsort(share)[:_MOST_CANDIDATES]:
         if share[k] >= 0:
             return None
-        at = rounded(complex(points[k]))
+        at = round_point(complex(points[k]))
         wave = wave_of(z, *at)
         if wave is not None and wave.energy > 0 and _takes_out(ratios, at, wave):
             return wave
@@ -76,10 +76,10 @@ def _wave_out_of(z: sp.ImmutableMatrix) -> GrowingWave | None:
 def _ratio(entry: sp.Expr) -> Ratio:
     above, below = sp.fraction(sp.together(entry))
     p, q = (sp.Poly(part, S, domain="QQ") for part in (above, below))
-    return coprime(rising(p), rising(q))
+    return coprime(sort_by_power(p), sort_by_power(q))
 
 
-def _beside_the_axis(ratios: list[Ratio]) -> Iterator[complex]:
+def _points_beside_axis(ratios: list[Ratio]) -> Iterator[complex]:
     """Over all frequencies from below the slowest root to above the fastest, ever nearer."""
     sizes = np.abs([r for p, q in ratios for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
     w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])

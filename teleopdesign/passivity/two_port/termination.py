@@ -15,7 +15,7 @@ import sympy as sp
 from ...realise.lti import S
 from ..checker.absolute_stability import Ratio, coprime
 from ..checker.polynomials import polynomial
-from .exact_complex import Gaussian, rounded, short
+from .exact_complex import Gaussian, round_point, short
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def far_termination(s: complex, value: complex) -> Termination:
     """The passive termination that has about that value at s; a clamp where it is infinite."""
     if cmath.isinf(value):
         return CLAMPED
-    return termination_near((Fraction(value.real), Fraction(value.imag)), rounded(s), 7)
+    return termination_near((Fraction(value.real), Fraction(value.imag)), round_point(s), 7)
 
 
 def with_resonance(held: Termination, at: Gaussian) -> Termination:

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...arguments import described
+from ...arguments import describe_value
 from ...by_value import ByValue
 from ...errors import ModelError
 from ...finding import Graph, Series
@@ -82,7 +82,7 @@ def _entry(entry: Any) -> sp.Expr:
     except sp.SympifyError:  # a text among them, which would be run
         e = None
     if not isinstance(e, sp.Expr) or e.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise ModelError(f"two_port: expected an expression in s, found {described(entry)}")
+        raise ModelError(f"two_port: expected an expression in s, found {describe_value(entry)}")
     e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
     if e.free_symbols - {S}:
         names = ", ".join(sorted(x.name for x in e.free_symbols - {S}))
@@ -135,7 +135,7 @@ class FrequencyMargins(ByValue):
         return Graph("frequency (Hz)", "Llewellyn's margin on the axis (1)", series)
 
 
-def over_frequency(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
+def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
     """Both margins over frequency (Hz), default 1e-4 to 1e4, 4001 points.
 
     frequency: (n,), Hz;  returns: passive margin (n,), N s/m, >= 0 where passive, and Llewellyn's

@@ -43,13 +43,13 @@ def place(network: Network, branches: Sequence[Path], sides: Mapping[int, int]) 
     for column, node in enumerate(spine.nodes):
         cells.put(node, (column, 0), RIGHT)
     while waiting:
-        able = [i for i, p in waiting.items() if _known(p, cells)]
+        able = [i for i, p in waiting.items() if _is_known(p, cells)]
         i = min(able, key=lambda i: (_small(waiting[i], network), _span(waiting[i], cells), i))
         _put(network, cells, waiting.pop(i), sides.get(i), spine.nodes)
     return cells
 
 
-def _known(path: Path, cells: Cells) -> bool:
+def _is_known(path: Path, cells: Cells) -> bool:
     return all(n is None or n in cells.at for n in (path.start, path.end))
 
 
@@ -122,7 +122,9 @@ def _put_small(network: Network, cells: Cells, path: Path, spine: tuple[str, ...
     if start is None and row == 0 and above <= below:
         beside[:2] = beside[1::-1]
     straight = (
-        start is not None or network.nodes[other].kind != "sum" or not _fed(network, cells, other)
+        start is not None
+        or network.nodes[other].kind != "sum"
+        or not _is_fed(network, cells, other)
     )
     wished = [behind, *beside] if straight else [*beside, behind]
     k = 2
@@ -132,7 +134,7 @@ def _put_small(network: Network, cells: Cells, path: Path, spine: tuple[str, ...
     cells.put(node, next(c for c in wished if c not in occupied), heading)
 
 
-def _fed(network: Network, cells: Cells, node: str) -> bool:
+def _is_fed(network: Network, cells: Cells, node: str) -> bool:
     """Whether the cell right behind a node feeds it already."""
     column, row = cells.at[node]
     behind = (column - cells.heading[node], row)

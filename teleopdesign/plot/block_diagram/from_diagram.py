@@ -18,7 +18,7 @@ from ...derive import has_actuation
 from ...diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ...diagrams.parts import Weight
 from .formulas import formula
-from .network import MINUS, Net, Network, Node, joined
+from .network import MINUS, Net, Network, Node, join_names
 from .shapes import Run, symbol
 
 MOST_INPUTS = 3  # of a circle, a box, a bar: from behind, from above, from below
@@ -79,7 +79,7 @@ class _Making:
     def sources(self) -> None:
         drivers = {b.driver for b in self.diagram.blocks if isinstance(b, Moving)}
         for signal in self.diagram.outside:
-            name, title = f"from {signal}", joined(self.names(signal))
+            name, title = f"from {signal}", join_names(self.names(signal))
             self.made.nodes[name] = Node(name, "source", title, driver=signal in drivers)
             self.wire(name, signal)
 
@@ -98,7 +98,9 @@ class _Making:
                 name, "box", (*title, *symbol(block.name)), (row, *_kinds(block, i))
             )
             self.wire(name, force)
-            self.gathered(name, [self.net(s) for s in _once(block.motions[j] for j in read)])
+            self.gathered(
+                name, [self.net(s) for s in _drop_repeats(block.motions[j] for j in read)]
+            )
 
     def kinematics(self, part: Kinematics) -> None:
         name = f"block {part.name}"
@@ -147,7 +149,7 @@ class _Making:
         if has_actuation(block):
             stage = f"stage A_{block.name}"
             effects = block.body.effects if isinstance(block.body, Body) else ()
-            notes = _said(tuple(e.name for e in effects if e.role == "actuation"))
+            notes = _shorten_names(tuple(e.name for e in effects if e.role == "actuation"))
             self.made.nodes[stage] = Node(stage, "box", symbol(f"A_{block.name}"), notes)
             self.join(command, stage)
             self.wire(stage)
@@ -209,14 +211,14 @@ def _depends(weight: Weight) -> bool:
     return bool(sp.sympify(weight, strict=True).free_symbols)
 
 
-def _once(names: Iterable[str]) -> list[str]:
+def _drop_repeats(names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
 def _kinds(block: Linked, row: int) -> tuple[str, ...]:
     """Matrices that have something in that row, from 0."""
     start = f"_{row + 1}_"
-    return tuple(_once(n.partition("_")[0] for n in block.body.parameters if start in n))
+    return tuple(_drop_repeats(n.partition("_")[0] for n in block.body.parameters if start in n))
 
 
 def _title(block: Block) -> tuple[Run, ...]:
@@ -239,12 +241,14 @@ def _notes(block: Block) -> tuple[str, ...]:
     if isinstance(block, Control):
         if not isinstance(block.controller, Controller) or _is_delay(block):
             return ()
-        return _said(tuple(stage.law.name for stage in block.controller.stages))
+        return _shorten_names(tuple(stage.law.name for stage in block.controller.stages))
     if not isinstance(block.body, Body):
         return ()
-    return _said(("inertia", *(e.name for e in block.body.effects if e.role != "actuation")))
+    return _shorten_names(
+        ("inertia", *(e.name for e in block.body.effects if e.role != "actuation"))
+    )
 
 
-def _said(names: tuple[str, ...]) -> tuple[str, ...]:
+def _shorten_names(names: tuple[str, ...]) -> tuple[str, ...]:
     shown = [n.replace("_", " ") for n in names]
     return tuple(shown) if len(shown) <= 4 else (*shown[:3], f"{len(shown) - 3} more")

@@ -73,7 +73,7 @@ class Network:
         return next((n for n in self.nets.values() if n.source == node), None)
 
 
-def joined(signals: list[str]) -> tuple[Run, ...]:
+def join_names(signals: list[str]) -> tuple[Run, ...]:
     """Names of one net: R_D = R_A."""
     runs: tuple[Run, ...] = symbol(signals[0])
     for signal in signals[1:]:
@@ -83,4 +83,4 @@ def joined(signals: list[str]) -> tuple[Run, ...]:
 
 def label(net: Net) -> tuple[Run, ...]:
     """What is written on the wire of a net; empty where it has no name."""
-    return joined(net.signals) if net.signals else ()
+    return join_names(net.signals) if net.signals else ()

@@ -30,7 +30,7 @@ def paths(network: Network) -> list[Path]:
     listed = [Path(spine, None, None)]
     placed = set(spine)
     while len(placed) < len(network.nodes):
-        path = _next(network, placed)
+        path = _longest_path(network, placed)
         listed.append(path)
         placed |= set(path.nodes)
     return listed
@@ -52,7 +52,7 @@ def _spine(network: Network) -> tuple[str, ...]:
     return tuple(_longest(network, first, set(), lambda _: True))
 
 
-def _next(network: Network, placed: set[str]) -> Path:
+def _longest_path(network: Network, placed: set[str]) -> Path:
     """The longest path through what is not placed yet; those between placed nodes first."""
     best: tuple[tuple[bool, bool, int], Path] | None = None
     starts: list[tuple[str | None, str]] = []

@@ -137,7 +137,7 @@ def _far(net: Net, target: str, grid: RoutingGrid) -> tuple[bool, int]:
     return not (y == y0 and ahead), abs(x - x0) + abs(y - y0)
 
 
-def _out(network: Network, grid: RoutingGrid, node: str) -> dict[int, float]:
+def _steps_out(network: Network, grid: RoutingGrid, node: str) -> dict[int, float]:
     """Steps by which a wire may leave a node, with what each costs more than the best."""
     ahead = 0 if grid.cells.heading[node] == RIGHT else 2
     if network.nodes[node].kind != "source":
@@ -204,7 +204,7 @@ def _starts(network: Network, grid: RoutingGrid, net: Net) -> Iterator[tuple[Ver
     """Where a wire of a net may begin, with what that costs: its source, or one of its wires."""
     if net.name not in grid.begun:
         source = grid.vertex(net.source)
-        for d, cost in _out(network, grid, net.source).items():
+        for d, cost in _steps_out(network, grid, net.source).items():
             yield source, d, cost
     for vertex, nets in grid.used.items():
         _, inwards = grid.doors.get(vertex, ("", -1))

@@ -27,8 +27,8 @@ def sheet(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route], title: str
 ) -> Drawing:
     """The shapes of a laid out diagram, in the order in which they are painted."""
-    x = _across(network, cells, grid, routes)
-    y = _down(network, cells, grid, routes)
+    x = _line_abscissas(network, cells, grid, routes)
+    y = _line_ordinates(network, cells, grid, routes)
     middle = {n: (x[grid.vertex(n)[0]], y[grid.vertex(n)[1]]) for n in cells.at}
     shapes: list[SheetShape] = []
     texts: list[Text] = []
@@ -48,10 +48,10 @@ def sheet(
             start = at[0] + side * (node.size[0] / 2 + LABEL_BEHIND)
             anchor = _AFTER if side == RIGHT else _BEFORE
             texts.append(Text(start, at[1] - LABEL_ABOVE, label(net), "signal", anchor))
-    return _cropped((*shapes, *texts), title)
+    return _crop((*shapes, *texts), title)
 
 
-def _across(
+def _line_abscissas(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
 ) -> dict[int, float]:
     """x of every used line."""
@@ -102,7 +102,7 @@ def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, 
     return need
 
 
-def _down(
+def _line_ordinates(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
 ) -> dict[int, float]:
     """y of every used line."""
@@ -203,12 +203,12 @@ def _sign(wire: Wire, weight: float, heading: int) -> Text:
     return Text(tip[0] + 3.5 * side, tip[1] + away, runs, "sign", anchor)
 
 
-def _cropped(shapes: Sequence[SheetShape], title: str) -> Drawing:
+def _crop(shapes: Sequence[SheetShape], title: str) -> Drawing:
     """The shapes moved to the corner of a sheet that is as large as they need."""
     edges = [_bounds(s) for s in shapes] or [(0.0, 0.0, 0.0, 0.0)]
     left, top = min(e[0] for e in edges) - MARGIN, min(e[1] for e in edges) - MARGIN
     right, bottom = max(e[2] for e in edges) + MARGIN, max(e[3] for e in edges) + MARGIN
-    moved = tuple(_moved(s, -left, -top) for s in shapes)
+    moved = tuple(_move(s, -left, -top) for s in shapes)
     return Drawing(moved, round(right - left, 2), round(bottom - top, 2), title)
 
 
@@ -222,7 +222,7 @@ def _bounds(shape: SheetShape) -> tuple[float, float, float, float]:
     return shape.x - wide / 2, shape.y - high / 2, shape.x + wide / 2, shape.y + high / 2
 
 
-def _moved(shape: SheetShape, dx: float, dy: float) -> SheetShape:
+def _move(shape: SheetShape, dx: float, dy: float) -> SheetShape:
     if isinstance(shape, Wire):
         points = tuple((round(x + dx, 2), round(y + dy, 2)) for x, y in shape.points)
         return replace(shape, points=points)
