@@ -1,0 +1,131 @@
+"""Up to which values a parameter means what its effect's name says, each limit from both sides."""
+
+from math import inf, pi
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from teleopdesign.effects import EFFECTS, RecordFacts
+from teleopdesign.effects._facts import repeats_within_travel, slip_is_seen
+
+#: beside a tip on a spring of 100 N m/rad
+BODY = {"inertia": 0.5, "coulomb.level": 1.0, "transmission_compliance.stiffness": 100.0}
+
+
+def facts(**changed):
+    """Records in which a body of 0.5 kg m^2 turned to and fro, between -1 and 1 rad."""
+    known = {"travel": 2.0, "step": 0.01, "stroke": 0.5, "force": 8.0, "speed": 4.0, "film": 2.0}
+    places = np.linspace(-1.0, 1.0, 401)
+    known |= {"axis": "revolute", "body": BODY, "duration": 10.0, "places": places}
+    return RecordFacts(**known | {"speeds": 4.0 * np.cos(np.pi * places / 2)} | changed)
+
+
+def said(name, what, values, **changed):
+    """What the effect says of such values: None, or why they do not deserve its name."""
+    return getattr(EFFECTS[name], what)(SimpleNamespace(**values), facts(**changed))
+
+
+MORE, LESS = 1.0 + 1e-9, 1.0 - 1e-9
+HUM = 400.0 / (2 * pi * 50.0) ** 2  # kg m^2 that rings at 50 Hz on a spring of 400 N m/rad
+TONE = 0.2 * 400.0 / (2 * pi * 50.0)  # N m s/rad: a damping ratio of a tenth of it
+RINGS = {"stiffness": 400.0, "damping": 0.0}
+AT_HUM = {"stiffness": 400.0, "tip_inertia": HUM}
+GAP = {"stiffness": 8.0, "gap": 0.01, "tip_inertia": 0.1}
+
+#: effect, parameter, value that keeps the name, one that loses it, other values, words of why
+DESERVED = [
+    ("cogging", "period", 2.0 / 1.5, MORE * 2.0 / 1.5, {}, "does not repeat"),
+    ("cogging", "period", -1.3, -1.4, {}, "a period of 1.4 rad"),
+    ("torque_ripple", "period", 1.3, 1.4, {}, "does not repeat"),
+    # a bristle gives by level / stiffness: 0.005 rad are half a step, 2 rad the travel
+    ("presliding", "stiffness", 199.0, 200.0, {}, "sgn friction"),
+    ("presliding", "stiffness", 0.501, 0.5, {}, "for a spring"),
+    ("tip_friction", "level", 0.25, LESS * 0.25, {}, "less than steps of 0.01 rad"),
+    ("tip_friction", "level", 100.0, MORE * 100.0, {}, "never slides"),
+    ("coulomb_asymmetry", "half_difference", 1.0, MORE, {}, "constant force"),
+    ("coulomb_asymmetry", "half_difference", -1.0, -MORE, {}, "constant force"),
+    ("viscous_asymmetry", "half_difference", 0.5, MORE * 0.5, {}, "at 4 rad/s"),
+    ("viscous_asymmetry", "half_difference", -0.5, -0.51, {}, "the difference, 0.51 N"),
+    ("viscous_temperature", "coefficient", 0.0, -1e-9, {}, "no lubricant"),
+    ("friction_drift", "time_constant", 1.0, LESS, {}, "one cycle of the motion, 1 s"),
+    ("gravity", "amplitude", -8.0, -MORE * 8.0, {"phase": 0.0}, "a torque of 8 N"),
+    ("hardening_spring", "neutral", 1.0, MORE, {}, "beyond all"),
+    ("hardening_spring", "neutral", -1.0, -MORE, {}, "beyond all"),
+    # 4 rad/s to the power of the exponent, which counts up to one
+    ("shear_thinning", "drag", 4.0, 4.01, {"exponent": 0.5}, "8.02 N"),
+    ("shear_thinning", "drag", 2.0, 2.01, {"exponent": 1.5}, "8.04 N"),
+    ("transmission_compliance", "tip_inertia", LESS * 0.5, 0.5, {}, "no part"),
+    ("backlash", "gap", 0.01, LESS * 0.01, GAP, "no plain spring"),
+    ("backlash", "tip_inertia", 0.49, 0.5, GAP, "no part"),
+]
+#: the same of what the records cannot tell
+TOLD = [
+    ("friction_drift", "time_constant", 10.0, 10.5, {"fraction": 0.21}, "= 0.02 1/s"),
+    ("stribeck", "extra_static_level", 7.0, 7.1, {"stribeck_velocity": 0.1}, "8.1 N"),
+    ("transmission_compliance", "tip_inertia", HUM / 0.949**2, HUM / 0.951**2, RINGS, "47.5 Hz"),
+    ("transmission_compliance", "tip_inertia", HUM / 1.27**2, HUM / 1.25**2, RINGS, "the 60 Hz"),
+    ("transmission_compliance", "damping", MORE * TONE, LESS * TONE, AT_HUM, "50 Hz"),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter", "keeps", "loses", "others", "words", "what"),
+    [(*row, "plausible") for row in DESERVED] + [(*row, "untold") for row in TOLD],
+)
+def test_an_effect_keeps_its_name_up_to_the_limit_and_loses_it_beyond(
+    name, parameter, keeps, loses, others, words, what
+):
+    assert said(name, what, {**others, parameter: keeps}) is None
+    assert words in said(name, what, {**others, parameter: loses})
+
+
+def test_where_the_motion_never_turns_round_no_loop_and_no_cycle_is_there():
+    assert "never turns round" in said("presliding", "plausible", {"stiffness": 10.0}, stroke=inf)
+    assert said("friction_drift", "plausible", {"time_constant": 0.1}, stroke=inf) is None
+
+
+def test_nothing_is_said_where_nothing_can_be_held_against_the_records():
+    assert said("presliding", "plausible", {"stiffness": 0.0}) is None, "there is no bristle"
+    no_tip = {"inertia": 0.5, "coulomb.level": 1.0}
+    assert said("tip_friction", "plausible", {"level": 0.1}, body=no_tip) is None
+    nowhere = np.zeros(0)
+    assert said("hardening_spring", "plausible", {"neutral": 9.0}, places=nowhere) is None
+
+
+def test_one_deflection_within_the_travel_is_enough():
+    assert slip_is_seen("it", [0.001, 1.0], facts()) is None
+    assert "spring" in slip_is_seen("it", [0.001, 2.0], facts())
+    assert "sgn friction" in slip_is_seen("it", [0.001, 0.005], facts())
+    assert "sgn friction" in slip_is_seen("it", [], facts())
+    assert repeats_within_travel(SimpleNamespace(period=1.0), facts()) is None
+
+
+def test_the_slowest_speed_is_that_of_a_hundredth_of_the_samples():
+    speeds = np.r_[np.linspace(-1.0, -0.101, 900), np.linspace(0.1, 1.0, 901)]
+    assert facts(speeds=speeds).slowest == pytest.approx(0.109, abs=1e-3)
+    assert facts(speeds=np.zeros(0)).slowest == 0.0
+
+
+def test_what_is_apart_from_speed_is_the_part_that_speed_does_not_tell():
+    rng = np.random.default_rng(1)
+    speed = rng.uniform(0.1, 1.0, 4000) * rng.choice([-1.0, 1.0], 4000)
+    by_speed = facts(places=np.abs(speed), speeds=speed)
+    # within a fortieth of the speeds a line varies by a fortieth: 1/1600 of the squares
+    assert by_speed.apart_from_speed(lambda x: x) == pytest.approx(1 / 1600, rel=0.05)
+    free = facts(places=rng.uniform(-1.0, 1.0, 4000), speeds=speed)
+    assert free.apart_from_speed(lambda x: x) == pytest.approx(39 / 40, abs=0.02)
+    assert free.apart_from_speed(np.ones_like) == 1.0, "nothing varies"
+    few = facts(places=np.abs(speed[:399]), speeds=speed[:399])
+    assert few.apart_from_speed(lambda x: x) == 1.0, "too few samples"
+    assert facts(places=np.abs(speed[:400]), speeds=speed[:400]).apart_from_speed(np.sin) < 0.01
+
+
+def test_bend_is_what_no_line_has():
+    assert facts().bend(lambda x: 3.0 * x + 1.0) == pytest.approx(0.0, abs=1e-12)
+    assert facts().bend(lambda x: x**2) == pytest.approx(1.0)
+    # of x + x^2 the line has 1/3, the bend 4/45 of the squares
+    assert facts().bend(lambda x: x + x**2) == pytest.approx((4 / 19) ** 0.5, rel=0.02)
+    assert facts(places=np.array([0.0, 1.0])).bend(np.sin) == 1.0
+    assert facts(places=np.array([0.0, 1.0, 2.0])).bend(np.sin) < 1.0
+    assert facts(places=np.full(9, 0.3)).bend(np.sin) == 1.0
