@@ -170,3 +170,19 @@ def test_a_letter_cut_where_the_first_look_ends_leaves_the_text_in_utf_8(tmp_pat
     header = "時間 (s),位置 (deg),状態" + "x" * more + "\n"
     path.write_text(header + "".join(f"{k / 1000:.4f},{k},力\n" for k in range(9000)), "utf-8")
     assert open_log(path, path.name).names[0] == "時間 (s)"
+
+
+@pytest.mark.parametrize("mark", [b"\xff\xfe", b"\xfe\xff"])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_bytes_that_begin_as_utf_16_and_go_on_at_random_are_no_text(tmp_path, mark, seed):
+    path = tmp_path / "log.csv"
+    path.write_bytes(mark + np.random.default_rng(seed).bytes(3000))
+    with pytest.raises(ExperimentError, match=r"log.csv: not a text \(it begins as UTF-16 does"):
+        open_log(path, path.name)
+
+
+def test_a_table_in_utf_16_that_was_cut_within_a_letter_is_read(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = "".join(f"{k / 1000:.4f}\t{k}\n" for k in range(200))
+    path.write_bytes(("時間 (s)\t位置 (deg)\n" + rows).encode("utf-16")[:-1])
+    assert tuple(open_log(path, path.name).names) == ("時間 (s)", "位置 (deg)")

@@ -37,14 +37,22 @@ ALPHABETS = {
 }
 #: share of letters beyond ASCII that must be known, or the usual one of the West is taken
 KNOWN = 0.5
+#: least share of ASCII in a table of UTF-16: digits and separators. Bytes at random give 0.002, a
+#: table with a long head in another script some tenths
+PLAIN = 0.1
 
 
 def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
     """Name of the encoding of a text that begins so; `whole`: no byte follows.
 
-    raises ExperimentError: a byte that no text holds
+    raises ExperimentError: a byte that no text holds, or UTF-16 that is none
     """
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = _decode(raw, "utf-16", whole=False)
+        if text is None or sum(letter.isascii() for letter in text) < PLAIN * len(text):
+            raise ExperimentError(
+                f"{file}: not a text (it begins as UTF-16 does, and does not go on so)"
+            )
         return "utf-16"
     if raw[:3] == b"\xef\xbb\xbf":
         return "utf-8-sig"
