@@ -1,0 +1,295 @@
+"""The clock of a source that a reader polls: a log of the last state at the reader's instants.
+
+A controller writes its state down once a tick, and a script reads the latest one when it comes to
+it. A row is then younger or older than its stamp says, by up to a tick: it repeats the row before
+where no tick lies between the two, and ticks that no row holds are lost. The readings tell the
+ticks: a row of the tick before its stamp s is late by (s - phase) modulo the period, and the
+position is off its neighbours by the speed times that. Where the reader is the faster one, rows
+change from tick to tick alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .encoder import reading_step
+from .reading import ReadingStep
+from .record_clock import Array
+
+#: rows from which ticks are sought, and rows of them that a trial of a period is computed on
+FEWEST, TRIAL, _FEW = 200, 3000, 600
+#: ticks between two rows, up to which their period is sought: a reading is late by half a tick, so
+#: that more of them err by less than a thirtieth of a row
+FINEST = 16
+#: instants of the fine grid per row of the spectrum, and peaks of it that are refined
+_GRID, _PEAKS = 64, 6
+#: power of the highest peak, of the mean: of noise the highest is near that
+_CLEAR = 10.0
+#: least part of the squares by which positions are off their neighbours that ticks must explain
+EXPLAINED = 0.5
+#: speed that they must say, of the position's, and standard errors that must tell it from none
+_SPEED, _SURE = (0.7, 1.3), 10.0
+#: part of the rows whose tick must not contradict what they say, and part of a tick within which a
+#: stamp may be on its wrong side
+ALIKE, _EDGE = 0.95, 0.1
+#: part of rows that are new, up to which the reader is the faster one and changes tell the ticks
+OFTEN = 0.6
+#: least part of the new rows in which the position must go on by more than a step of its encoder
+LEAPS = 0.2
+#: part of the rows that must repeat a tick or skip one: fewer are rows twice or lost
+ODD = 0.02
+#: rms of the steps between stamps, of one, below which a reader is even and tells no ticks
+EVEN = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class PolledSource:
+    """Ticks of the source: period and instant of tick 0, s, and the tick (n,) of each row."""
+
+    period: float
+    phase: float
+    ticks: NDArray[np.intp]
+
+    @property
+    def instants(self) -> Array:
+        """Instant (n,) of each row's tick, s."""
+        return np.asarray(self.phase + self.period * self.ticks)
+
+
+def polled_source(
+    stamps: Array, same: NDArray[np.bool_], positions: Sequence[Array]
+) -> PolledSource | None:
+    """The clock of the source, where rows hold its last state; None: nothing says so.
+
+    stamps: (n,) s, of the reader;  positions: (n,) each
+    same: (n,) the row says in every channel what the row before says
+    """
+    steps = np.diff(stamps)
+    if len(stamps) < FEWEST or not positions or np.any(steps <= 0):
+        return None
+    new = np.r_[True, ~same[1:]]
+    rows = np.flatnonzero(new)
+    if len(rows) < FEWEST:
+        return None
+    x = max(positions, key=_share_of_motion)
+    best = _by_changes(stamps, new, x)
+    if best is None and float(np.std(steps)) > EVEN * float(np.median(steps)):
+        best = _by_position(stamps[rows], x[rows])
+    if best is None:
+        return None
+    ticks = _ticks(stamps, new, *best)
+    # ticks one by one are those of an even clock whose stamps are late
+    if ticks is None or np.mean(np.diff(ticks) != 1) < ODD:
+        return None
+    return PolledSource(*best, ticks)
+
+
+def reading_of_source(source: PolledSource, first: NDArray[np.bool_], file: str) -> ReadingStep:
+    """What is said of such a log;  first: (n,) the row is the first of its tick."""
+    period, again = source.period, float(np.mean(~first))
+    skipped = 1.0 - float(first.sum()) / (source.ticks[-1] - source.ticks[0] + 1)
+    return ReadingStep(
+        file,
+        f"rows hold the last state of a source that writes each {1e3 * period:.5g} ms, read at "
+        "other instants",
+        f"each row at its tick of the source: {100 * again:.2g} % repeat the tick before, "
+        f"{100 * skipped:.2g} % of the ticks are in no row",
+        f"read at its stamps, a row would be up to {1e3 * period:.2g} ms early",
+        topic="sample clock",
+        numbers=(("period", period), ("repeated", again), ("skipped", skipped)),
+    )
+
+
+def _ticks(
+    stamps: Array, new: NDArray[np.bool_], period: float, phase: float
+) -> NDArray[np.intp] | None:
+    """Tick of each row; rows that differ have different ones. None: too many contradict that."""
+    # a stamp next to a tick may fall on its wrong side: a row that says the same is of the same
+    # tick there, one that differs is one tick later
+    places = (stamps - phase) / period - np.where(new, 0.0, _EDGE)
+    floor = np.floor(places).astype(np.intp)
+    if np.sum((np.diff(floor) == 0) & new[1:]) > (1.0 - ALIKE) * len(new):
+        return None
+    different = np.cumsum(new)
+    ticks = np.asarray(np.maximum.accumulate(floor - different) + different, dtype=np.intp)
+    return ticks if np.mean(ticks != floor) < 1.0 - ALIKE else None
+
+
+def _share_of_motion(x: Array) -> float:
+    """Part of the pairs of rows between which a position changes."""
+    return float(np.mean(np.diff(x) != 0))
+
+
+def _spectrum(at: Array, values: Array, period: float) -> tuple[Array, Array]:
+    """Frequencies, Hz, and size of the Fourier sum of values at uneven instants.
+
+    Instants are rounded to a grid of `_GRID` in a `period`, each value parted among its neighbours.
+    """
+    step = period / _GRID
+    place = (at - at[0]) / step
+    left = np.floor(place).astype(np.intp)
+    count = 1 << int(2 * (left[-1] + 2) - 1).bit_length()
+    grid = np.zeros(count)
+    np.add.at(grid, left, values * (1.0 - (place - left)))
+    np.add.at(grid, left + 1, values * (place - left))
+    size = np.abs(np.fft.rfft(grid))
+    frequency = np.fft.rfftfreq(count, step)
+    # what a line between two grid points takes away from a wave
+    return np.asarray(frequency), np.asarray(size / np.sinc(frequency * step) ** 2)
+
+
+def _peaks(frequency: Array, size: Array, low: float, high: float) -> list[float]:
+    """Frequencies, Hz, of the highest peaks of a spectrum within a band, highest first."""
+    inside = np.flatnonzero((frequency >= low) & (frequency <= high))
+    inside = inside[(inside > 0) & (inside < len(size) - 1)]
+    tops = inside[(size[inside] >= size[inside - 1]) & (size[inside] > size[inside + 1])]
+    tops = tops[np.argsort(-size[tops], kind="stable")]
+    chosen: list[float] = []
+    apart = 3.0 * frequency[1]
+    for f in frequency[tops].tolist():
+        if all(abs(f - other) > apart for other in chosen):
+            chosen.append(f)
+        if len(chosen) == _PEAKS:
+            break
+    return chosen
+
+
+def _by_position(stamps: Array, x: Array) -> tuple[float, float] | None:
+    """Period and phase of the ticks at which a position was read, not at its stamps."""
+    lines = _Lines(stamps, x)
+    usual = float(np.median(np.diff(stamps)))
+    moment = np.zeros(len(x))
+    for k in range(5):
+        np.add.at(moment, lines.nodes[:, k], lines.weights[:, k] * lines.off)
+    frequency, size = _spectrum(stamps, moment * lines.speed, usual)
+    band = (0.6 / usual, FINEST / usual)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    if size[inside].max() ** 2 < _CLEAR * np.mean(size[inside] ** 2):
+        return None
+    few, duration = lines.some(_FEW), float(np.ptp(stamps))
+    turn = np.arange(0.0, 1.0, 1.0 / 16)
+    trials = [
+        _best_near(few, m / f, 0.5 * m / f / duration, 5, lines.middle, turn * m / f)
+        for f in _peaks(frequency, size, *band)
+        for m in (1, 2)
+        if f / m >= band[0]
+    ]
+    part, width = lines.some(TRIAL), 0.25
+    _, period, phase = min(trials)
+    turn = np.linspace(-0.5, 0.5, 9) / 8
+    for _ in range(3):
+        near = width * period**2 / duration
+        _, period, phase = _best_near(part, period, near, 7, phase, turn * period)
+        turn, width = turn / 4, width / 3
+    explained, slope, error = lines.fit(period, phase)
+    if explained < EXPLAINED or slope < _SURE * error or not _SPEED[0] < slope < _SPEED[1]:
+        return None
+    return period, phase
+
+
+def _best_near(
+    lines: _Lines, period: float, width: float, count: int, start: float, beside: Array
+) -> tuple[float, float, float]:
+    """Squares left by the best of some clocks, its period and the instant of a tick, s.
+
+    width: s, by which `count` periods differ at most;  start, beside: s, of ticks near the middle
+    of the log, where the phase hardly moves with the period
+    """
+    return min(
+        (lines.left(p, start + b), float(p), float(start + b))
+        for p in period + width * np.linspace(-1.0, 1.0, count)
+        for b in beside
+    )
+
+
+class _Lines:
+    """How far each row of a position is off the curve through four neighbours, by its stamps."""
+
+    def __init__(self, stamps: Array, x: Array) -> None:
+        rows = np.arange(2, len(x) - 2)
+        nodes = rows[:, None] + np.array([0, -2, -1, 1, 2])
+        at = stamps[nodes] - stamps[rows][:, None]
+        weights = np.ones((len(rows), 5))
+        for j in range(1, 5):
+            for k in range(1, 5):
+                if k != j:
+                    weights[:, j] *= -at[:, k] / (at[:, j] - at[:, k])
+            weights[:, j] *= -1.0
+        self.middle = float(0.5 * (stamps[0] + stamps[-1]))
+        self.stamps, self.nodes, self.weights = stamps, nodes, weights
+        self.off = np.sum(weights * x[nodes], axis=1)
+        self.speed = _speed(stamps, x)
+        self.rows = np.arange(len(rows))
+
+    def some(self, count: int) -> _Lines:
+        """The same of at most so many rows, evenly over the log."""
+        less = object.__new__(_Lines)
+        less.__dict__.update(self.__dict__)
+        less.rows = self.rows[:: max(1, -(-len(self.rows) // count))]
+        return less
+
+    def made(self, period: float, phase: float) -> Array:
+        """What reading the tick before each stamp puts a row off its neighbours, at speed 1."""
+        nodes = self.nodes[self.rows]
+        late = (self.stamps[nodes] - phase) % period
+        return np.asarray(-np.sum(self.weights[self.rows] * late * self.speed[nodes], axis=1))
+
+    def left(self, period: float, phase: float) -> float:
+        """Squares that are left of the distances, where rows are those of the ticks."""
+        return float(np.sum((self.off[self.rows] - self.made(period, phase)) ** 2))
+
+    def fit(self, period: float, phase: float) -> tuple[float, float, float]:
+        """Part of the squares that ticks explain, the speed they say, and its standard error."""
+        made, off = self.made(period, phase), self.off[self.rows]
+        below = float(made @ made)
+        if below <= 0:
+            return 0.0, 0.0, np.inf
+        slope = float(made @ off) / below
+        left = float(np.sum((off - slope * made) ** 2))
+        error = np.sqrt(5.0 * left / len(off) / below)
+        return 1.0 - left / float(off @ off), slope, float(error)
+
+
+def _speed(stamps: Array, x: Array) -> Array:
+    """Speed (n,) at each row: slope of the line through it and three rows to either side."""
+    speed = np.zeros(len(x))
+    count = 7
+    kernel = np.ones(count)
+    t = stamps - stamps[0]
+
+    def total(y: Array) -> Array:
+        return np.convolve(y, kernel, mode="valid")
+
+    mean_t, mean_x = total(t) / count, total(x) / count
+    above = total(t * x) / count - mean_t * mean_x
+    below = total(t * t) / count - mean_t**2
+    speed[3:-3] = above / below
+    speed[:3], speed[-3:] = speed[3], speed[-4]
+    return speed
+
+
+def _by_changes(stamps: Array, new: NDArray[np.bool_], x: Array) -> tuple[float, float] | None:
+    """Period and phase of a source that is read more often than it writes: rows change at ticks."""
+    changed = np.flatnonzero(new[1:]) + 1
+    if np.mean(new) > OFTEN or len(changed) < FEWEST:
+        return None
+    # an encoder's single steps come evenly where it turns evenly
+    if np.mean(np.abs(np.diff(x)[changed - 1]) > 1.5 * reading_step(x)) < LEAPS:
+        return None
+    at = 0.5 * (stamps[changed] + stamps[changed - 1])
+    apart = float(np.median(np.diff(at)))
+    frequency, size = _spectrum(at, np.ones(len(at)), apart)
+    for f in _peaks(frequency, size, 0.6 / apart, 2.5 / apart):
+        near = f + frequency[1] * np.linspace(-1.0, 1.0, 41)
+        turns = np.exp(2j * np.pi * near[:, None] * (at - at[0])[None, :]).sum(axis=1)
+        k = int(np.argmax(np.abs(turns)))
+        # a tick lies anywhere between two rows that differ: in their middle on average
+        period = float(1.0 / near[k])
+        phase = float(at[0] + np.angle(turns[k]) / (2 * np.pi) * period)
+        if _ticks(stamps, new, period, phase) is not None:
+            return period, phase
+    return None
