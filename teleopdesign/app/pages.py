@@ -101,11 +101,13 @@ def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
     """What the errors become where one parameter is `factor` times its value."""
     value = bench.model.parameters[parameter]
     unit = unit_text(bench.model.unit(parameter))
-    try:
-        errors = bench.errors({parameter: factor * value.value})
-    except TeleopDesignError as error:
-        return str(error)
     there = bench.state.fit
+    errors = there.fit_error, there.check_error
+    if factor != 1.0:  # where nothing is moved nothing is computed: the page is drawn at once
+        try:
+            errors = bench.errors({parameter: factor * value.value})
+        except TeleopDesignError as error:
+            return str(error)
     rows = (
         ("fit", there.fit_error, errors[0]),
         ("check", there.check_error, errors[1]),
@@ -120,6 +122,8 @@ def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
 
 def moved_residuals(bench: Workbench, parameter: str, factor: float) -> Dataset | None:
     """Forces of the last model with one parameter moved; None where the value is out of bounds."""
+    if factor == 1.0:
+        return residuals(bench)
     value = factor * bench.model.parameters[parameter].value
     try:
         return residual_data(bench.model.with_values({parameter: value}), bench.search.whole)

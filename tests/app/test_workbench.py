@@ -49,6 +49,20 @@ def test_after_the_missing_effect_no_candidate_is_supported_and_the_diagnosis_na
     assert [c.key for c in diagnosis.missing] == [("stribeck", "device")]
 
 
+def test_where_no_parameter_is_moved_nothing_is_computed_again(bench, monkeypatch):
+    name = "device.coulomb.level"
+    nearly = (
+        pages.move_parameter(bench, name, 1.0 + 1e-9),
+        pages.moved_residuals(bench, name, 1.0 + 1e-9),
+    )
+    shown = pages.residuals(bench)
+    monkeypatch.setattr(pages, "residual_data", None)
+    monkeypatch.setattr(type(bench), "errors", None)
+    assert pages.move_parameter(bench, name, 1.0) == nearly[0]
+    assert pages.moved_residuals(bench, name, 1.0) is shown
+    assert np.allclose(shown["model"], nearly[1]["model"], rtol=1e-6, atol=1e-6, equal_nan=True)
+
+
 def test_the_chart_holds_the_samples_that_count_and_one_selection(bench):
     data = pages.residuals(bench)
     chart = charts.residual_chart(data, "device", "check")

@@ -1,18 +1,16 @@
 """A reader polls the last state of a controller: its rows stand at the ticks of the source."""
 
-import json
+import shutil
 
 import numpy as np
 import pytest
-from measurement.wild_logs import ROWS, STEP, at, clean
+from diagnose.made_records import write_made
 
 import teleopdesign as td
-from teleopdesign.cli import main
 from teleopdesign.measurement.polled_source import polled_source
 
 #: period of the source, mean step of the reader and the most by which a step differs, ms
 POLLED = [(8.0, 10.0, 3.0), (2.0, 8.0, 1.0), (8.0, 8.0, 2.0), (8.0, 2.0, 0.5), (8.0, 20.0, 4.0)]
-CANDIDATES = ("stribeck", "presliding", "quadratic_drag", "bias")
 
 
 def motion(t):
@@ -96,53 +94,50 @@ def test_a_body_that_rests_has_lost_no_rows():
     assert record.sample_time == pytest.approx(8e-3, rel=1e-4)
 
 
-def source_of(log, period):
-    """What the controller writes down once a tick: the command of a tick is its mean over it."""
-    ticks = np.arange(0.0, (ROWS - 1) / 1000.0 - period, period)
-    total = np.concatenate([[0.0], np.cumsum(log["u"]) / 1000.0])
-    held = np.interp(np.append(ticks, ticks[-1] + period), np.arange(ROWS + 1) / 1000.0, total)
-    return {**at(log, ticks), "u": np.diff(held) / period}
+def friction(t, x, v):
+    """0.3 N m of Coulomb, 0.4 more at rest down to 1/e at 0.2 rad/s, 0.1 N m s/rad."""
+    return np.sign(v) * (0.3 + 0.4 * np.exp(-((v / 0.2) ** 2))) + 0.1 * v
 
 
-def polled(log, period, step, spread):
-    ticks = source_of(log, period)
-    stamps = read_at(step, spread, np.random.default_rng(1), duration=6.8) - 5.0 + period
-    stamps = stamps[stamps < ticks["t"][-1]]
-    row = np.floor(stamps / period + 1e-9).astype(int)
-    return {"t": stamps, **{n: ticks[n][row] for n in ("q", "u", "hand")}}
+EFFECTS = """coulomb.level = { value = 0.4, unit = "N*m" }
+viscous.damping = { value = 0.05, unit = "N*m*s/rad" }"""
+#: seconds, and position over time
+RECORDS = {
+    "fit": [(24.0, lambda t: 0.5 * np.sin(1.9 * t) + 0.2 * np.sin(4.7 * t))],
+    "check": [(16.0, lambda t: 0.4 * np.sin(2.3 * t) + 0.25 * np.sin(3.9 * t + 1.0))],
+}
 
 
-def answer_of(log, monkeypatch, folder):
-    """What a diagnosis of that log ends with."""
-    experiment = td.experiment(
-        log,
-        axis="revolute",
-        position={"column": "q", "unit": "rad", "resolution": STEP},
-        actuator_force="u",
-        interaction_force="hand",
-        time="t",
-        fit=[(0.0, 4.199)],
-        check=[(4.199, 8.0)],
-    )
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    experiment.save("joint")
-    assert main(["diagnose", "joint", "--only", *CANDIDATES, "--json", "answer.json"]) == 0
-    return json.loads((folder / "answer.json").read_text(encoding="utf-8"))
+def diagnosed(folder):
+    return td.find_missing(td.load_experiment(folder), among=("stribeck", "presliding", "bias"))
+
+
+def poll(clean, folder, period, step, spread):
+    """The same experiment as a reader has it that polls what the controller wrote."""
+    shutil.copytree(clean, folder)
+    toml = (folder / "experiment.toml").read_text()
+    (folder / "experiment.toml").write_text(toml.replace('segment = { column = "part" }\n', ""))
+    rng = np.random.default_rng(1)
+    for use, ((duration, _),) in RECORDS.items():
+        ticks = np.loadtxt(clean / f"{use}.csv", delimiter=",", skiprows=1)
+        stamps = read_at(step, spread, rng, duration) - 5.0
+        row = np.floor(stamps / period).astype(int)
+        rows = np.column_stack([stamps, ticks[row[row < len(ticks)], 1:3]])[: sum(row < len(ticks))]
+        np.savetxt(folder / f"{use}.csv", rows, "%.9g", ",", header="t,q,tau", comments="")
+    return folder
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("period", "step", "spread"), [(8e-3, 10e-3, 3e-3), (2e-3, 8e-3, 1e-3)])
-def test_a_polled_log_has_the_answer_of_the_clean_record(
-    period, step, spread, tmp_path, monkeypatch
-):
-    log = clean()
-    truth = answer_of(source_of(log, period), monkeypatch, tmp_path / "clean")
-    answer = answer_of(polled(log, period, step, spread), monkeypatch, tmp_path / "polled")
-    assert answer["missing"] == truth["missing"] == [{"effect": "stribeck", "at": "device"}]
-    here, there = (a["models"]["ladder"][-1]["device"]["effects"] for a in (answer, truth))
-    for effect, values in there.items():
-        for name, value in values.items():
-            also = here[effect][name]
-            within = 1.96 * (value["stderr"] ** 2 + also["stderr"] ** 2) ** 0.5
-            assert abs(value["value"] - also["value"]) < within, (effect, name)
+def test_a_polled_log_has_the_answer_of_the_clean_record(period, step, spread, tmp_path):
+    rate = round(1.0 / period)
+    words = {"effects": EFFECTS, "step": 1e-4, "noise": 0.003, "rate": rate}
+    clean = write_made(tmp_path / "clean", RECORDS, friction, **words)
+    polled = poll(clean, tmp_path / "polled", period, step, spread)
+    truth, answer = diagnosed(clean), diagnosed(polled)
+    assert [c.key for c in truth.missing] == [("stribeck", "device")]
+    assert answer.missing == truth.missing and answer.verdict == truth.verdict
+    for name, value in truth.model.parameters.items():
+        also = answer.model.parameters[name]
+        within = 1.96 * (value.stderr**2 + also.stderr**2) ** 0.5
+        assert abs(value.value - also.value) <= within, name

@@ -5,12 +5,15 @@ import os
 import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, LUGRE, body
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface, world_haptics_2005
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.compiled import cache_folder
+from teleopdesign.realise.kernel import fastest_rates, refine_factor
 from teleopdesign.simulate import Sampling, prepare, simulate, sine
 
 REFERENCE = sine(amplitude=0.01, frequency=1.5)
@@ -301,3 +304,28 @@ def test_a_home_that_does_not_exist_is_not_made(tmp_path, monkeypatch):
     assert folder is not None and folder.is_dir() and not home.exists()
     home.mkdir()
     assert cache_folder().is_relative_to(home)
+
+
+@given(times=st.integers(1, 12), over=st.floats(1.0, 1.9), power=st.sampled_from([1.0, 2.0, 4.0]))
+def test_a_step_is_made_shorter_until_its_measure_is_surely_below_the_bound(times, over, power):
+    bound = 0.7
+    measure = bound * (times * over) ** power
+    factor = refine_factor(measure, bound, power)
+    assert isinstance(factor, int)
+    assert measure / factor**power < bound
+    # and by no more than one part than that asks for
+    assert factor <= times * over * 1.0001 + 1
+
+
+def test_the_fastest_rate_of_each_lane_names_its_state():
+    jacobian = np.array(
+        [
+            [[-1.0, 0.0], [0.0, -7.0]],
+            [[0.0, 30.0], [-30.0, 0.0]],
+            [[np.inf, 0.0], [0.0, 1.0]],
+            [[5.0, 0.0], [0.0, 2.0]],
+        ]
+    )
+    rates, states = fastest_rates(jacobian)
+    assert rates.tolist() == pytest.approx([7.0, 30.0, 0.0, 5.0])
+    assert (states[0], states[3]) == (1, 0)
