@@ -121,8 +121,9 @@ def poll(clean, folder, period, step, spread):
     for use, ((duration, _),) in RECORDS.items():
         ticks = np.loadtxt(clean / f"{use}.csv", delimiter=",", skiprows=1)
         stamps = read_at(step, spread, rng, duration) - 5.0
+        stamps = stamps[stamps < len(ticks) * period]
         row = np.floor(stamps / period).astype(int)
-        rows = np.column_stack([stamps, ticks[row[row < len(ticks)], 1:3]])[: sum(row < len(ticks))]
+        rows = np.column_stack([stamps, ticks[row, 1:3]])
         np.savetxt(folder / f"{use}.csv", rows, "%.9g", ",", header="t,q,tau", comments="")
     return folder
 
