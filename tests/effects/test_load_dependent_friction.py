@@ -75,3 +75,10 @@ def test_its_optional_parameters_may_be_zero_along_a_motion(values):
     wrt = tuple(f"{EFFECT.name}.{n}" for n in EFFECT.parameters)
     along = residual_along(body_of("coulomb", EFFECT.name, values=numbers), motion, wrt)
     assert np.isfinite(along.residual.value).all() and np.isfinite(along.residual.tangent).all()
+
+
+def test_at_rest_the_extra_level_is_whole_even_where_it_falls_at_once():
+    # of v_S = 0 a billionth of a unit per second remains: 1/e there
+    whole, there = (level(2.0, v, mu=0.1, e=3.0, slow=0.0) for v in (1e-12, 1e-9))
+    assert whole == pytest.approx(0.2 * 4.0, rel=1e-5)
+    assert there == pytest.approx(0.2 * (1.0 + 3.0 * math.exp(-1.0)))

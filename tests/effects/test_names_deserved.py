@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.effects import EFFECTS, RecordFacts
-from teleopdesign.effects._facts import repeats_within_travel, slip_is_seen
+from teleopdesign.effects import EFFECTS, Parameter, RecordFacts, make_structure
+from teleopdesign.effects._facts import follows_gravity, repeats_within_travel, slip_is_seen
 
 #: beside a tip on a spring of 100 N m/rad
 BODY = {"inertia": 0.5, "coulomb.level": 1.0, "transmission_compliance.stiffness": 100.0}
@@ -129,3 +129,26 @@ def test_bend_is_what_no_line_has():
     assert facts(places=np.array([0.0, 1.0])).bend(np.sin) == 1.0
     assert facts(places=np.array([0.0, 1.0, 2.0])).bend(np.sin) < 1.0
     assert facts(places=np.full(9, 0.3)).bend(np.sin) == 1.0
+
+
+def test_three_places_tell_whether_friction_follows_the_torque_of_gravity():
+    body = {"gravity.phase": 0.0}
+
+    def said_of(places):
+        return follows_gravity(lambda x: 1.0 + np.abs(np.sin(x)), facts(body=body, places=places))
+
+    assert "load_dependent_friction" in said_of(np.array([0.1, 0.5, 1.2]))
+    assert said_of(np.array([0.1, 0.5])) is None
+
+
+def test_a_structure_declares_neither_a_linear_form_nor_what_it_does_with_energy_by_itself():
+    effect = make_structure(
+        coupling=lambda now, p: p.stiffness * now.stretch,
+        parameters={
+            "tip_inertia": Parameter("inertia", "of the tip"),
+            "stiffness": Parameter("stiffness", "of the coupling"),
+        },
+    )
+    assert not effect.linear and effect.energy == "supplies"
+    assert effect.corrections() == {} and effect.led_momentum() == 0, "the tip runs free"
+    assert "no part" in effect.plausible(SimpleNamespace(tip_inertia=0.5), facts())
