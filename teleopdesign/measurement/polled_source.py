@@ -11,6 +11,7 @@ change from tick to tick alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +41,7 @@ ALIKE, _EDGE = 0.95, 0.1
 OFTEN = 0.6
 #: least part of the new rows in which the position must go on by more than a step of its encoder
 LEAPS = 0.2
-#: part of the rows that must repeat a tick or skip one: fewer are rows twice or lost
+#: part of the rows that must lie other than the usual count of ticks apart: fewer are lost or twice
 ODD = 0.02
 #: rms of the steps between stamps, of one, below which a reader is even and tells no ticks
 EVEN = 0.01
@@ -76,14 +77,17 @@ def polled_source(
     if len(rows) < FEWEST:
         return None
     x = max(positions, key=_share_of_motion)
-    best = _by_changes(stamps, new, x)
+    best = _clock_from_changes(stamps, new, x)
     if best is None and float(np.std(steps)) > EVEN * float(np.median(steps)):
-        best = _by_position(stamps[rows], x[rows])
+        best = _clock_from_position(stamps[rows], x[rows])
     if best is None:
         return None
     ticks = _ticks(stamps, new, *best)
-    # ticks one by one are those of an even clock whose stamps are late
-    if ticks is None or np.mean(np.diff(ticks) != 1) < ODD:
+    if ticks is None:
+        return None
+    # rows that are all as many ticks apart are those of an even clock, whose stamps are late
+    apart = np.diff(ticks)
+    if np.mean(apart != np.median(apart)) < ODD:
         return None
     return PolledSource(*best, ticks)
 
@@ -158,7 +162,7 @@ def _peaks(frequency: Array, size: Array, low: float, high: float) -> list[float
     return chosen
 
 
-def _by_position(stamps: Array, x: Array) -> tuple[float, float] | None:
+def _clock_from_position(stamps: Array, x: Array) -> tuple[float, float] | None:
     """Period and phase of the ticks at which a position was read, not at its stamps."""
     lines = _Lines(stamps, x)
     usual = float(np.median(np.diff(stamps)))
@@ -227,8 +231,7 @@ class _Lines:
 
     def some(self, count: int) -> _Lines:
         """The same of at most so many rows, evenly over the log."""
-        less = object.__new__(_Lines)
-        less.__dict__.update(self.__dict__)
+        less = copy(self)
         less.rows = self.rows[:: max(1, -(-len(self.rows) // count))]
         return less
 
@@ -272,7 +275,9 @@ def _speed(stamps: Array, x: Array) -> Array:
     return speed
 
 
-def _by_changes(stamps: Array, new: NDArray[np.bool_], x: Array) -> tuple[float, float] | None:
+def _clock_from_changes(
+    stamps: Array, new: NDArray[np.bool_], x: Array
+) -> tuple[float, float] | None:
     """Period and phase of a source that is read more often than it writes: rows change at ticks."""
     changed = np.flatnonzero(new[1:]) + 1
     if np.mean(new) > OFTEN or len(changed) < FEWEST:

@@ -9,28 +9,32 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.decision import (
+from teleopdesign.diagnose.adequacy import (
     allowed_floor,
-    explained_share,
     floors_left,
-    helps_but_is_barred,
     is_a_tone,
     is_adequate,
-    is_better,
     is_noise,
     limit_noise_floor,
+)
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.decision import (
+    explained_share,
+    helps_but_is_barred,
+    is_better,
     objection,
-    rank_key,
     refusal,
-    select_equals,
-    select_other_helpers,
-    select_simplest,
-    simplicity,
     verdict,
     worth_pursuing,
 )
 from teleopdesign.diagnose.noise_floor import NoiseFloor
+from teleopdesign.diagnose.order import (
+    rank_key,
+    select_equals,
+    select_other_helpers,
+    select_simplest,
+    simplicity,
+)
 from teleopdesign.diagnose.ranking import Ranked
 from teleopdesign.effects import EFFECTS
 
