@@ -26,9 +26,9 @@ from .signal_symbols import (
 )
 
 #: arguments of laws in continuous time: where what they take begins in the memory of the loop
-ANALOG = "time states bristles inputs column late parameters memory".split()
+ANALOG = "time states bristles inputs late memory".split()
 #: arguments of the computer's laws
-DIGITAL = "n period sampled parameters memory".split()
+DIGITAL = "n period sampled memory".split()
 
 
 @dataclass(frozen=True)
@@ -92,6 +92,12 @@ def _places(rows: Mapping[str, Iterable[sp.Symbol]]) -> dict[sp.Symbol, str]:
 def _function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
     body = indent(list(lines) or ["pass"], 4)
     return f"@jitted\ndef {name}({', '.join([*arguments, 'lane'])}):\n{body}\n\n\n"
+
+
+def _reader(name: str, many: int) -> str:
+    """Source of a function that returns a column of a table as numbers: see `integrator.py`."""
+    numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
+    return f"@jitted\ndef {name}(table, column):\n    return ({', '.join(numbers)},)\n\n\n"
 
 
 @dataclass(frozen=True)
@@ -244,6 +250,7 @@ class Generator:
             "MADE": len(self._made()),
             "COLUMNS": len(self.layout().columns),
             "SPOILED": 1,
+            "PARAMETERS": len(self.parameters),
         }
         lines, first = [], 0
         for name, count in rows.items():
@@ -284,17 +291,19 @@ class Generator:
         e = self.equations
         rows = {"states": self.moving, "bristles": self.bristles, "late": self.late}
         places = _places({**rows, "COMMANDS": [e.commands[c] for c in self.commands]})
-        places |= {x: f"inputs[{i}, column]" for i, x in enumerate(e.inputs)}
+        places |= {x: f"inputs[{i}]" for i, x in enumerate(e.inputs)}
         return places | self._parameter_places()
 
     def _parameter_places(self) -> dict[sp.Symbol, str]:
-        return {p: f"parameters[{i} * LANES + lane]" for i, p in enumerate(self.parameters)}
+        return _places({"PARAMETERS": self.parameters})
 
     def _analog(self) -> str:
         e = self.equations
         write = _Writer(tuple(ANALOG), self._analog_places(), self.names, e.joined).function
         moving, bristles = ([e.rates[s] for s in g] for g in (self.moving, self.bristles))
         parts = [
+            _reader("inputs_at", len(e.inputs)),
+            _reader("sampled_inputs_at", len(self.sampled_inputs)),
             write("rates", to_states=moving, to_bristles=bristles),
             write("slopes", to=[self.slopes[s] for s in self.bristles]),
             write("signals", to=self._now().values()),
@@ -311,7 +320,7 @@ class Generator:
             for to, of in (("to_positions", signal), ("to_velocities", velocity))
             for i, m in enumerate(read)
         ]
-        arguments = ["states", "inputs", "column", "memory", "to_positions", "to_velocities"]
+        arguments = ["states", "inputs", "memory", "to_positions", "to_velocities"]
         motions = _function("motions", arguments, lines)
         places = {
             name: text.replace("[states", "[STATES").replace("[bristles", "[BRISTLES")
@@ -321,7 +330,7 @@ class Generator:
         places |= {name: _entry("MADE", i) for i, name in enumerate(self._made())}
         columns = enumerate(self.layout().columns)
         lines = [f"{_entry('to', i)} = {places[name]}" for i, name in columns]
-        return motions + _function("record", ["inputs", "column", "memory", "to"], lines)
+        return motions + _function("record", ["inputs", "memory", "to"], lines)
 
     def _computer(self) -> str:
         """Signals of the computer, and its states stepped before and after they are taken."""
@@ -335,7 +344,7 @@ class Generator:
             "SAMPLED_LATE": self.sampled_late,
         }
         kept = (x for x, _ in self.equations.computer.late.values()) if self.commands else ()
-        read = {x: f"sampled[{i}, n]" for i, x in enumerate(self.sampled_inputs)}
+        read = {x: f"sampled[{i}]" for i, x in enumerate(self.sampled_inputs)}
         places = _places(rows) | read | self._parameter_places()
         names = {**self.names, TIME: "(n * period)"}
         writer = _Writer(tuple(DIGITAL), places, names)

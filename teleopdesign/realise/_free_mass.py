@@ -125,6 +125,7 @@ NOW = 21
 MADE = 24
 COLUMNS = 25
 SPOILED = 31
+PARAMETERS = 32
 MANY_MOTIONS = 1
 MANY_STATES = 2
 MANY_BRISTLES = 0
@@ -132,20 +133,35 @@ MANY_COMMANDS = 1
 MANY_LATE = 0
 MANY_SAMPLED_LATE = 0
 MANY_COLUMNS = 6
-ROWS = 32
+ROWS = 33
 SMOOTH = (True,)
 COMPUTER = True
 OBSERVER = 0
 
 
 @jitted
-def rates(
-    time, states, bristles, inputs, column, late, parameters, memory, to_states, to_bristles, lane
-):
+def inputs_at(table, column):
+    return (
+        table[0, column],
+        table[1, column],
+        0.0,
+    )
+
+
+@jitted
+def sampled_inputs_at(table, column):
+    return (
+        table[0, column],
+        0.0,
+    )
+
+
+@jitted
+def rates(time, states, bristles, inputs, late, memory, to_states, to_bristles, lane):
     v1_ = memory[states + 1 + lane]
     v7_ = memory[COMMANDS + lane]
-    v2_ = inputs[0, column]
-    p0 = parameters[0 + lane]
+    v2_ = inputs[0]
+    p0 = memory[PARAMETERS + lane]
     out0 = v1_
     out1 = (v2_ + v7_) / p0
     memory[to_states + lane] = out0
@@ -153,16 +169,16 @@ def rates(
 
 
 @jitted
-def slopes(time, states, bristles, inputs, column, late, parameters, memory, to, lane):
+def slopes(time, states, bristles, inputs, late, memory, to, lane):
     pass
 
 
 @jitted
-def signals(time, states, bristles, inputs, column, late, parameters, memory, to, lane):
+def signals(time, states, bristles, inputs, late, memory, to, lane):
     v7_ = memory[COMMANDS + lane]
-    v2_ = inputs[0, column]
-    v3_ = inputs[1, column]
-    p0 = parameters[0 + lane]
+    v2_ = inputs[0]
+    v3_ = inputs[1]
+    p0 = memory[PARAMETERS + lane]
     out0 = (v2_ + v7_) / p0
     out1 = -v2_
     out2 = v2_ + v3_
@@ -172,18 +188,18 @@ def signals(time, states, bristles, inputs, column, late, parameters, memory, to
 
 
 @jitted
-def late_values(time, states, bristles, inputs, column, late, parameters, memory, to, lane):
+def late_values(time, states, bristles, inputs, late, memory, to, lane):
     pass
 
 
 @jitted
-def motions(states, inputs, column, memory, to_positions, to_velocities, lane):
+def motions(states, inputs, memory, to_positions, to_velocities, lane):
     memory[to_positions + lane] = memory[states + lane]
     memory[to_velocities + lane] = memory[states + 1 + lane]
 
 
 @jitted
-def record(inputs, column, memory, to, lane):
+def record(inputs, memory, to, lane):
     memory[to + lane] = memory[STATES + lane]
     memory[to + 1 + lane] = memory[STATES + 1 + lane]
     memory[to + 2 + lane] = memory[NOW + lane]
@@ -193,24 +209,24 @@ def record(inputs, column, memory, to, lane):
 
 
 @jitted
-def computer_before(n, period, sampled, parameters, memory, lane):
+def computer_before(n, period, sampled, memory, lane):
     pass
 
 
 @jitted
-def computer_signals(n, period, sampled, parameters, memory, to, lane):
-    v3_ = sampled[0, n]
+def computer_signals(n, period, sampled, memory, to, lane):
+    v3_ = sampled[0]
     out0 = v3_
     memory[to + lane] = out0
 
 
 @jitted
-def computer_late(n, period, sampled, parameters, memory, to, lane):
+def computer_late(n, period, sampled, memory, to, lane):
     pass
 
 
 @jitted
-def computer_after(n, period, sampled, parameters, memory, lane):
+def computer_after(n, period, sampled, memory, lane):
     pass
 
 

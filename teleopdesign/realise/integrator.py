@@ -9,7 +9,9 @@ Several simulations of one grid run side by side in lanes; one lane is a simulat
 the loop remembers is `memory`: a row for each quantity, in it an entry for each lane. A constant
 such as STATES is where its group begins, MANY_STATES how many there are, so that state i of a lane
 is `memory[STATES + i * LANES + lane]`. With constant addresses the compiler keeps a step in
-registers, and works on several lanes by one instruction.
+registers, and works on several lanes by one instruction: while all that a step reads is in `memory`
+or in no array at all (parameters are, inputs come as numbers). It works on one lane after the other
+where it would have to check too often that two arrays do not overlap.
 
 Everything below the line of "#" is the second half of every generated module; the first half holds
 the laws and constants that are imported here (`_codegen.py`). Those of `_free_mass.py` let this
@@ -37,9 +39,9 @@ def largest_change(worst, slope, last, h):
 
 
 @jitted
-def prepare_step(first, time, h, inputs, column, parameters, memory, lane):
+def prepare_step(first, time, h, inputs, memory, lane):
     """Slopes A of the bristles, the factors of their step, and how well the step resolves them."""
-    slopes(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, SLOPES, lane)
+    slopes(time, STATES, BRISTLES, inputs, LATE, memory, SLOPES, lane)
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
         slope = memory[SLOPES + at]
@@ -109,24 +111,24 @@ def end_step(h, memory, lane):
 
 
 @jitted
-def step(first, time, h, inputs, column, parameters, memory, lane):
-    """One step of the scheme;  column: of the inputs at its start, two of them a step."""
-    x, z, z1, p, m = STAGE_STATES, STAGE_BRISTLES, FIRST_BRISTLES, parameters, memory
+def step(first, time, h, inputs_0, inputs_1, inputs_2, memory, lane):
+    """One step of the scheme;  inputs_0, _1, _2: at its start, in its middle, at its end."""
+    x, z, z1, m = STAGE_STATES, STAGE_BRISTLES, FIRST_BRISTLES, memory
     middle = time + 0.5 * h
-    prepare_step(first, time, h, inputs, column, p, m, lane)
-    rates(time, STATES, BRISTLES, inputs, column, LATE, p, m, RATES_0, RESTS_0, lane)
+    prepare_step(first, time, h, inputs_0, m, lane)
+    rates(time, STATES, BRISTLES, inputs_0, LATE, m, RATES_0, RESTS_0, lane)
     take_rests(BRISTLES, RESTS_0, m, lane)
     move_straight(RATES_0, 0.5 * h, m, lane)
     move_half(RESTS_0, z1, m, lane)
-    rates(middle, x, z1, inputs, column + 1, LATE_MIDDLE, p, m, RATES_1, RESTS_1, lane)
+    rates(middle, x, z1, inputs_1, LATE_MIDDLE, m, RATES_1, RESTS_1, lane)
     take_rests(z1, RESTS_1, m, lane)
     move_straight(RATES_1, 0.5 * h, m, lane)
     move_half(RESTS_1, z, m, lane)
-    rates(middle, x, z, inputs, column + 1, LATE_MIDDLE, p, m, RATES_2, RESTS_2, lane)
+    rates(middle, x, z, inputs_1, LATE_MIDDLE, m, RATES_2, RESTS_2, lane)
     take_rests(z, RESTS_2, m, lane)
     move_straight(RATES_2, h, m, lane)
     move_second_half(m, lane)
-    rates(time + h, x, z, inputs, column + 2, LATE_END, p, m, RATES_3, RESTS_3, lane)
+    rates(time + h, x, z, inputs_2, LATE_END, m, RATES_3, RESTS_3, lane)
     take_rests(z, RESTS_3, m, lane)
     end_step(h, m, lane)
 
@@ -164,9 +166,9 @@ def know_velocity(at, reading, period, smoothing, memory, lane):
 
 
 @jitted
-def read_sensors(first, encoder_step, period, smoothing, inputs, column, memory, lane):
+def read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane):
     """Positions in encoder steps, and what the computer makes of them."""
-    motions(STATES, inputs, column, memory, POSITIONS, VELOCITIES, lane)
+    motions(STATES, inputs, memory, POSITIONS, VELOCITIES, lane)
     for i in range(MANY_MOTIONS):
         at = i * LANES + lane
         reading = memory[POSITIONS + at]
@@ -203,9 +205,9 @@ def recall(n, samples, past, slots, memory, lane):
 
 
 @jitted
-def retain(n, place, period, sampled, past, slots, parameters, memory, lane):
+def retain(n, place, period, sampled, past, slots, memory, lane):
     """Keep what the computer has now for later samples."""
-    computer_late(n, period, sampled, parameters, memory, SAMPLED_LATE_VALUES, lane)
+    computer_late(n, period, sampled, memory, SAMPLED_LATE_VALUES, lane)
     for i in range(MANY_SAMPLED_LATE):
         at = i * LANES + lane
         entry = (place % slots) * MANY_SAMPLED_LATE * LANES + at
@@ -214,8 +216,8 @@ def retain(n, place, period, sampled, past, slots, parameters, memory, lane):
 
 @jitted
 def sample(
-    first, n, place, time, period, encoder_step, smoothing, inputs, column, sampled, late_samples,
-    past, slots, parameters, memory, lane,
+    first, n, place, time, period, encoder_step, smoothing, inputs, sampled, late_samples,
+    past, slots, memory, lane,
 ):  # fmt: skip
     """The computer reads its sensors, makes its signals and steps its states.
 
@@ -223,14 +225,14 @@ def sample(
     """
     recall(place, late_samples, past, slots, memory, lane)
     # what sensors see: just before the new command
-    signals(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, NOW, lane)
-    read_sensors(first, encoder_step, period, smoothing, inputs, column, memory, lane)
+    signals(time, STATES, BRISTLES, inputs, LATE, memory, NOW, lane)
+    read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane)
     if not first:
-        computer_before(n, period, sampled, parameters, memory, lane)
-    computer_signals(n, period, sampled, parameters, memory, MADE, lane)
+        computer_before(n, period, sampled, memory, lane)
+    computer_signals(n, period, sampled, memory, MADE, lane)
     held_commands(n, sampled, memory, NEW_COMMANDS, lane)
-    retain(n, place, period, sampled, past, slots, parameters, memory, lane)
-    computer_after(n, period, sampled, parameters, memory, lane)
+    retain(n, place, period, sampled, past, slots, memory, lane)
+    computer_after(n, period, sampled, memory, lane)
 
 
 @jitted
@@ -275,27 +277,27 @@ def earlier(at, node, part, before, after, slots):
 
 
 @jitted
-def keep_late(j, time, inputs, column, ring, slots, parameters, memory, lane):
+def keep_late(j, time, inputs, ring, slots, memory, lane):
     """What is late some time later, as it is at this node, into a ring."""
-    late_values(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, LATE_VALUES, lane)
+    late_values(time, STATES, BRISTLES, inputs, LATE, memory, LATE_VALUES, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
         ring[(j % slots) * MANY_LATE * LANES + at] = memory[LATE_VALUES + at]
 
 
 @jitted
-def delay(j, time, inputs, column, late_steps, before, after, slots, parameters, memory, lane):
+def delay(j, time, inputs, late_steps, before, after, slots, memory, lane):
     """Late signals at the start, in the middle and at the end of the step that begins.
 
     late_steps: by how many steps each is late;  before, after: rings, as of `earlier`
     """
     if j > 0:  # before the start all is zero, so that what is not jumps there
-        keep_late(j, time, inputs, column, before, slots, parameters, memory, lane)
+        keep_late(j, time, inputs, before, slots, memory, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
         whole = int(np.ceil(late_steps[i]))
         memory[LATE + at] = earlier(at, j - whole, whole - late_steps[i], before, after, slots)
-    keep_late(j, time, inputs, column, after, slots, parameters, memory, lane)
+    keep_late(j, time, inputs, after, slots, memory, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
         whole = int(np.ceil(late_steps[i]))
@@ -323,7 +325,7 @@ def notice_spoiled(memory, lane):
 
 
 @jitted
-def keep(row, width, kept, out, kinds, columns, others, results, memory, lane):
+def keep(row, width, kept, out, kinds, columns, others, results, memory):
     """Rows of `kept` into the result, and the reductions brought up to this row.
 
     kinds: 0 last value, 1 largest, 2 least, 3 largest size, 4 sum, 5 sum of a product with
@@ -331,34 +333,38 @@ def keep(row, width, kept, out, kinds, columns, others, results, memory, lane):
     width: of the row in this integral; < 0: the row is not reduced
     """
     for k in range(len(kept)):
-        out[(row * len(kept) + k) * LANES + lane] = memory[kept[k] + lane]
+        for lane in range(LANES):
+            out[(row * len(kept) + k) * LANES + lane] = memory[kept[k] + lane]
+    if width < 0.0:
+        return
     for i in range(len(kinds)):
-        at = i * LANES + lane
-        value = memory[columns[i] + lane]
-        before = results[at]
-        if width < 0.0:
-            value = before
-        elif kinds[i] == 1:
-            value = max(value, before)
-        elif kinds[i] == 2:
-            value = min(value, before)
-        elif kinds[i] == 3:
-            value = max(abs(value), before)
-        elif kinds[i] == 4:
-            value = before + value
-        elif kinds[i] == 5:
-            value = before + value * memory[others[i] + lane]
-        elif kinds[i] == 6:
-            value = before + width * value * memory[others[i] + lane]
-        results[at] = value
+        for lane in range(LANES):
+            at = i * LANES + lane
+            value = memory[columns[i] + lane]
+            before = results[at]
+            if kinds[i] == 1:
+                value = max(value, before)
+            elif kinds[i] == 2:
+                value = min(value, before)
+            elif kinds[i] == 3:
+                value = max(abs(value), before)
+            elif kinds[i] == 4:
+                value = before + value
+            elif kinds[i] == 5:
+                value = before + value * memory[others[i] + lane]
+            elif kinds[i] == 6:
+                value = before + width * value * memory[others[i] + lane]
+            results[at] = value
 
 
 @entry
-def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
+def differentiate_at_rest(inputs, memory, small, slopes_of):
     """How rates change with states at rest, by a central difference over 2 small.
 
-    memory: zeros;  slopes_of: entry of d(rate i)/d(state k) of a lane, states before bristles
+    memory: zeros, and the parameters
+    slopes_of: entry of d(rate i)/d(state k) of a lane, states before bristles
     """
+    at_rest = inputs_at(inputs, np.int64(0))  # no literal, see `module_source`
     many = MANY_STATES + MANY_BRISTLES
     for k in range(many):
         state = STATES + k * LANES if k < MANY_STATES else BRISTLES + (k - MANY_STATES) * LANES
@@ -370,10 +376,8 @@ def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
                     0.0,
                     STATES,
                     BRISTLES,
-                    inputs,
-                    np.int64(0),  # no literal, see `module_source`
+                    at_rest,
                     LATE,
-                    parameters,
                     memory,
                     to_states,
                     to_bristles,
@@ -395,43 +399,40 @@ def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
 def run(
     samples, inner, h, period, lag, late_steps, encoder_step, smoothing,
     held, held_slots, before, after, late_slots, late_samples, past, past_slots,
-    every_step, parameters, inputs, sampled,
+    every_step, inputs, sampled,
     memory, kept, out, begin, kinds, columns, others, results,
 ):  # fmt: skip
     """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
     nodes, row = samples * inner, np.int64(0)  # no literal, see `module_source`
     for j in range(nodes + 1):
-        time, now = j * h, j % inner == 0
+        time, now, inputs_0 = j * h, j % inner == 0, inputs_at(inputs, 2 * j)
         if COMPUTER and now:
+            sampled_0 = sampled_inputs_at(sampled, j // inner)
             for lane in range(LANES):
                 sample(
                     j == 0, j // inner, j // inner, time, period, encoder_step, smoothing,
-                    inputs, 2 * j, sampled, late_samples, past, past_slots,
-                    parameters, memory, lane,
+                    inputs_0, sampled_0, late_samples, past, past_slots, memory, lane,
                 )  # fmt: skip
+            for lane in range(LANES):
                 hold(j // inner % held_slots, memory, held, lane)
         if COMPUTER and j >= lag and (j - lag) % inner == 0:
             for lane in range(LANES):
                 release((j - lag) // inner % held_slots, held, memory, lane)
         if MANY_LATE > 0:
             for lane in range(LANES):
-                delay(
-                    j, time, inputs, 2 * j, late_steps, before, after, late_slots,
-                    parameters, memory, lane,
-                )  # fmt: skip
+                delay(j, time, inputs_0, late_steps, before, after, late_slots, memory, lane)
         if every_step or now:
             width = -1.0
             if row >= begin:
                 width = 0.5 if row == begin or j == nodes else 1.0
             for lane in range(LANES):
                 if not (COMPUTER and now):
-                    signals(
-                        time, STATES, BRISTLES, inputs, 2 * j, LATE, parameters, memory, NOW, lane
-                    )
-                record(inputs, 2 * j, memory, COLUMNS, lane)
+                    signals(time, STATES, BRISTLES, inputs_0, LATE, memory, NOW, lane)
+                record(inputs_0, memory, COLUMNS, lane)
                 notice_spoiled(memory, lane)
-                keep(row, width, kept, out, kinds, columns, others, results, memory, lane)
+            keep(row, width, kept, out, kinds, columns, others, results, memory)
             row += 1
         if j < nodes:
+            inputs_1, inputs_2 = inputs_at(inputs, 2 * j + 1), inputs_at(inputs, 2 * j + 2)
             for lane in range(LANES):
-                step(j == 0, time, h, inputs, 2 * j, parameters, memory, lane)
+                step(j == 0, time, h, inputs_0, inputs_1, inputs_2, memory, lane)

@@ -94,13 +94,13 @@ def execute(
     layout, rows = made.layout, (timing.steps if every_step else timing.samples) + 1
     kept = made.functions["COLUMNS"] + np.arange(len(layout.columns))
     out = np.zeros((rows, len(kept)))
-    memory = first_memory(made, 1, start)
+    parameters = np.array([values[p] for p in layout.parameters], dtype=float)
+    memory = first_memory(made, 1, parameters, start)
     no_rows = np.zeros(0, dtype=np.int64)
     with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
         made.loop.run(
             *grid(made, timing, 1),
             every_step,
-            np.array([values[p] for p in layout.parameters]),
             inputs,
             sampled,
             memory,
@@ -116,10 +116,17 @@ def execute(
     return out, float(memory[worst].max(initial=0.0))
 
 
-def first_memory(made: Program, lanes: int, start: Mapping[str, float]) -> np.ndarray:
-    """What the loop remembers, at its start: rows times lanes, flat."""
+def first_memory(
+    made: Program, lanes: int, parameters: np.ndarray, start: Mapping[str, float]
+) -> np.ndarray:
+    """What the loop remembers, at its start: rows times lanes, flat.
+
+    parameters: flat, row by row
+    """
     layout, at = made.layout, made.functions
     memory = np.zeros((at["ROWS"], lanes))
+    many = len(layout.parameters)
+    memory[at["PARAMETERS"] : at["PARAMETERS"] + many] = parameters.reshape(many, lanes)
     # states, bristles and the computer's states are the first rows, in this order
     for row, name in enumerate((*layout.states, *layout.computer_states)):
         memory[row] = start.get(name, 0.0)
@@ -173,10 +180,10 @@ def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) ->
     """
     layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
     slopes = np.zeros(n * n * lanes)
-    memory = np.zeros(made.functions["ROWS"] * lanes)
+    memory = first_memory(made, lanes, parameters, {})
     inputs = np.zeros((max(len(layout.inputs), 1), 1))
     with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
-        loop.differentiate_at_rest(inputs, parameters, memory, _SMALL, slopes)
+        loop.differentiate_at_rest(inputs, memory, _SMALL, slopes)
     jacobian = np.moveaxis(slopes.reshape(n, n, lanes), -1, 0)
     exact = [i for i, name in enumerate(layout.states) if name in layout.exponential]
     jacobian[:, exact, exact] = 0.0

@@ -18,7 +18,7 @@ import numpy as np
 from ..diagrams import Diagram
 from ..errors import GrowsWithoutBound, ModelError
 from .delays import delay_in_samples
-from .kernel import FASTEST, RELOAD, fastest_rate, long_step_error, refine_factor
+from .kernel import FASTEST, RELOAD, fastest_rate, first_memory, long_step_error, refine_factor
 from .program import Program, program
 from .simulated import realise_in_computer
 
@@ -83,16 +83,6 @@ class _Answer:
 
     signals: np.ndarray
     after: np.ndarray
-
-
-class _Held:
-    """Inputs that are the same in each column: a table that is as long as it is read."""
-
-    def __init__(self, values: np.ndarray) -> None:
-        self.values = values
-
-    def __getitem__(self, place: tuple[int, int]) -> float:
-        return float(self.values[place[0]])
 
 
 class _Sample:
@@ -174,29 +164,29 @@ class _Sample:
     ) -> tuple[_Answer, float]:
         """The sample with that many inner steps, and how well they resolve bristles."""
         at, layout, h = self.made.functions, self.made.layout, self.dt / inner
-        memory, parameters = np.zeros(at["ROWS"]), np.array(values)
+        memory = first_memory(self.made, 1, np.array(values), {})
         memory[self.rows] = x[: len(self.rows)]
         past = self._ring(x[len(self.rows) :])
-        analog = _Held(np.array([inputs[name] for name in layout.inputs]))
-        sampled = _Held(np.array([inputs[name] for name in layout.sampled_inputs]))
+        analog = tuple(inputs[name] for name in layout.inputs)
+        sampled = tuple(inputs[name] for name in layout.sampled_inputs)
         with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
             if at["COMPUTER"]:
                 at["sample"](
-                    *(False, round(t / self.dt), self.slots, t, self.dt, 0.0, 0.0, analog, 0),
-                    *(sampled, self.late, past, self.slots, parameters, memory, 0),
+                    *(False, round(t / self.dt), self.slots, t, self.dt, 0.0, 0.0, analog),
+                    *(sampled, self.late, past, self.slots, memory, 0),
                 )
                 new, many = at["NEW_COMMANDS"], len(layout.commands)
                 memory[at["COMMANDS"] : at["COMMANDS"] + many] = memory[new : new + many]
             else:
-                arguments = (t, at["STATES"], at["BRISTLES"], analog, 0, at["LATE"])
-                at["signals"](*arguments, parameters, memory, at["NOW"], 0)
-            at["record"](analog, 0, memory, at["COLUMNS"], 0)
+                arguments = (t, at["STATES"], at["BRISTLES"], analog, at["LATE"])
+                at["signals"](*arguments, memory, at["NOW"], 0)
+            at["record"](analog, memory, at["COLUMNS"], 0)
             rows = memory[at["COLUMNS"] : at["COLUMNS"] + len(layout.columns)]
             signals = np.array(
                 [x for x, name in zip(rows, layout.columns, strict=True) if name not in inputs]
             )
             for j in range(inner):
-                at["step"](j == 0, t + j * h, h, analog, 0, parameters, memory, 0)
+                at["step"](j == 0, t + j * h, h, analog, analog, analog, memory, 0)
         worst = memory[at["WORST"] : at["WORST"] + len(layout.exponential)].max(initial=0.0)
         after = np.concatenate([memory[self.rows], self._kept(past)])
         return _Answer(signals, after), float(worst)

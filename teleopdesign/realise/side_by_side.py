@@ -128,12 +128,14 @@ def execute_many(
     def block(first: int) -> None:
         here = slice(first, min(first + LANES, cases))
         used = here.stop - first
-        memory, results = first_memory(made, LANES, start), starts.copy()
+        memory, results = (
+            first_memory(made, LANES, _arrange_in_lanes(parameters[here]), start),
+            starts.copy(),
+        )
         out = np.empty(rows * len(kept) * LANES)
         loop.run(
             *grid(made, timing, LANES),
             False,
-            _arrange_in_lanes(parameters[here]),
             inputs,
             sampled,
             memory,

@@ -34,6 +34,7 @@ def test_the_laws_it_is_read_with_are_those_that_are_generated():
 def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductions=()):
     """Columns over samples of a mass of 2 kg, and the reductions: (kind, column, other)."""
     memory = np.zeros(mass.ROWS)
+    memory[mass.PARAMETERS] = 2.0
     h = period / inner
     half = 0.5 * h * np.arange(2 * samples * inner + 1)
     kinds, columns, others = (
@@ -47,7 +48,7 @@ def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductio
         samples, inner, h, period, lag, np.zeros(0), 0.0, 0.0,
         np.zeros(lag // inner + 2), lag // inner + 2, np.zeros(0), np.zeros(0), 1,
         np.zeros(0), np.zeros(0), 2, False,
-        np.array([2.0]), np.array([force(half), 0.0 * half]), np.full((1, samples + 1), command),
+        np.array([force(half), 0.0 * half]), np.full((1, samples + 1), command),
         memory, kept, out, 0, kinds, mass.COLUMNS + columns, mass.COLUMNS + others, results,
     )  # fmt: skip
     return out.reshape(samples + 1, -1).T, results
