@@ -6,11 +6,13 @@ its end. `memory` also reads what the process holds before the study, and the si
 `workers` takes turns of one and two processes; on a machine that others use, processor time per
 point says what the second one costs, wall time what the load leaves. `dask` gives tasks of one
 second each (of waiting, and of computing) to a local cluster of two processes and says how much
-longer than the tasks the whole takes.
+longer than the tasks the whole takes. `motions` simulates 5 s of a teleoperator with a cancellation
+on either side, many times over, with its computer sampled and without one.
 
     python benchmarks/study_speed.py memory [--points N ...]
     python benchmarks/study_speed.py workers [--points N] [--turns K]
     python benchmarks/study_speed.py dask [--points N]
+    python benchmarks/study_speed.py motions [--points N]
 """
 
 from __future__ import annotations
@@ -45,6 +47,59 @@ def diagram() -> Any:
         environment=wall,
         slave_cancellation=td.controller("dahl", {"level": 0.8, "stiffness": 1000.0}),
     )
+
+
+def both_cancelled() -> Any:
+    """The same teleoperator with friction on either side, and its cancellation."""
+    import teleopdesign as td
+
+    one = diagram()
+    law = td.controller("dahl", {"level": 0.8, "stiffness": 1000.0})
+    return td.teleoperator(
+        one.block("Z_s").body.with_values({"inertia": 0.1}),
+        one.block("Z_s").body,
+        coupling=td.controller("spring_damper", {"stiffness": 2000.0, "damping": 1.0}),
+        environment=one.block("Z_E").body,
+        slave_cancellation=law,
+        master_cancellation=law,
+    )
+
+
+def motions(points: int) -> None:
+    """Long motions on all cores, in this process: seconds, and why points have no numbers."""
+    import teleopdesign as td
+
+    ranges = {
+        "C_s.dahl.level": (0.5, 0.95),
+        "P.spring_damper.damping": (0.2, 5.0),
+        "Z_E.spring.stiffness": (100.0, 2000.0),
+        "C_s.dahl.stiffness": (300.0, 3000.0),
+    }
+    model = both_cancelled()
+    for computer in ("continuous", td.Sampling()):
+
+        def study(number: int, duration: float, computer: Any = computer) -> Any:
+            return td.study(
+                model,
+                td.latin_hypercube(ranges, number, seed=1),
+                measures=["tracking_error", td.measure("peak", signal="X_s")],
+                duration=duration,
+                initial={"X_s": 5e-3},
+                computer=computer,
+                workers=1,
+            )
+
+        study(64, 0.02)  # compiles, and loads what is needed
+        started, used = time.perf_counter(), processor_seconds()
+        result = study(points, 5.0)
+        wall, processor = time.perf_counter() - started, processor_seconds() - used
+        name = computer if isinstance(computer, str) else "sampled"
+        refused = int((result.data["failure"] != "").sum())
+        print(
+            f"{points} motions of 5 s, {name}: wall {wall:.1f} s, processor {processor:.1f} s, "
+            f"{refused} refused",
+            flush=True,
+        )
 
 
 def run_study(points: int, workers: int) -> dict[str, float]:
@@ -173,6 +228,8 @@ def main() -> None:
     of_workers.add_argument("--turns", type=int, default=3)
     of_dask = what.add_parser("dask", help="overhead of a cluster at one second a task")
     of_dask.add_argument("--points", type=int, default=40)
+    of_motions = what.add_parser("motions", help="long motions of a teleoperator")
+    of_motions.add_argument("--points", type=int, default=10_000)
     one = what.add_parser("one", help="one study, its figures as a line of JSON")
     one.add_argument("points", type=int)
     one.add_argument("workers", type=int)
@@ -183,6 +240,8 @@ def main() -> None:
         two_workers(a.points, a.turns)
     elif a.what == "dask":
         dask(a.points)
+    elif a.what == "motions":
+        motions(a.points)
     else:
         print(json.dumps(run_study(a.points, a.workers)))
 

@@ -31,6 +31,9 @@ JUMP = 1e7
 _SMALL = 1e-9
 #: bound of h * (change of a bristle's decay rate in a step); 0.02: 10 steps a reload
 RELOAD = 0.02
+#: by how much a step that is too long may be divided: few numbers, so that simulations side by side
+#: that need about the same step share a grid, and none above 200, which is a model gone wrong
+FINER = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 200)
 
 
 @dataclass(frozen=True)
@@ -202,6 +205,14 @@ def fastest_rates(jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def refine_factor(measure: float, bound: float, power: float) -> int:
     """By how much to divide a step whose measure, of that power in the step, is above the bound."""
     return math.ceil(math.pow(measure / bound, 1 / power) * 1.0001)
+
+
+def refined(needed: int, least: int) -> int | None:
+    """Steps a sample on a grid that `FINER` allows, as many as needed or more; None: none is so.
+
+    least: steps a sample of the grid that was asked for
+    """
+    return next((least * f for f in FINER if least * f >= needed), None)
 
 
 def long_step_error(step: float, use: float, why: str) -> ModelError:

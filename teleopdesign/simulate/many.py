@@ -190,9 +190,8 @@ class _Study:
         for i, k in enumerate(members):
             case = int(group.cases[k])
             try:
-                inner = setup.next_inner(
-                    timing, float(outcomes.worst[i]), bool(outcomes.is_finite[i]), self.long_step
-                )
+                worst, is_finite = float(outcomes.worst[i]), bool(outcomes.is_finite[i])
+                inner = setup.next_inner(timing, worst, is_finite, self.long_step, key[1])
             except ModelError as error:
                 result.refuse({case: str(error)})
                 continue

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 #: most numbers that one simulation may hold, 2 GB
 MOST_NUMBERS = 250_000_000
-_MOST_REFINED = 200  # inner steps a default one may become
 #: by how much the step may be divided so that every delay is a whole number of steps
 _MOST_DIVIDED = 20
 
@@ -267,8 +266,7 @@ class Setup:
             if long_step == "refuse":
                 why = f"is {2 * np.pi / (rate * step):.2g} steps per period of {state}"
                 raise long_step_error(step, FASTEST / rate, why)
-            inner *= refine_factor(rate * step, FASTEST, 1)
-        self._check_refined(inner)
+            return self._refined(inner * refine_factor(rate * step, FASTEST, 1), inner)
         return inner
 
     def next_inner(
@@ -277,10 +275,11 @@ class Setup:
         worst: float,
         is_finite: bool,
         long_step: Literal["refine", "refuse"] = "refine",
+        delays: Sequence[float] | None = None,
     ) -> int:
         """Steps a sample for the next run; as they were, where this run resolved its bristles.
 
-        worst: measure of their reload, see `realise.kernel`
+        worst: measure of their reload, see `realise.kernel`;  delays: default `delays`, s
         raises ModelError: signals are not finite, the step is refused, or none would do
         """
         from ..realise.kernel import RELOAD, long_step_error, refine_factor
@@ -296,11 +295,13 @@ class Setup:
         if long_step == "refuse":
             why = f"is {np.sqrt(2 / worst):.2g} steps for the bristle's reload after a reversal"
             raise long_step_error(timing.step, timing.step / factor, why)
-        self._check_refined(timing.inner * factor)
-        return timing.inner * factor
+        return self._refined(timing.inner * factor, self.inner(delays))
 
-    def _check_refined(self, inner: int) -> None:
-        from ..realise.kernel import long_step_error
+    def _refined(self, needed: int, least: int) -> int:
+        """Steps a sample, as many as needed or more; ModelError where those are too many."""
+        from ..realise.kernel import long_step_error, refined
 
-        if inner > self.inner() * _MOST_REFINED:
-            raise long_step_error(self.step, self.sampling.period / inner, "is far too long")
+        inner = refined(needed, least)
+        if inner is None:
+            raise long_step_error(self.step, self.sampling.period / needed, "is far too long")
+        return inner

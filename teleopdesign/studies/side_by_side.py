@@ -26,11 +26,14 @@ if TYPE_CHECKING:
 #: points that are computed, and kept, together
 Unit = tuple[int, ...] | range
 
-#: steps of all simulations of a block: about half a second, which is what a kill can cost
-_STEPS_OF_BLOCK = 8e6
+#: steps of all simulations of a block, what a kill can cost: about half a second, and two seconds
+#: where the study has `_BLOCKS` such blocks to share among workers. The few points that need steps
+#: up to 200 times finer take most of the time unless enough of them lie side by side
+_STEPS_OF_BLOCK, _STEPS_OF_LARGE = 2e7, 8e7
+_BLOCKS = 8
 #: numbers that the signals of a block hold: 0.2 GB
 _NUMBERS_OF_BLOCK = 2e7
-_LEAST_IN_BLOCK, _MOST_IN_BLOCK = 16, 512
+_LEAST_IN_BLOCK, _MOST_IN_BLOCK, _MOST_IN_LARGE = 16, 512, 2048
 
 
 def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
@@ -55,10 +58,12 @@ def block_size(task: StudyTask) -> int:
     if not varied or not is_number:
         return 1
     period = 1e-3 if isinstance(case.computer, str) else case.computer.period
-    by_steps = _STEPS_OF_BLOCK * min(case.step, period) / case.duration
+    one_step = min(case.step, period) / case.duration
+    usual = min(_STEPS_OF_BLOCK * one_step, _MOST_IN_BLOCK)
+    large = min(_STEPS_OF_LARGE * one_step, _MOST_IN_LARGE, len(task.points) / _BLOCKS)
     by_memory = _NUMBERS_OF_BLOCK * period / (case.duration * len(signals))
-    size = 16 * int(min(by_steps, by_memory) / 16)
-    return max(_LEAST_IN_BLOCK, min(size, _MOST_IN_BLOCK))
+    size = 16 * int(min(max(usual, large), by_memory) / 16)
+    return max(_LEAST_IN_BLOCK, size)
 
 
 def signals_of(task: StudyTask) -> tuple[str, ...]:

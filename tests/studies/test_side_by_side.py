@@ -66,6 +66,20 @@ def test_blocks_are_longer_for_shorter_simulations_and_bounded():
     assert sorted(sizes, reverse=True) == sizes
 
 
+def test_blocks_of_long_studies_are_larger_where_each_worker_still_has_some():
+    case = td.studies.SimulatedCase(models.interface(), duration=5.0)
+
+    def size(points):
+        axes = {"C.dahl.level": np.linspace(0.1, 1.5, points)}
+        return side_by_side.block_size(
+            StudyTask(case, {}, points_of(axes), measures_of("force_error"))
+        )
+
+    assert size(800) == 400  # half a second of one core
+    assert size(8000) == 992  # an eighth of the study, in whole blocks of lanes
+    assert size(100_000) == 1600  # two seconds
+
+
 @pytest.mark.slow
 def test_blocks_in_two_processes_and_after_a_stop_give_the_same_data(tmp_path):
     axes = {"C.dahl.level": np.linspace(0.1, 1.5, 700), "computer.delay": [0.0, 1e-3]}
