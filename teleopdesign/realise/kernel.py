@@ -33,7 +33,7 @@ _SMALL = 1e-9
 RELOAD = 0.02
 #: by how much a step that is too long may be divided: few numbers, so that simulations side by side
 #: that need about the same step share a grid, and none above 200, which is a model gone wrong
-FINER = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 200)
+FINER = (1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 200)
 
 
 @dataclass(frozen=True)
