@@ -11,6 +11,7 @@ from time import monotonic
 
 import sympy as sp
 
+from ..controllers import exact_decimal
 from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, position_symbol
 from ..diagrams.second_input import acts_along_another
 from ..errors import ModelError
@@ -98,8 +99,13 @@ def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
     """Terms by their signal: a part may take the signal that it makes."""
     row: Row = {}
     for signal, coefficient in terms:
-        row[signal] = row.get(signal, sp.S(0)) + coefficient
+        row[signal] = row.get(signal, sp.S(0)) + _as_written(coefficient)
     return {signal: c for signal, c in row.items() if c != 0}
+
+
+def _as_written(weight: sp.Expr) -> sp.Expr:
+    """The weight with its decimal numbers as fractions: what floats sum up to is never quite 0."""
+    return weight.xreplace({x: exact_decimal(x) for x in weight.atoms(sp.Float)})
 
 
 def has_actuation(part: Moving) -> bool:

@@ -139,11 +139,11 @@ def impedance_matrix(
     within = {power: mark for mark, power in times.items()}
     values = {n: sp.sympify(e).xreplace(within) for n, e in values.items()}
     forces = tuple(p.force for p in at)
-    if len(at) > 2 and not times:  # transfer functions in the blocks would grow with each port
-        impedance = _inverse(_mobility(diagram, at, values))
-        if impedance is None:
-            raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
-        return impedance
+    if not times and all(e.free_symbols <= {S} for e in values.values()):
+        # in numbers at once: transfer functions in the blocks grow with each port and each loop
+        mobility = _mobility(diagram, at, values)
+        if mobility is not None or len(at) > 2:
+            return _impedance_of(diagram, mobility)
     motions = {m: transfer(diagram, m, forces) for p in at for m in p.weights}
     mobility = sp.Matrix(
         [
@@ -164,16 +164,25 @@ def impedance_matrix(
         return sp.zeros(1)  # one port that nothing resists
     if mobility.has(sp.zoo, sp.nan):
         raise ModelError(f"{diagram.name}: a port gives way to any force: it has no mobility")
+    return _impedance_of(diagram, mobility).xreplace(times)
+
+
+def _impedance_of(diagram: Diagram, mobility: sp.Matrix | None) -> sp.Matrix:
+    if mobility is None:
+        raise ModelError(f"{diagram.name}: the wiring does not determine its motions")
     impedance = _inverse(mobility)
     if impedance is None:
         raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
-    return impedance.xreplace(times)
+    return impedance
 
 
 def _mobility(
     diagram: Diagram, at: Sequence[Port], values: Mapping[sp.Symbol, sp.Expr]
-) -> sp.Matrix:
-    """Velocities of the ports for their forces, from all equations with their values at once."""
+) -> sp.Matrix | None:
+    """Velocities of the ports for their forces, from all equations with their values at once.
+
+    None: the equations do not determine them
+    """
     unknown = [s for s in diagram.signals if s not in diagram.outside]
     equations = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
     if not all(e.free_symbols <= {S} for row in equations for e in row.values()):
@@ -182,7 +191,7 @@ def _mobility(
     try:
         answers = system.lu_solve(-right).to_Matrix()
     except DMNonInvertibleMatrixError:
-        raise ModelError(f"{diagram.name}: the wiring does not determine its motions") from None
+        return None
     weights = sp.Matrix([[exact(port.weights.get(n, 0)) for n in unknown] for port in at])
     return weights * answers * S
 
