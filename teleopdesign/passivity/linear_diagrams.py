@@ -6,6 +6,7 @@ inside that grows by itself, though no port shows it from rest.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -83,8 +84,20 @@ def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
 
 
 def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
+    """Nothing holds beside what grows; where that is not known, nothing is proved."""
     if rate is None:
         return claims
+    if math.isnan(rate):
+        why = (
+            "from rest its impedance is that of a passive one, but beside a dead time, or a loop "
+            "that determines nothing, no test shows that no mode inside grows by itself"
+        )
+        return [
+            replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+            if one.claim.status == "proved"
+            else one
+            for one in claims
+        ]
     how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
     why = (
         f"from rest its impedance is that of a passive one, but a mode inside that no port shows "

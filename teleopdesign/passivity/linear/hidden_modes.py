@@ -15,7 +15,8 @@ power of time. What the ports show, a free mass among it, is judged by the imped
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import reduce
 from typing import Any
@@ -24,7 +25,7 @@ import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from ...controllers import Controller, controller
+from ...controllers import Controller, Stage, controller
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Block, Control, Diagram, Moving, with_shared_states
@@ -54,19 +55,20 @@ _ONE = sp.Poly(1, S, domain="QQ")
 def growth_within(diagram: Diagram) -> float | None:
     """Rate (1/s) of the fastest mode that grows by itself with free ports; None where none does.
 
-    0: one grows as a power of time
-    diagram: with values, linear and without dead times (of others nothing is known here: None)
+    0: one grows as a power of time;  NaN: not known, beside dead times or where the equations do
+        not determine all signals
+    diagram: with values, linear
     raises ModelError: no force from outside drives a body
     """
-    at, diagram = ports(diagram), with_shared_states(with_tips(diagram))
+    at, diagram = ports(diagram), with_shared_states(with_tips(_at_once(diagram)))
     linear = linear_blocks(diagram)
     values = symbol_values(linear)
     forms = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
     if linear.dead_times or any(e.has(sp.exp) for row in forms for e in row.values()):
-        return None
+        return math.nan
     whole, shown = _whole_determinant(diagram, forms, at)
     if whole.is_zero:
-        return None
+        return math.nan
     if not _is_free_of_growth(whole):
         return float(np.roots([float(c) for c in whole.sqf_part().monic().all_coeffs()]).real.max())
     return 0.0 if _drives_itself(whole, shown, equations_in_full(diagram)) else None
@@ -234,22 +236,33 @@ def controllers_grow(diagram: Diagram) -> bool:
     )
 
 
+def _at_once(diagram: Diagram) -> Diagram:
+    """The diagram with gains of 1 in the place of dead times of 0."""
+    return _with_gains(diagram, 1.0, lambda stage: stage.value_of("dead_time") == 0)
+
+
+def _with_gains(
+    diagram: Diagram, factor: float, chosen: Callable[[Stage], bool] = lambda stage: True
+) -> Diagram:
+    """The diagram with gains in the place of dead times."""
+    law = controller("gain", {"gain": factor}).stages[0]
+
+    def without_delay(part: Block) -> Block:
+        if not isinstance(part, Control) or not isinstance(part.controller, Controller):
+            return part
+        stages = [law if g.law.dead_time and chosen(g) else g for g in stages_of(part)]
+        return replace(part, controller=Controller(tuple(stages)))
+
+    return replace(diagram, blocks=tuple(without_delay(part) for part in diagram.blocks))
+
+
 def _standing_still(diagram: Diagram, factor: float) -> tuple[sp.Poly, list[Equation]]:
     """det of all equations but those of bodies, which do not move, and the equations.
 
     factor: what a dead time does in them
     """
-    law = controller("gain", {"gain": factor}).stages[0]
-
-    def without_delay(part: Block) -> Block:
-        if not isinstance(part, Control):
-            return part
-        stages = (law if g.law.dead_time else g for g in stages_of(part))
-        return replace(part, controller=Controller(tuple(stages)))
-
-    blocks = tuple(without_delay(part) for part in diagram.blocks)
     still = {b.motion for b in diagram.blocks if isinstance(b, Moving)}
-    equations = equations_in_full(replace(diagram, blocks=blocks), standing=True)
+    equations = equations_in_full(_with_gains(diagram, factor), standing=True)
     equations = [{n: p for n, p in row.items() if n not in still} for row in equations]
     names = list(dict.fromkeys(n for row in equations for n in row))
     if len(names) != len(equations):
