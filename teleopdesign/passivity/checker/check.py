@@ -10,6 +10,9 @@ from typing import Any
 from .absolute_stability import state_absolute_stability
 from .effort import FILE, Refused, need
 from .fields import expect
+from .over_a_box import state_absolute_stability as stable_over_a_box
+from .over_a_box import state_positive_real as positive_real_over_a_box
+from .over_a_box import state_stability
 from .positive_real import state_positive_real
 from .storage import Storage
 
@@ -17,6 +20,9 @@ from .storage import Storage
 _DECIDED: dict[str, Callable[[dict[str, Any]], str]] = {
     "positive real": state_positive_real,
     "absolute stability": state_absolute_stability,
+    "stable over a box": state_stability,
+    "positive real over a box": positive_real_over_a_box,
+    "absolute stability over a box": stable_over_a_box,
 }
 KINDS = ("storage", *_DECIDED)
 

@@ -33,7 +33,7 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "storage", "positive real" or "absolute stability"."""
+        """ "storage", "positive real", "absolute stability", or one "... over a box"."""
         return str(self.content.get("kind", "no kind"))
 
     def check(self) -> str:
@@ -72,16 +72,16 @@ def read_certificate(path: str | Path) -> Certificate:
 
 def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
     """That a matrix of rational functions of s (6x6 at most) is positive real."""
-    rows = [[_checker_text(e) for e in row] for row in impedance]
-    return _seal({"kind": "positive real", "title": title, "impedance": rows})
+    rows = [[written(e) for e in row] for row in impedance]
+    return sealed({"kind": "positive real", "title": title, "impedance": rows})
 
 
 def absolute_stability_certificate(
     title: str, impedance: Sequence[Sequence[sp.Expr]]
 ) -> Certificate:
     """That a 2x2 matrix of rational functions of s is absolutely stable, residues included."""
-    rows = [[_checker_text(e) for e in row] for row in impedance]
-    return _seal({"kind": "absolute stability", "title": title, "impedance": rows})
+    rows = [[written(e) for e in row] for row in impedance]
+    return sealed({"kind": "absolute stability", "title": title, "impedance": rows})
 
 
 def storage_certificate(
@@ -123,11 +123,11 @@ def storage_certificate(
         "positive": _text(positive),
         "nonnegative": _text(nonnegative),
         "rates": _text(rates),
-        "supply": _checker_text(supply),
-        "storage": _checker_text(storage),
+        "supply": written(supply),
+        "storage": written(storage),
         "signs": list(signs),
         "invariant": {
-            n: {"expression": _checker_text(h), "rate": _checker_text(rate)}
+            n: {"expression": written(h), "rate": written(rate)}
             for n, (h, rate) in invariant.items()
         },
         "proofs": {
@@ -136,7 +136,7 @@ def storage_certificate(
         },
         "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
     }
-    return _seal(content)
+    return sealed(content)
 
 
 def _cases(number: int) -> list[str]:
@@ -147,14 +147,14 @@ def _cases(number: int) -> list[str]:
 
 
 def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:
-    return {name: _checker_text(e) for name, e in expressions.items()}
+    return {name: written(e) for name, e in expressions.items()}
 
 
 def _terms(terms: Sequence[Term]) -> list[list[object]]:
-    return [[_checker_text(w), dict(powers), _checker_text(e)] for w, powers, e in terms]
+    return [[written(w), dict(powers), written(e)] for w, powers, e in terms]
 
 
-def _checker_text(expression: sp.Expr | int) -> str:
+def written(expression: sp.Expr | int) -> str:
     """Text that the checker reads; ModelError for what is not rational, floats included."""
     e = sp.sympify(expression)
     for part in sp.preorder_traversal(e):
@@ -164,7 +164,7 @@ def _checker_text(expression: sp.Expr | int) -> str:
     return str(e)
 
 
-def _seal(content: dict[str, Any]) -> Certificate:
+def sealed(content: dict[str, Any]) -> Certificate:
     """With the digest that `checker` expects."""
     text = json.dumps(content, sort_keys=True)
     return Certificate({**content, "digest": hashlib.sha256(text.encode()).hexdigest()})

@@ -32,11 +32,15 @@ MOST_COEFFICIENTS = 20_000
 
 @dataclass
 class ProofEffort:
-    """What the proofs of a claim may still cost; cells: parts of boxes that were looked at."""
+    """What the proofs of a claim may still cost; cells: parts of boxes that were looked at.
+
+    squares: factors whose even powers were left out, in x and the values
+    """
 
     left: int = MOST_WORK
     cells: int = 0
     polynomials: int = field(default=0)
+    squares: list[sp.Poly] = field(default_factory=list)
 
     def spend(self, coefficients: int) -> bool:
         """Whether that is still there; it is then gone."""
@@ -56,6 +60,8 @@ def is_non_negative_over(poly: sp.Poly, ends: Ends, scale: Fraction, effort: Pro
     number, factors = _factors(poly)
     sign = 1 if number > 0 else -1
     for factor, multiplicity in factors:
+        if multiplicity > 1 and factor not in effort.squares:
+            effort.squares.append(factor)
         if multiplicity % 2 == 0:
             continue
         ways = [s for s in (1, -1) if _holds((factor * s,), ends, scale, effort, _non_negative)]
@@ -113,8 +119,12 @@ def _non_negative(cell: list[Any]) -> Answer:
     (b,) = cell
     if (b >= 0).all():
         return "yes"
-    corners = (b[at] for at in product(*((0, n - 1) for n in b.shape)))
-    return "no" if any(x < 0 for x in corners) else "halve"
+    return "no" if min(_at_corners(b)) < 0 else "halve"
+
+
+def _at_corners(b: Any) -> list[int]:
+    """Values at all corners of the cell: there the coefficients are values."""
+    return [b[at] for at in product(*((0, n - 1) for n in b.shape))]
 
 
 def _is_apart_from_zero(cell: list[Any]) -> Answer:
@@ -123,6 +133,9 @@ def _is_apart_from_zero(cell: list[Any]) -> Answer:
         return "yes"
     if all(b[(0,) * b.ndim] == 0 for b in cell):
         return "no"
+    if len(cell) == 1:  # between corners of either sign it is zero somewhere
+        at_corners = _at_corners(cell[0])
+        return "halve" if min(at_corners) > 0 or max(at_corners) < 0 else "no"
     if len(cell) == 2:
         near = [_round_coefficients(b) for b in cell]
         u, v = (round(1024 * float(f.mean())) for f in near)

@@ -1,7 +1,8 @@
 """Claims about a family of linear systems as signs of polynomials over a box.
 
 Hurwitz: a polynomial whose leading coefficient is nowhere zero, that is Hurwitz at one point of the
-box and nowhere zero on the axis, is Hurwitz everywhere: roots move continuously.
+box and nowhere zero on the axis, is Hurwitz everywhere: roots move continuously. With p(j w) = a +
+j w b that is: a at w = 0 is nowhere zero, and a and b are nowhere zero together.
 
 Passive at one port: p/q is positive real if p + c q is Hurwitz for some c > 0, and Re p conj q >= 0
 on the axis. At two ports: no pole in the right half plane and none on the axis but at 0 and at
@@ -46,7 +47,7 @@ class Conditions:
         """Whether all roots have a negative real part, everywhere in the box."""
         if p.is_zero or not self.nonzero(leading_coefficient(p)):
             return False
-        if not is_hurwitz(self.middle(p)):
+        if not is_hurwitz(self.middle(p)) or not self.nonzero(_coefficient(p, 0)):
             return False
         unit = scale(self.middle(p))
         return p.degree() == 0 or excludes_zero_over(halves(p), self.ends, unit, self.effort)
@@ -70,7 +71,7 @@ def one_port_is_passive(ask: Conditions, z: sp.Expr, *, margin: Fraction = Fract
     """Whether Z - margin is shown to be positive real everywhere in the box; margin: N s/m."""
     p, q = (ask.poly(e) for e in sp.fraction(sp.cancel(z - sp.Rational(str(margin)))))
     real = real_part(p, q)
-    total = p + q * _size(ask.middle(p), ask.middle(q))
+    total = p + q * size_of(ask.middle(p), ask.middle(q))
     return ask.is_hurwitz(total) and ask.non_negative(real, scale(ask.middle(total)))
 
 
@@ -190,7 +191,7 @@ def real_part(p: sp.Poly, q: sp.Poly) -> sp.Poly:
     return cross(p, q)[0]
 
 
-def _size(p: sp.Poly, q: sp.Poly) -> sp.Rational:
+def size_of(p: sp.Poly, q: sp.Poly) -> sp.Rational:
     """A power of 2 near abs(p/q) on the axis: p and c q are alike then; any c > 0 would do."""
     w = float(scale(p + q)) ** 0.5
     above, below = (sum(abs(float(c)) * w**k for (k,), c in one.terms()) for one in (p, q))

@@ -59,7 +59,8 @@ class Family:
         values = symbol_values(self.linear)
         equations = []
         for row in rows(self.diagram):
-            terms = {s: sp.cancel(sp.sympify(c).subs(values)) for s, c in row.items()}
+            placed = {s: make_exact(sp.sympify(c).subs(values)) for s, c in row.items()}
+            terms = {s: sp.cancel(c) for s, c in placed.items()}
             below = sp.lcm_list([sp.fraction(c)[1] for c in terms.values()])
             equations.append([sp.cancel(terms.get(s, sp.S(0)) * below) for s in unknown])
         matrix = DomainMatrix.from_Matrix(sp.Matrix(equations)).to_field()

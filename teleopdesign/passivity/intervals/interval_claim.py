@@ -11,6 +11,7 @@ import numpy as np
 from ...by_value import ByValue
 from ...notebook import html_table
 from ...quantity import unit_after_number
+from ..claims.certificate import Certificate
 from ..claims.claim import Claim
 from .box import ValueBox
 from .worst import Worst
@@ -28,6 +29,8 @@ class IntervalClaim(ByValue):
     proved_margin: what the margin is proved to be at least, over the whole box; NaN: none is
     points: at which it was looked at;  how: in words;  at_worst: the claim at `worst` alone
     time: of the controllers: "any" where no computer samples one
+    certificates: of what is proved of a linear diagram, each verified by `checker`: of the margin's
+        bound over the whole box, and of the modes that no port shows
     """
 
     statement: str
@@ -42,6 +45,7 @@ class IntervalClaim(ByValue):
     units: Mapping[str, str] = field(default_factory=dict)
     at_worst: Claim | None = None
     time: Literal["continuous", "any"] = "any"
+    certificates: tuple[Certificate, ...] = ()
 
     @property
     def holds(self) -> bool | None:

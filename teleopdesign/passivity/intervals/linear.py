@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
@@ -13,12 +14,14 @@ from ...controllers import exact_decimal
 from ...diagrams import Diagram
 from ...errors import ModelError
 from ...realise.lti import S
+from ..claims.certificate import Certificate
 from ..claims.claim import Claim, Unknown
 from ..linear.polynomials import is_hurwitz
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
 from .box import ValueBox, nonlinear_within
+from .box_certificates import impedance_certificate, stability_certificate
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
 from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
@@ -53,8 +56,18 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
     how = _how(ask, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
-    bound = next((c for c in shifts if c > 0 and ask.is_hurwitz(_shift_roots(polynomial, c))), 0)
-    return parts_of(statement, "proved", worst, box, "1/s", how, proved_margin=float(bound))
+    bounds = (c for c in shifts if c > 0 and ask.is_hurwitz(_shift_roots(polynomial, c)))
+    bound = next(bounds, Fraction(0))
+
+    def certificates() -> tuple[Certificate, ...]:
+        title = (
+            f"{middle.name}: every pole has a real part below -{bound} 1/s, s counted from there"
+        )
+        return (stability_certificate(ask, box, _shift_roots(polynomial, bound), title),)
+
+    proved_margin = float(bound)
+    made = parts_of(statement, "proved", worst, box, "1/s", how, proved_margin=proved_margin)
+    return _proof(made, certificates)
 
 
 def _shift_roots(polynomial: sp.Poly, left: Fraction) -> sp.Poly:
@@ -77,7 +90,9 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     z = family.impedance()
     stable = claim == "absolutely stable"
     ask = Conditions.over(box, family.symbols)
-    worst = search_worst(_margin(family, z, box, claim), box, points=points, seed=seed)
+    hidden = modes_inside(ask, family, z) if family.is_rational else None
+    margin = _margin(family, z, box, claim, [hidden] if hidden is not None else [])
+    worst = search_worst(margin, box, points=points, seed=seed)
     exact = _settle(alone, box, worst.point, claim)
     unit = CLAIMS[claim]
     if exact.status == "refuted":
@@ -87,15 +102,24 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     if (
         exact.holds
         and family.is_rational
+        and hidden is not None
+        and ask.is_hurwitz(hidden)
         and _is_proved(ask, z, claim)
-        and hides_no_growth(ask, family, z)
     ):
-        bound = 0.0 if stable else _bound(ask, z, worst.margin)
+        bound = Fraction(0) if stable else _bound(ask, z, worst.margin)
         how = _how(ask, "its conditions are polynomials of one sign")
-        worst = replace(worst, margin=max(worst.margin, bound))
-        return parts_of(
-            statement, "proved", worst, box, unit, how, proved_margin=bound, at_worst=exact
-        )
+        worst = replace(worst, margin=max(worst.margin, float(bound)))
+        kept = z - sp.Rational(str(bound)) * sp.eye(z.rows)
+
+        def certificates() -> tuple[Certificate, ...]:
+            first = impedance_certificate(ask, box, kept, claim, f"{alone.name}: {statement}")
+            if hidden.degree() == 0:
+                return (first,)
+            title = f"{alone.name}: modes that no port shows die out"
+            return first, stability_certificate(ask, box, hidden, title)
+
+        more = {"proved_margin": float(bound), "at_worst": exact}
+        return _proof(parts_of(statement, "proved", worst, box, unit, how, **more), certificates)
     status: Status = "evidence" if exact.holds else "unknown"
     worst = replace(worst, margin=max(worst.margin, 0.0)) if exact.holds else worst
     how = (
@@ -116,10 +140,12 @@ def margin_over(family: Family, box: ValueBox, claim: str) -> MarginFunction:
     return _margin(family, family.impedance(), box, claim)
 
 
-def _margin(family: Family, z: sp.Matrix, box: ValueBox, claim: str) -> MarginFunction:
-    ask, poles = Conditions.over(box, family.symbols), []
+def _margin(
+    family: Family, z: sp.Matrix, box: ValueBox, claim: str, hidden: Sequence[sp.Poly] = ()
+) -> MarginFunction:
+    ask, poles = Conditions.over(box, family.symbols), [*hidden]
     if family.is_rational:
-        poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
+        poles += [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
     stable = claim == "absolutely stable"
     return port_margin(family, z, stable=stable, poles=poles, box=box)
 
@@ -131,31 +157,48 @@ def _is_proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
 
 
 def hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
-    """Whether all modes that the ports, left free, do not show are shown to die out.
+    """Whether all modes that the ports, left free, do not show are shown to die out."""
+    hidden = modes_inside(ask, family, z)
+    return hidden is not None and ask.is_hurwitz(hidden)
+
+
+def modes_inside(ask: Conditions, family: Family, z: sp.Matrix) -> sp.Poly | None:
+    """Polynomial of all modes that the ports, left free, do not show; None: Z is singular.
 
     An impedance is what ports do from rest: what a zero cancels in it may grow by itself inside.
     Shown are the poles of the ports' positions for their forces, a free mass among them.
     """
     if sp.cancel(z.det()) == 0:
-        return False
+        return None
     moved = (z.inv() / S).applyfunc(sp.cancel)
     minors = [*moved, moved.det()]
     shown = reduce(sp.lcm, (ask.poly(sp.fraction(sp.cancel(one))[1]) for one in minors))
     whole = sp.fraction(sp.cancel(family.characteristic()))[0]
-    return ask.is_hurwitz(ask.poly(sp.fraction(sp.cancel(whole / shown.as_expr()))[0]))
+    return ask.poly(sp.fraction(sp.cancel(whole / shown.as_expr()))[0])
 
 
-def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> float:
+def _proof(made: Parts, certificates: Callable[[], tuple[Certificate, ...]]) -> Parts:
+    """A proof where the checker accepts its certificates, else what was computed exactly."""
+    try:
+        accepted = certificates()
+    except ModelError:
+        how = f"{made['how']}; a certificate would ask for more work than its checker does"
+        return {**made, "status": "evidence", "proved_margin": float("nan"), "how": how}
+    how = f"{made['how']}; {len(accepted)} certificate{'s' * (len(accepted) > 1)}"
+    return {**made, "how": how, "certificates": accepted}
+
+
+def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> Fraction:
     """What Z may lose in damping at every port and is still proved to be passive, N s/m."""
     if not 0 < margin < np.inf:
-        return 0.0
+        return Fraction(0)
     show = one_port_is_passive if z.shape == (1, 1) else two_port_is_passive
     entries = z[0, 0] if z.shape == (1, 1) else z
     for share in _SHARES:
         excess = Fraction(margin * share).limit_denominator(10**6)
         if 0 < excess <= margin and show(ask, entries, margin=excess):
-            return float(excess)
-    return 0.0
+            return excess
+    return Fraction(0)
 
 
 def _settle(alone: Diagram, box: ValueBox, point: np.ndarray, claim: str) -> Claim:

@@ -1,0 +1,87 @@
+"""Certificates of claims over a box, in the form that `checker/over_a_box.py` decides alone."""
+
+from __future__ import annotations
+
+import re
+from functools import reduce
+
+import sympy as sp
+
+from ..checker.effort import NAMES
+from ..claims.certificate import Certificate, sealed, written
+from .box import ValueBox
+from .conditions import Conditions, size_of
+
+#: kinds of certificates by the claim
+KINDS = {
+    "passive": "positive real over a box",
+    "absolutely stable": "absolute stability over a box",
+}
+
+
+def stability_certificate(
+    ask: Conditions, box: ValueBox, polynomial: sp.Poly, title: str
+) -> Certificate:
+    """That a polynomial in S and the values has no root with Re s >= 0.
+
+    raises ModelError: the checker does not accept it
+    """
+    fields: dict[str, object] = {"polynomial": _text(polynomial.as_expr(), _renamed(ask, box))}
+    return _accepted(ask, box, "stable over a box", title, fields)
+
+
+def impedance_certificate(
+    ask: Conditions, box: ValueBox, z: sp.Matrix, claim: str, title: str
+) -> Certificate:
+    """That an impedance of one or two ports is passive, or absolutely stable.
+
+    raises ModelError: the checker does not accept it
+    """
+    parts = [tuple(map(ask.poly, sp.fraction(sp.cancel(e)))) for e in z]
+    d = reduce(sp.lcm, (q for _, q in parts))
+    n = [p * sp.quo(d, q) for p, q in parts]
+    names, size = _renamed(ask, box), z.shape[0]
+    rows = [n[i * size : (i + 1) * size] for i in range(size)]
+    fields: dict[str, object] = {
+        "numerators": [[_text(e.as_expr(), names) for e in row] for row in rows],
+        "denominator": _text(d.as_expr(), names),
+    }
+    if claim == "passive":
+        fields["scale"] = str(size_of(ask.middle(n[0]), ask.middle(d)))
+    return _accepted(ask, box, KINDS[claim], title, fields)
+
+
+def _accepted(
+    ask: Conditions,
+    box: ValueBox,
+    kind: str,
+    title: str,
+    fields: dict[str, object],
+) -> Certificate:
+    names = _renamed(ask, box)
+    ends = zip(names.values(), box.exact, strict=True)
+    content = {
+        "kind": kind,
+        "title": title,
+        "box": {n.name: [str(low), str(high)] for n, (low, high) in ends},
+        "squares": [_text(p.as_expr(), names) for p in ask.effort.squares],
+        **fields,
+    }
+    made = sealed(content)
+    made.check()
+    return made
+
+
+def _renamed(ask: Conditions, box: ValueBox) -> dict[sp.Symbol, sp.Symbol]:
+    """Plain names for values: "Z_M.inertia" is Z_M_inertia where no other one is."""
+    plain = [
+        re.sub(r"_+", "_", re.sub(r"\W", "_", n, flags=re.ASCII)).strip("_") for n in box.names
+    ]
+    fits = all(re.fullmatch(r"[A-Za-z]\w*", n) and len(n) <= NAMES for n in plain)
+    if not fits or len({*plain, "s", "x"}) != len(plain) + 2:
+        plain = [f"v{k + 1}" for k in range(len(plain))]
+    return {x: sp.Symbol(n) for x, n in zip(ask.symbols, plain, strict=True)}
+
+
+def _text(expression: sp.Expr, names: dict[sp.Symbol, sp.Symbol]) -> str:
+    return written(expression.xreplace(names))

@@ -1,0 +1,125 @@
+"""What grows at some values of a box alone, shown by a port or not, keeps the box from a proof."""
+
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+from devices import body
+
+from teleopdesign.controllers import ControlLaw, Controller, ControllerState, Stage, controller
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving
+from teleopdesign.effects import Parameter
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import claim_over_intervals, ports
+from teleopdesign.passivity.intervals.conditions import Conditions, one_port_is_passive
+from teleopdesign.passivity.linear_diagrams import linear_claims
+from teleopdesign.passivity.ports import impedance_matrix
+from teleopdesign.realise.lti import S
+
+Y = sp.Symbol("y")
+UNBOUNDED = {"lower": -float("inf"), "upper": float("inf")}
+#: z' = input + a z; the output, a spring, does not see it
+UNSEEN = ControlLaw(
+    law=lambda now, p: p.k * now.input,
+    states={"z": ControllerState("dimensionless", lambda now, p: now.input + p.a * now.z)},
+    parameters={n: Parameter("dimensionless", "any", **UNBOUNDED) for n in "ak"},
+    linear=True,
+    name="unseen",
+)
+
+
+def over(low, high):
+    return Conditions([Y], [(Fraction(low), Fraction(high))])
+
+
+@pytest.mark.parametrize(
+    "family",
+    [S + Y, S**2 + S + Y, (S + 1) * (S**2 + 3 * S + Y), S**3 + 2 * S**2 + 3 * S + Y, Y * S + Y],
+)
+def test_a_root_that_comes_through_zero_is_a_root_on_the_axis(family):
+    ask = over(1, 2)
+    assert ask.is_hurwitz(ask.poly(family))
+    for low in (0, -1):
+        ask = over(low, 2)
+        assert not ask.is_hurwitz(ask.poly(family))
+
+
+def test_a_dip_of_the_constant_coefficient_inside_the_box_is_seen():
+    dip = (Y - sp.Rational(123, 1000)) ** 2 - sp.Rational(1, 10**8)
+    ask = over(-1, 2)
+    assert not ask.is_hurwitz(ask.poly(sp.expand(S**2 + S + dip)))
+
+
+def test_a_pole_and_a_zero_that_come_through_zero_together_are_not_passive():
+    """Re Z >= 0 on the whole axis at all values; for y < 0 a pole grows."""
+    z = (S**2 + S + Y) / (S**2 + 2 * S + Y)
+    assert one_port_is_passive(over(1, 2), z)
+    assert not one_port_is_passive(over(-1, 2), z)
+
+
+def loop(law, weight=-1):
+    made = Controller((Stage(law, {"a": -1.0, "k": 1.0}),))
+    parts = (
+        Moving("M", body(0.15, viscous__damping=4.0), "x", "u", {"f": 1.0}, "f"),
+        Control("C", made, "x", "y", "x"),
+    )
+    return Diagram("loop", parts, (Junction("u", {"y": weight}),), {"f": "force"}, ("x",))
+
+
+@pytest.mark.slow
+def test_a_mode_that_no_port_shows_and_that_grows_at_one_end_of_the_box_is_not_proved():
+    diagram = loop(UNSEEN)
+    claim = claim_over_intervals(diagram, {"C.unseen.a": (-2.0, 0.5)}, points=4)
+    assert claim.status == "unknown"
+    assert claim.worst["C.unseen.a"] > 0
+    assert "no port shows" in claim.how
+    claim = claim_over_intervals(diagram, {"C.unseen.a": (-2.0, -0.5)}, points=4)
+    assert claim.status == "proved"
+
+
+def test_weights_that_are_decimals_sum_up_as_they_are_written():
+    """0.1 + 0.2 - 0.3 is 0 here, and 0.1 + 0.2 is not the float 0.30000000000000004."""
+    for last, left in ((-0.3, 0), (-0.30000000000000004, sp.Rational("-4e-17"))):
+        diagram = loop(UNSEEN)
+        sums = (
+            Junction("w", {"y": 0.1}),
+            Junction("w2", {"y": 0.2, "w": 1.0}),
+            Junction("u", {"w2": -1.0, "y": -last}),
+        )
+        wired = Diagram("sums", diagram.blocks, sums, {"f": "force"}, ("x",))
+        z = impedance_matrix(wired, ports(wired))[0]
+        assert sp.expand(sp.cancel(z * S)).coeff(S, 0) == left
+
+
+def test_poles_of_a_diagram_with_decimal_weights_are_judged_over_a_box():
+    diagram = loop(UNSEEN, weight=-0.1)
+    claim = claim_over_intervals(diagram, {"C.unseen.k": (1.0, 2.0)}, claim="stable", points=4)
+    assert claim.status == "proved"
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.1])
+@pytest.mark.parametrize("wired", ["a gain of 0", "nothing", "what cancels"])
+def test_what_grows_before_a_delay_that_no_port_hears_is_not_proved(delay, wired):
+    """The delay is in no impedance, and the law before it grows all the same."""
+    grows = Controller((Stage(UNSEEN, {"a": 0.5, "k": 0.0}),))
+    late = controller("delay", {"time": delay})
+    body_alone = loop(UNSEEN).blocks[0]
+    terms = {"a gain of 0": {"y": 0.0}, "nothing": {}, "what cancels": {"y": 1.0, "z": -1.0}}[wired]
+    again = [Control("E", late, "d", "z")] if wired == "what cancels" else []
+    blocks = (body_alone, Control("C", grows, "x", "d"), Control("D", late, "d", "y"), *again)
+    diagram = Diagram("late", blocks, (Junction("u", terms),), {"f": "force"}, ("x",))
+    claims = linear_claims(diagram, ports(diagram))
+    assert {one.claim.status for one in claims} == {"unknown"}
+
+
+def test_a_loop_beside_the_port_that_determines_nothing_is_not_proved():
+    """y = y: any y will do, and no force of the port is in it."""
+    gain = controller("gain", {"gain": 1.0})
+    blocks = (loop(UNSEEN).blocks[0], Control("C", gain, "e", "y"))
+    sums = (Junction("u", {}), Junction("e", {"y": 1.0}))
+    diagram = Diagram("nothing", blocks, sums, {"f": "force"}, ("x",))
+    try:
+        claims = linear_claims(diagram, ports(diagram))
+    except ModelError:
+        return
+    assert "proved" not in {one.claim.status for one in claims}
