@@ -14,6 +14,7 @@ from ..blocks import Body, Value
 from ..controllers import Controller, from_control, measured_plant, opaque_laws
 from ..effects import EFFECTS
 from ..errors import ModelError
+from .common_modes import with_common_modes
 from .parts import Control, Entry, Junction, Moving
 
 if TYPE_CHECKING:
@@ -36,11 +37,13 @@ def controller_parts(
     inputs, outputs: signals, in the order of the system's;  motion, analog: as of `Control`
     Entries that are zero are left out. Blocks are called "name_1_2", row first; signals between
     them "name_1_2_out". Entries of a state space share its states: a simulation has each state
-    once, "name_state_1", as `with_shared_states` shows. Entries of transfer functions have states
-    of their own, as they are written: `control.ss` of a matrix whose modes are common to entries.
+    once, "name_state_1", as `with_shared_states` shows. Entries of transfer functions have separate
+    states, as they are written; where they share a mode that does not decay, the matrix is made a
+    state space with the fewest states, exactly.
     A nonlinear system (`control.nlsys`) is a block for each state, "name_state_1", and one for each
     output, "name_1": it takes part in simulations alone.
-    raises ModelError: numbers of signals do not fit, an entry that `from_control` refuses
+    raises ModelError: numbers of signals do not fit, an entry that `from_control` refuses, entries
+        that share a mode that grows in numbers that no state space of decimals has
     """
     import control
 
@@ -52,6 +55,8 @@ def controller_parts(
     linear = control.StateSpace | control.TransferFunction | control.FrequencyResponseData
     if isinstance(system, control.InputOutputSystem) and not isinstance(system, linear):
         return code_parts(system, name, inputs, outputs, motion=motion, analog=analog), ()
+    if isinstance(system, control.TransferFunction) and len(inputs) * len(outputs) > 1:
+        system = with_common_modes(system, name=name)
     places = [(i, j) for i in range(len(outputs)) for j in range(len(inputs))]
     every = {(i, j): from_control(entry_of(system, i, j, name), name="entry") for i, j in places}
     forms = {p: c.linear_form(name, sp.Symbol("s"), sp.S(0), held=True) for p, c in every.items()}
