@@ -94,11 +94,14 @@ def attack(rng, elements, storage=None, *, number=100, rounds=15, load=0.0):
         most = run(elements, plans[:, :legs], starts, load=load)[0]
         return most - storage[tuple(at[:, i] for i in stateful)]
 
-    def share(plans):
+    def share(plans, times=10):
         closed = plans if legs == 1 else plans - plans.mean(axis=1, keepdims=True)
-        return run(elements, closed, np.zeros((number, len(elements)))[: len(plans)], 10, load)[1]
+        return run(elements, closed, np.zeros((number, len(elements)))[: len(plans)], times, load)[
+            1
+        ]
 
-    forever = climbed(rng, share, paths, rounds)[0]
+    # what a start from rest gives out over ten short rounds is over after some hundreds
+    forever = float(share(climbed(rng, share, paths, rounds)[1][None], 400)[0])
     if storage is None:
         return None, forever
     starts = rng.uniform(-1.2, 1.2, (number, len(elements)))
