@@ -89,8 +89,9 @@ def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list
         return claims
     if math.isnan(rate):
         why = (
-            "from rest its impedance is that of a passive one, but beside a dead time, or a loop "
-            "that determines nothing, no test shows that no mode inside grows by itself"
+            "from rest its impedance is that of a passive one, but beside a dead time, a loop that "
+            "determines nothing, or a state of an effect that its force does not show, nothing "
+            "shows that no mode inside grows by itself"
         )
         return [
             replace(one, claim=Claim(one.claim.statement, Unknown(why)))

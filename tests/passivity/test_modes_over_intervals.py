@@ -8,7 +8,7 @@ from devices import body
 
 from teleopdesign.controllers import ControlLaw, Controller, ControllerState, Stage, controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
-from teleopdesign.effects import Parameter
+from teleopdesign.effects import Effect, Parameter, State
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals, ports
 from teleopdesign.passivity.intervals.conditions import Conditions, one_port_is_passive
@@ -95,6 +95,59 @@ def test_poles_of_a_diagram_with_decimal_weights_are_judged_over_a_box():
     diagram = loop(UNSEEN, weight=-0.1)
     claim = claim_over_intervals(diagram, {"C.unseen.k": (1.0, 2.0)}, claim="stable", points=4)
     assert claim.status == "proved"
+
+
+def effect(name, law, rate):
+    known = {n: Parameter("dimensionless", "any", **UNBOUNDED) for n in "ak"}
+    return Effect(
+        role="force",
+        energy="supplies",
+        law=law,
+        states={"z": State("dimensionless", rate)},
+        linear=True,
+        parameters=known,
+        absent={"k": 0.0},
+        source="none",
+    ).named(name, "")
+
+
+def driven(now, p):
+    return p.a * now.z + now.velocity
+
+
+#: one that its force does not show; two that take each other's force away
+UNFELT = [effect("damper", lambda now, p: p.k * now.velocity, driven)]
+AGAINST = [
+    effect("push", lambda now, p: p.k * now.z, driven),
+    effect("pull", lambda now, p: -p.k * now.z, driven),
+]
+
+
+def alone(effects, a):
+    device = body(0.15, viscous__damping=4.0, spring__stiffness=5.0)
+    for one in effects:
+        device = device.with_effect(one, {"a": a, "k": 2.0})
+    moving = Moving("M", device, "x", "u", {"f": 1.0}, "f")
+    return Diagram("alone", (moving,), (Junction("u", {}),), {"f": "force"}, ("x",))
+
+
+@pytest.mark.parametrize("effects", [UNFELT, AGAINST], ids=["unfelt", "against each other"])
+def test_a_state_of_effects_that_grows_and_that_no_force_shows_is_not_proved(effects):
+    diagram = alone(effects, 0.5)
+    claims = linear_claims(diagram, ports(diagram))
+    assert [one.claim.status for one in claims] == ["unknown"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effects", [UNFELT, AGAINST], ids=["unfelt", "against each other"])
+def test_a_state_of_effects_that_grows_is_not_proved_over_a_box(effects):
+    def status(a, claim):
+        box = {"M.viscous.damping": (3.0, 5.0)}
+        return claim_over_intervals(alone(effects, a), box, claim=claim, points=1).status
+
+    assert status(0.5, "passive") == "unknown"
+    assert status(0.5, "stable") == "refuted"
+    assert status(-0.5, "stable") == "proved"
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.1])

@@ -47,7 +47,7 @@ class SignsOverBox:
     def __init__(self, c: dict[str, Any]) -> None:
         box = expect(dict, c["box"], "box")
         names = read_words(list(box), "box")
-        need(0 < len(names) <= _MOST_VALUES and not {"s", "x"} & {*names}, "box: its names")
+        need(len(names) <= _MOST_VALUES and not {"s", "x"} & {*names}, "box: its names")
         self.ends: Ends = [_interval(box[n]) for n in names]
         self.algebra = Algebra(["s", *names], [EFFORT])
         axis = Algebra(["x", *names], self.algebra.left)
@@ -109,7 +109,8 @@ class SignsOverBox:
 
     def where(self) -> str:
         pairs = zip(self.names, self.ends, strict=True)
-        return "for all " + ", ".join(f"{n} from {a} to {b}" for n, (a, b) in pairs)
+        listed = [f"{n} from {a} to {b}" for n, (a, b) in pairs]
+        return f"for all {', '.join(listed)}" if listed else "no value left open"
 
 
 def state_stability(c: dict[str, Any]) -> str:

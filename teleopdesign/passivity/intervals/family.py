@@ -18,7 +18,7 @@ from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
 from ..linear.hidden_modes import cancelled_poles
-from ..linear.in_full import stage_rows
+from ..linear.in_full import effect_modes, stage_rows
 from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
@@ -71,7 +71,25 @@ class Family:
                 whole *= self._cancelled_within(part)
             elif part.dead_time is None:
                 whole *= cancelled_poles(part, self.linear).as_expr()
-        return whole
+        return whole * self._cancelled_by_effects()
+
+    def _cancelled_by_effects(self) -> sp.Expr:
+        """Modes of states of effects that their bodies' forms do not show."""
+        hidden = sp.S(1)
+        for part in self.diagram.bodies:
+            if not isinstance(part.body, Body):
+                continue
+            values = {n: exact_decimal(v.value) for n, v in part.body.parameters.items()}
+            placed = {
+                s: self.symbols.get(f"{part.name}.{n}", values[n])
+                for n, s in part.body.symbols().items()
+            }
+            modes = effect_modes(part.body, placed)
+            forms = self.linear.blocks, self.linear.actuation
+            for whole, shown in zip(modes, forms, strict=True):
+                below = sp.fraction(sp.cancel(shown.get(part.name, sp.S(1))))[1]
+                hidden *= sp.cancel(whole / below)
+        return hidden
 
     def _cancelled_within(self, part: Control) -> sp.Expr:
         """What the denominators of its stages have more than the form of the whole controller."""

@@ -37,13 +37,14 @@ from .impedance import exact, impedance
 from .in_full import (
     Equation,
     denominators,
-    effect_forms,
+    effect_modes,
     equations_in_full,
     equations_of,
     polynomial_in_s,
     ratio,
     stage_denominator,
     stages_of,
+    unshown_by_effects,
 )
 from .polynomials import fraction, is_hurwitz
 
@@ -66,6 +67,8 @@ def growth_within(diagram: Diagram) -> float | None:
     forms = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
     if linear.dead_times or any(e.has(sp.exp) for row in forms for e in row.values()):
         return math.nan
+    if not is_hurwitz(unshown_by_effects(diagram)):
+        return math.nan
     whole, shown = _whole_determinant(diagram, forms, at)
     if whole.is_zero:
         return math.nan
@@ -87,8 +90,7 @@ def hides_growth(part: Control, linear: LinearBlocks) -> bool:
 
 def body_hides_growth(part: Moving, linear: LinearBlocks) -> bool:
     """Whether effects of a body cancel a pole of one another that does not decay."""
-    forms = effect_forms(part)[0]
-    product = reduce(sp.Poly.mul, (ratio(form)[1] for form in forms), _ONE)
+    product = polynomial_in_s(effect_modes(part.body)[0])
     hidden = product.quo(ratio(linear.blocks[part.name])[1])
     return hidden.degree() > 0 and not is_hurwitz(hidden)
 

@@ -105,6 +105,41 @@ def effect_forms(part: object) -> tuple[list[sp.Expr], list[sp.Expr]]:
     return of(e for e in body.effects if e not in acting), of(acting)
 
 
+def effect_modes(
+    body: object, numbers: Mapping[sp.Symbol, sp.Expr] | None = None
+) -> tuple[sp.Expr, sp.Expr]:
+    """det(s I - A) of all linear effects that act, and of stages of the actuation.
+
+    A root for each state, those that no force shows included.
+    numbers: of the parameters; default: those of the body
+    """
+    if not isinstance(body, Body):
+        return sp.S(1), sp.S(1)
+    numbers = numbers or {s: exact_decimal(x) for s, x in body.numbers().items()}
+    products = {True: sp.S(1), False: sp.S(1)}
+    for effect in body.effects:
+        if not effect.states or effect.linear_form(S) is None:
+            continue
+        states = effect.state_symbols()
+        rates = effect.rates()
+        a = sp.Matrix([[sp.diff(rates[n], x) for x in states.values()] for n in states])
+        whole = (S * sp.eye(len(states)) - a).det(method="berkowitz")
+        products[effect.role == "actuation"] *= make_exact(whole.subs(numbers))
+    return sp.expand(products[False]), sp.expand(products[True])
+
+
+def unshown_by_effects(diagram: Diagram) -> sp.Poly:
+    """Modes of states of effects that the force of that effect does not show."""
+    whole, shown = _ONE, _ONE
+    for part in diagram.blocks:
+        if isinstance(part, Moving | Attached):
+            for modes in effect_modes(part.body):
+                whole *= polynomial_in_s(modes)
+            for form in (form for forms in effect_forms(part) for form in forms):
+                shown *= ratio(form)[1]
+    return whole.quo(shown)
+
+
 def denominators(diagram: Diagram) -> sp.Poly:
     """Product of those of all laws and effects, each as often as it is there."""
     product = _ONE
