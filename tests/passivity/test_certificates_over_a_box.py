@@ -7,6 +7,7 @@ from hashlib import sha256
 import numpy as np
 import pytest
 from devices import body
+from passivity.interval_boxes import HAND
 
 import teleopdesign as td
 from teleopdesign.passivity import claim_over_intervals
@@ -180,7 +181,7 @@ def test_no_polynomial_that_meets_the_axis_within_the_box_is_accepted():
 
 @pytest.mark.slow
 def test_no_more_polynomials_that_meet_the_axis_within_the_box_are_accepted():
-    assert all(n > 100 for n in attack(2, 600).values())
+    assert all(n > 10 for n in attack(2, 80).values())
 
 
 def claims():
@@ -188,7 +189,7 @@ def claims():
     feedback = td.controller("low_pass", {"bandwidth": 20.0}).then(
         td.controller("gain", {"gain": 0.1})
     )
-    loop = td.haptic_interface(device, force_feedback=feedback, hand=td.hand(mass=0.1, damping=5.0))
+    loop = td.haptic_interface(device, force_feedback=feedback, hand=HAND)
     numbers = {"stiffness": 300.0, "damping": 2.0, "bandwidth": 50.0}
     side = body(0.15, viscous__damping=2.0)
     pair = td.teleoperator(side, side, coupling=td.controller("proportional_derivative", numbers))
@@ -221,14 +222,14 @@ def test_a_mutated_certificate_is_accepted_only_where_it_is_true_at_points():
     """A number of it changed: what is still accepted is held against the test at single values."""
     rng, accepted = np.random.default_rng(5), 0
     genuine = [dict(c.content) for claim in claims() for c in claim.certificates]
-    for _ in range(150):
+    for _ in range(80):
         c = json.loads(json.dumps(genuine[int(rng.integers(len(genuine)))]))
         changed = sealed(mutated(rng, c))
         if is_accepted(changed):
             accepted += 1
             for _ in range(3):
                 assert is_true_at(changed, rng), changed
-    assert accepted > 10
+    assert accepted > 5
 
 
 def mutated(rng, c):
