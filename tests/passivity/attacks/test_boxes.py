@@ -7,6 +7,7 @@ pass through zero: what the law shows, what it hides, and its output beside the 
 from collections import Counter
 
 import numpy as np
+import pytest
 from passivity.attacks.budget import attacked
 from passivity.attacks.test_wirings import Wiring, growth, least_power, pick, sign
 
@@ -60,7 +61,8 @@ def fails_at(rng, shape, values, box, claim):
     return None
 
 
-@attacked(2, 60)
+@pytest.mark.slow
+@attacked(1, 60)
 def test_no_box_is_proved_in_which_a_mode_grows_or_energy_comes_out(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):
