@@ -11,13 +11,13 @@ change from tick to tick alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .encoder import reading_step
+from .off_neighbours import OffNeighbours
 from .reading import ReadingStep
 from .record_clock import Array
 
@@ -28,6 +28,8 @@ FEWEST, TRIAL, _FEW = 200, 3000, 600
 FINEST = 16
 #: instants of the fine grid per row of the spectrum, and peaks of it that are refined
 _GRID, _PEAKS = 64, 6
+#: rows of which the spectrum is made, and steps between rows that are a pause: both bound its size
+MOST, PAUSE = 10_000, 10.0
 #: power of the highest peak, of the mean: of noise the highest is near that
 _CLEAR = 10.0
 #: least part of the squares by which positions are off their neighbours that ticks must explain
@@ -69,8 +71,7 @@ def polled_source(
     stamps: (n,) s, of the reader;  positions: (n,) each
     same: (n,) the row says in every channel what the row before says
     """
-    steps = np.diff(stamps)
-    if len(stamps) < FEWEST or not positions or np.any(steps <= 0):
+    if len(stamps) < FEWEST or not positions or np.any(np.diff(stamps) <= 0):
         return None
     new = np.r_[True, ~same[1:]]
     rows = np.flatnonzero(new)
@@ -78,7 +79,8 @@ def polled_source(
         return None
     x = max(positions, key=_share_of_motion)
     best = _clock_from_changes(stamps, new, x)
-    if best is None and float(np.std(steps)) > EVEN * float(np.median(steps)):
+    steps = np.diff(stamps[_first_stretch(stamps)])
+    if best is None and np.std(steps) > EVEN * np.median(steps):
         best = _clock_from_position(stamps[rows], x[rows])
     if best is None:
         return None
@@ -162,41 +164,71 @@ def _peaks(frequency: Array, size: Array, low: float, high: float) -> list[float
     return chosen
 
 
+def _first_stretch(at: Array) -> slice:
+    """The longest stretch without a pause, `MOST` rows of it: one that a spectrum can hold."""
+    pauses = np.flatnonzero(np.diff(at) > PAUSE * np.median(np.diff(at))) + 1
+    edges = np.concatenate([[0], pauses, [len(at)]])
+    k = int(np.argmax(np.diff(edges)))
+    return slice(int(edges[k]), int(min(edges[k + 1], edges[k] + MOST)))
+
+
 def _clock_from_position(stamps: Array, x: Array) -> tuple[float, float] | None:
     """Period and phase of the ticks at which a position was read, not at its stamps."""
-    lines = _Lines(stamps, x)
-    usual = float(np.median(np.diff(stamps)))
-    moment = np.zeros(len(x))
-    for k in range(5):
-        np.add.at(moment, lines.nodes[:, k], lines.weights[:, k] * lines.off)
-    frequency, size = _spectrum(stamps, moment * lines.speed, usual)
-    band = (0.6 / usual, FINEST / usual)
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    if size[inside].max() ** 2 < _CLEAR * np.mean(size[inside] ** 2):
+    here = _first_stretch(stamps)
+    if here.stop - here.start < FEWEST:
         return None
-    few, duration = lines.some(_FEW), float(np.ptp(stamps))
-    turn = np.arange(0.0, 1.0, 1.0 / 16)
-    trials = [
-        _best_near(few, m / f, 0.5 * m / f / duration, 5, lines.middle, turn * m / f)
-        for f in _peaks(frequency, size, *band)
-        for m in (1, 2)
-        if f / m >= band[0]
-    ]
-    part, width = lines.some(TRIAL), 0.25
-    _, period, phase = min(trials)
-    turn = np.linspace(-0.5, 0.5, 9) / 8
-    for _ in range(3):
-        near = width * period**2 / duration
-        _, period, phase = _best_near(part, period, near, 7, phase, turn * period)
-        turn, width = turn / 4, width / 3
-    explained, slope, error = lines.fit(period, phase)
+    usual = float(np.median(np.diff(stamps[here])))
+    clock = _in_stretch(OffNeighbours(stamps[here], x[here]), usual)
+    if clock is None:
+        return None
+    period, phase = clock
+    while here.stop - here.start < len(x):
+        known, rows = float(np.ptp(stamps[here])), here.stop - here.start
+        here = slice(max(0, here.start - rows), min(len(x), here.stop + rows))
+        lines = OffNeighbours(stamps[here], x[here]).some(TRIAL)
+        period, phase = _refined(lines, period, phase, 0.25 * period**2 / known)
+    explained, slope, error = OffNeighbours(stamps, x).fit(period, phase)
     if explained < EXPLAINED or slope < _SURE * error or not _SPEED[0] < slope < _SPEED[1]:
         return None
     return period, phase
 
 
+def _in_stretch(lines: OffNeighbours, usual: float) -> tuple[float, float] | None:
+    """Period and phase by one stretch alone;  usual: step between its rows, s."""
+    moment = np.zeros(len(lines.stamps))
+    for k in range(5):
+        np.add.at(moment, lines.nodes[:, k], lines.weights[:, k] * lines.off)
+    frequency, size = _spectrum(lines.stamps, moment * lines.speed, usual)
+    band = (0.6 / usual, FINEST / usual)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    if size[inside].max() ** 2 < _CLEAR * np.mean(size[inside] ** 2):
+        return None
+    few, duration = lines.some(_FEW), float(np.ptp(lines.stamps))
+    turn = np.arange(0.0, 1.0, 1.0 / 16)
+    trials = [
+        _best_near(few, m / f, 0.5 * (m / f) ** 2 / duration, 5, lines.middle, turn * m / f)
+        for f in _peaks(frequency, size, *band)
+        for m in (1, 2)
+        if f / m >= band[0]
+    ]
+    _, period, phase = min(trials)
+    return _refined(lines.some(TRIAL), period, phase, 0.25 * period**2 / duration)
+
+
+def _refined(
+    lines: OffNeighbours, period: float, phase: float, width: float
+) -> tuple[float, float]:
+    """The best clock near one;  width: s, by which its period may be wrong."""
+    phase += period * round((lines.middle - phase) / period)
+    turn = np.linspace(-0.5, 0.5, 9) / 8
+    for _ in range(3):
+        _, period, phase = _best_near(lines, period, width, 7, phase, turn * period)
+        turn, width = turn / 4, width / 3
+    return period, phase
+
+
 def _best_near(
-    lines: _Lines, period: float, width: float, count: int, start: float, beside: Array
+    lines: OffNeighbours, period: float, width: float, count: int, start: float, beside: Array
 ) -> tuple[float, float, float]:
     """Squares left by the best of some clocks, its period and the instant of a tick, s.
 
@@ -210,74 +242,7 @@ def _best_near(
     )
 
 
-class _Lines:
-    """How far each row of a position is off the curve through four neighbours, by its stamps."""
-
-    def __init__(self, stamps: Array, x: Array) -> None:
-        rows = np.arange(2, len(x) - 2)
-        nodes = rows[:, None] + np.array([0, -2, -1, 1, 2])
-        at = stamps[nodes] - stamps[rows][:, None]
-        weights = np.ones((len(rows), 5))
-        for j in range(1, 5):
-            for k in range(1, 5):
-                if k != j:
-                    weights[:, j] *= -at[:, k] / (at[:, j] - at[:, k])
-            weights[:, j] *= -1.0
-        self.middle = float(0.5 * (stamps[0] + stamps[-1]))
-        self.stamps, self.nodes, self.weights = stamps, nodes, weights
-        self.off = np.sum(weights * x[nodes], axis=1)
-        self.speed = _speed(stamps, x)
-        self.rows = np.arange(len(rows))
-
-    def some(self, count: int) -> _Lines:
-        """The same of at most so many rows, evenly over the log."""
-        less = copy(self)
-        less.rows = self.rows[:: max(1, -(-len(self.rows) // count))]
-        return less
-
-    def made(self, period: float, phase: float) -> Array:
-        """What reading the tick before each stamp puts a row off its neighbours, at speed 1."""
-        nodes = self.nodes[self.rows]
-        late = (self.stamps[nodes] - phase) % period
-        return np.asarray(-np.sum(self.weights[self.rows] * late * self.speed[nodes], axis=1))
-
-    def left(self, period: float, phase: float) -> float:
-        """Squares that are left of the distances, where rows are those of the ticks."""
-        return float(np.sum((self.off[self.rows] - self.made(period, phase)) ** 2))
-
-    def fit(self, period: float, phase: float) -> tuple[float, float, float]:
-        """Part of the squares that ticks explain, the speed they say, and its standard error."""
-        made, off = self.made(period, phase), self.off[self.rows]
-        below = float(made @ made)
-        if below <= 0:
-            return 0.0, 0.0, np.inf
-        slope = float(made @ off) / below
-        left = float(np.sum((off - slope * made) ** 2))
-        error = np.sqrt(5.0 * left / len(off) / below)
-        return 1.0 - left / float(off @ off), slope, float(error)
-
-
-def _speed(stamps: Array, x: Array) -> Array:
-    """Speed (n,) at each row: slope of the line through it and three rows to either side."""
-    speed = np.zeros(len(x))
-    count = 7
-    kernel = np.ones(count)
-    t = stamps - stamps[0]
-
-    def total(y: Array) -> Array:
-        return np.convolve(y, kernel, mode="valid")
-
-    mean_t, mean_x = total(t) / count, total(x) / count
-    above = total(t * x) / count - mean_t * mean_x
-    below = total(t * t) / count - mean_t**2
-    speed[3:-3] = above / below
-    speed[:3], speed[-3:] = speed[3], speed[-4]
-    return speed
-
-
-def _clock_from_changes(
-    stamps: Array, new: NDArray[np.bool_], x: Array
-) -> tuple[float, float] | None:
+def _clock_from_changes(stamps: Array, new: NDArray[np.bool_], x: Array) -> tuple[float, float] | None:
     """Period and phase of a source that is read more often than it writes: rows change at ticks."""
     changed = np.flatnonzero(new[1:]) + 1
     if np.mean(new) > OFTEN or len(changed) < FEWEST:
@@ -287,14 +252,25 @@ def _clock_from_changes(
         return None
     at = 0.5 * (stamps[changed] + stamps[changed - 1])
     apart = float(np.median(np.diff(at)))
-    frequency, size = _spectrum(at, np.ones(len(at)), apart)
+    first = _first_stretch(at)
+    some = at[first]
+    if len(some) < FEWEST:
+        return None
+    frequency, size = _spectrum(some, np.ones(len(some)), apart)
     for f in _peaks(frequency, size, 0.6 / apart, 2.5 / apart):
         near = f + frequency[1] * np.linspace(-1.0, 1.0, 41)
-        turns = np.exp(2j * np.pi * near[:, None] * (at - at[0])[None, :]).sum(axis=1)
+        turns = np.exp(2j * np.pi * near[:, None] * (some - some[0])[None, :]).sum(axis=1)
         k = int(np.argmax(np.abs(turns)))
         # a tick lies anywhere between two rows that differ: in their middle on average
         period = float(1.0 / near[k])
-        phase = float(at[0] + np.angle(turns[k]) / (2 * np.pi) * period)
+        phase = float(some[0] + np.angle(turns[k]) / (2 * np.pi) * period)
+        begin, end = first.start, first.stop
+        while end - begin < len(at):
+            rows = end - begin
+            begin, end = max(0, begin - rows), min(len(at), end + rows)
+            count = np.rint((at[begin:end] - phase) / period)
+            period, start = np.polyfit(count, at[begin:end] - phase, 1).tolist()
+            phase += start
         if _ticks(stamps, new, period, phase) is not None:
             return period, phase
     return None

@@ -46,6 +46,22 @@ def test_each_row_stands_at_its_tick_of_the_source(period, step, spread, seed):
     assert np.mean(np.abs(source.instants - instants) < 0.1 * true) > 0.99
 
 
+@pytest.mark.parametrize(("step", "spread"), [(10.0, 3.0), (2.0, 0.5)])
+def test_a_long_log_with_a_pause_keeps_its_ticks_to_the_end(step, spread):
+    rng = np.random.default_rng(5)
+    stamps = np.cumsum(1e-3 * (step + spread * rng.uniform(-1.0, 1.0, 24_000)))
+    stamps[12_000:] += 30.0
+    instants = 8e-3 * np.floor(stamps / 8e-3)
+    q, _, same = rows_at(instants)
+    source = polled_source(stamps, same, [q])
+    assert np.mean(np.abs(source.instants - instants) < 1e-3) > 0.99
+
+
+def test_a_stamp_that_is_far_away_takes_no_memory():
+    t = np.append(np.arange(3000) / 1000.0, 1e15)
+    assert polled_source(t, np.zeros(3001, dtype=bool), [motion(t)]) is None
+
+
 @pytest.mark.parametrize(
     ("step", "spread"), [(10.0, 3.0), (8.0, 1.0), (2.0, 0.6), (1.0, 0.05), (2.0, 0.0)]
 )
