@@ -1,0 +1,66 @@
+"""Signals with their tangents: sums, products and filters by the rules of differentiation."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.realise.traced import Traced, constant, filter_traced
+
+N, P = 12, 4
+RNG = np.random.default_rng(7)
+
+
+def signal(rows):
+    """A signal whose tangents move in these rows; None: in any, and nothing is said of them."""
+    tangent = RNG.standard_normal((P, N))
+    if rows is not None:
+        tangent[[j for j in range(P) if j not in rows]] = 0.0
+    return Traced(RNG.standard_normal(N), tangent, rows)
+
+
+KINDS = {"any": None, "some": (1, 3), "none": ()}
+
+
+@pytest.fixture(params=[*KINDS, "constant"])
+def one(request):
+    if request.param == "constant":
+        return constant(RNG.standard_normal(N), P)
+    return signal(KINDS[request.param])
+
+
+def said_of(traced):
+    """The tangents that are not zero lie in the rows that are said to move."""
+    moving = range(P) if traced.moving is None else traced.moving
+    still = [j for j in range(P) if j not in moving]
+    return not traced.tangent[still].any()
+
+
+def test_a_signal_times_a_factor_has_tangents_times_that_factor(one):
+    factor = RNG.standard_normal(N)
+    product = one.times(factor)
+    assert np.array_equal(product.value, one.value * factor)
+    assert np.array_equal(product.tangent, one.tangent * factor)
+    assert said_of(product)
+
+
+@pytest.mark.parametrize("other", [None, (0,), ()])
+def test_sums_and_differences_are_those_of_values_and_tangents(one, other):
+    more = signal(other)
+    for made, sign in ((one + more, 1.0), (one - more, -1.0), (one.less([more, more]), -2.0)):
+        assert made.value == pytest.approx(one.value + sign * more.value)
+        assert made.tangent == pytest.approx(one.tangent + sign * more.tangent)
+        assert said_of(made)
+
+
+def test_a_filter_acts_on_the_value_and_on_each_tangent(one):
+    weights = RNG.standard_normal((N, N))
+    made = filter_traced(lambda rows: rows @ weights, one)
+    assert made.value == pytest.approx(one.value @ weights)
+    assert made.tangent == pytest.approx(one.tangent @ weights)
+    assert said_of(made) and made.is_constant == one.is_constant
+
+
+def test_rows_and_spans_are_those_of_the_samples(one):
+    assert np.array_equal(one.rows(), np.vstack([one.value[None], one.tangent]))
+    assert np.array_equal(one.rows(slice(2, 5)), one.rows()[:, 2:5])
+    assert np.array_equal(one.between(slice(2, 5)).rows(), one.rows()[:, 2:5])
+    assert one.is_constant == (not one.tangent.any())
