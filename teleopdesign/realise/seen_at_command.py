@@ -257,18 +257,17 @@ def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
     """
     inertia = body.parameters["inertia"].value * motion.acceleration
     needed = model.acting.value - model.residual.value - inertia
-    short: list[Array] = []
     largest = float(np.max(np.abs(motion.command)))
+    forces: list[Array] = []
+    for part in COMMANDS:
+        for sign in (1.0, -1.0):
+            held = along.constant(np.full(len(motion.time), sign * part * largest))
+            stages = stages_along(body, motion, along.with_signals({_COMMAND: held}))
+            forces.append(motion.at_rows(stages[-1].output.value if stages else held.value))
+    short: list[Array] = []
     for way in (1.0, -1.0):
-        rows = motion.direction == way
-        best = np.full(len(motion.time), -np.inf)
-        for part in COMMANDS:
-            for sign in (1.0, -1.0):
-                held = along.constant(np.full(len(motion.time), sign * part * largest))
-                stages = stages_along(body, motion, along.with_signals({_COMMAND: held}))
-                force = stages[-1].output.value if stages else held.value
-                best = np.maximum(best, way * motion.at_rows(force))
-        short.append((way * needed - best)[rows])
+        best = np.max([way * force for force in forces], axis=0)
+        short.append((way * needed - best)[motion.direction == way])
     whole = np.concatenate(short)
     return bool(len(whole)) and float(np.median(whole)) > 0.0
 

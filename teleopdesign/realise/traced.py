@@ -148,8 +148,7 @@ class Along:
 
     def evaluate(self, law: sp.Expr) -> Traced:
         """A law on these signals and values; hidden states carry tangents besides `TRACED`."""
-        more = tuple(s for s in self.signals if s not in _SIGNALS)
-        return law_of(law, (*_SIGNALS, *more), TRACED | set(more))(self)
+        return _law_beside(law, tuple(s for s in self.signals if s not in _KNOWN))(self)
 
     def present(self, effects: Sequence[Effect], role: Role) -> list[Effect]:
         """Effects of a role, without absent ones that have states: their laws may divide by 0."""
@@ -206,6 +205,7 @@ class NumericLaw:
 
 
 _SIGNALS = tuple(SIGNALS.values())
+_KNOWN = frozenset(_SIGNALS)
 #: signals that depend on parameters themselves
 TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"]})
 
@@ -213,6 +213,12 @@ TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"
 def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
     """Derivative almost everywhere; at a jump, such as that of sgn, the derivative of its sides."""
     return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
+
+
+@lru_cache(maxsize=512)
+def _law_beside(law: sp.Expr, more: tuple[sp.Symbol, ...]) -> NumericLaw:
+    """The law on all signals and on these besides, which carry tangents."""
+    return law_of(law, (*_SIGNALS, *more), TRACED | set(more))
 
 
 @lru_cache(maxsize=512)
