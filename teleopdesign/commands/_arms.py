@@ -57,11 +57,15 @@ def place_at_pose(
     """
     import numpy as np
 
+    from ..diagnose.arms.other_motion import follows_another
     from ..diagnose.arms.prepared import inertias_at
     from ..model import Model
 
-    name = f"{joint}.inertia"
-    alone = Model({joint: model.bodies[joint]}, model.known, model.record_shift)
+    name, body = f"{joint}.inertia", model.bodies[joint]
+    for effect in body.effects:
+        if follows_another(effect):  # the others rest
+            body = body.without_effect(effect.name)
+    alone = Model({joint: body}, model.known, model.record_shift)
     if not options.pose:
         return alone
     pose = _read_pose(options.pose, experiment)

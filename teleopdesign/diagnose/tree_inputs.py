@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +21,8 @@ def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] =
 
     beside: for each motion, those of an arm's other joints at the same times
     """
+    if beside:  # another motion that stands beside a joint is that of one of these
+        motions = [replace(m, further=_without_other_motion(m)) for m in motions]
     inputs = [_columns_of_body(m, [o for o in motions if o.body == m.body]) for m in motions]
     if not beside:
         return inputs
@@ -28,6 +31,10 @@ def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] =
         np.column_stack([mine, *_columns_of_others(others, with_place)])
         for mine, others in zip(inputs, beside, strict=True)
     ]
+
+
+def _without_other_motion(motion: Motion) -> dict[str, Array]:
+    return {n: x for n, x in motion.further.items() if not n.startswith("other_")}
 
 
 def _columns_of_body(motion: Motion, motions: Sequence[Motion]) -> Array:

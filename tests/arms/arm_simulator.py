@@ -153,10 +153,11 @@ HIDDEN = (
 )
 
 
-def hidden_force(name, strength, x, v, load, friction, step):
+def hidden_force(name, strength, x, v, load, friction, step, beside):
     """Force of a hidden effect (n,) at a joint; friction: its Coulomb level; load: of its links.
 
-    strength: about one is clear
+    name: of `HIDDEN`, or "coupling": another joint pushes, which may lie in the links' inertia
+    strength: about one is clear;  beside: acceleration (n,) of the joint that pushes this one
     """
     sign = np.sign(v)
     if name == "stribeck":
@@ -184,6 +185,8 @@ def hidden_force(name, strength, x, v, load, friction, step):
         return strength * 0.5 * friction * np.sin(2 * np.pi * x / 0.15 + 0.4)
     if name == "spring":
         return strength * 3.0 * friction * x
+    if name == "coupling":
+        return strength * 0.5 * friction * beside / np.sqrt(np.mean(beside**2))
     if name == "presliding":
         z, out = float(sign[0]), np.empty_like(v)
         for i, move in enumerate(v * step):  # Dahl: exact over a step of constant velocity
@@ -223,6 +226,7 @@ def write_experiment(
                 load[j] + arm.viscous[j] * v[j],
                 arm.coulomb[j],
                 1 / (rate * PARTS),
+                a_fine[j + 1 if j + 1 < k else j - 1],
             )
             motor[j] += force
             size = float(np.sqrt(np.mean(force**2) / np.mean(motor[j] ** 2)))

@@ -27,16 +27,28 @@ class ArmRung(ByValue):
     """One step of an arm's ladder: what was added at which joint (None: the user's model), the fit.
 
     instead_of: the effect of the user's model that it takes the place of
+    other: the joint whose motion an effect of another motion follows there
     """
 
     added: Candidate | None
     fit: ArmFit
     instead_of: Candidate | None = None
+    other: str | None = None
+
+    @property
+    def follows(self) -> str | None:
+        """The joint whose motion the effect follows; None where it follows that of its own."""
+        if self.added is None or "other_position" not in self.added.effect.channels():
+            return None
+        return self.other
 
     @property
     def said(self) -> str:
         """What was added, in words."""
-        return "" if self.added is None else named_instead(self.added, self.instead_of)
+        if self.added is None:
+            return ""
+        words = named_instead(self.added, self.instead_of)
+        return words if self.follows is None else f"{words} by the motion of {self.follows}"
 
 
 @dataclass(frozen=True, eq=False)

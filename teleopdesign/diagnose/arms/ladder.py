@@ -8,7 +8,7 @@ are looked at again with what it then says of the links.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ...effects import SIGNALS, Effect
 from ...measurement.experiment import Experiment
@@ -16,41 +16,25 @@ from ...model import Model
 from ..conclusion import conclude
 from ..decision import is_better
 from ..diagnosis import Diagnosis, SetAside
-from ..fit import Fit, estimate, fit_squares
+from ..fit import Fit, fit_squares
 from ..ladder import climb, with_candidates_named
 from ..ladder_state import LadderSearch, LadderState, look, restrict_candidates
 from ..moves import add
 from ..noise_floor import noise_floor
-from ..prepare import Prepared
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
 from .bodies import as_bodies, with_final_bodies
 from .diagnosis import ArmDiagnosis, ArmRung
-from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
+from .fit import ArmFit, estimate_arm, link_errors
+from .joint import Joint, begun, others_of, with_known
+from .other_motion import with_other_motions
+from .other_way import untold_way
 from .prepared import PreparedArm, isolate_joint, prepare_arm
 
 #: why an effect that one joint's records supported is not there
 NO_HELP = "it helps no more with all joints estimated together"
 #: the same of one that passes on less of what sensors read: error and noise floor fall together
 NO_MORE_THAN_NOISE = "it weakens the noise of the sensors and explains no more than that"
-
-
-@dataclass(frozen=True)
-class _Joint:
-    """Where the ladder of one joint stands; is_stale: others have changed what the links are."""
-
-    name: str
-    search: LadderSearch
-    state: LadderState
-    is_stale: bool = False
-
-    @property
-    def gain(self) -> float:
-        """Part of its measured squares that its best supported effect takes from the arm's."""
-        base = fit_squares(self.state.fit)
-        fits = [r.fit for r in self.state.supported]
-        whole = sum(s.measured for s in self.search.prepared.of("fit"))
-        return max((base - fit_squares(f) for f in fits), default=0.0) / whole
 
 
 def find_missing_in_arm(
@@ -83,7 +67,7 @@ def find_missing_in_arm(
     first = estimate_arm(models, prepared)
     prepared, models = as_bodies(prepared, first)
     first = estimate_arm(models, prepared, rounds=1)
-    joints: dict[str, _Joint] = {}
+    joints: dict[str, Joint] = {}
     for j in prepared.joints:
         search = LadderSearch(
             experiment=isolate_joint(experiment, j),
@@ -94,8 +78,9 @@ def find_missing_in_arm(
             plan=plan.for_joints(len(prepared.joints)),
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
-        joints[j] = _begin_joint(j, search, first.prepared[j], first.fits[j].model)
+        joints[j] = begun(j, search, first.prepared[j], first.fits[j].model, prepared)
     order = _climb(joints, prepared)
+    prepared = with_other_motions(prepared, others_of(joints))
     said("all joints together")
     rungs = _rungs(joints, order, first, prepared)
     diagnosis = _conclude(experiment, prepared, joints, rungs)
@@ -118,14 +103,7 @@ def _select_beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
     }
 
 
-def _begin_joint(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
-    """A joint whose ladder begins, with what the others say of the links now."""
-    search = replace(search, whole=prepared, prepared=prepared)
-    fit = estimate(model, prepared)
-    return _Joint(name, search, look(search, (Rung(None, fit),)))
-
-
-def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
+def _climb(joints: dict[str, Joint], prepared: PreparedArm) -> list[str]:
     """Climb the ladder of each joint once; joints: replaced by where they end.
 
     returns: the joints at which effects were added, in the order of their climbs
@@ -137,8 +115,9 @@ def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
         here = joints[j]
         if here.is_stale:
             records = {n: x.search.prepared for n, x in joints.items()}
-            fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, prepared, j)
-            joints[j] = _begin_joint(j, here.search, fresh, here.state.fit.model)
+            beside = with_other_motions(prepared, others_of(joints))
+            fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, beside, j)
+            joints[j] = begun(j, here.search, fresh, here.state.fit.model, prepared)
             continue
         astray = _astray(here)
         if astray is not None:
@@ -153,7 +132,7 @@ def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
     return order
 
 
-def _astray(joint: _Joint) -> Model | None:
+def _astray(joint: Joint) -> Model | None:
     """The model with the first effect, where that takes most away: the links were led astray.
 
     None: they were not, or the other joints say nothing of them
@@ -169,8 +148,8 @@ def _astray(joint: _Joint) -> Model | None:
 
 
 def _begin_joint_again(
-    joints: dict[str, _Joint], model: Model, prepared: PreparedArm, joint: str
-) -> _Joint:
+    joints: dict[str, Joint], model: Model, prepared: PreparedArm, joint: str
+) -> Joint:
     """A joint whose ladder begins anew, with what the others say of the links beside its effect.
 
     joints: those that wait get the model that they have beside it;  model: of `_astray`
@@ -178,16 +157,18 @@ def _begin_joint_again(
     records that was held at none then is estimated again.
     """
     models = {n: x.state.fit.model.with_record_shift({}) for n, x in joints.items()}
-    arm = estimate_arm({**models, joint: model.with_record_shift({})}, prepared)
+    beside = with_other_motions(prepared, others_of(joints))
+    arm = estimate_arm({**models, joint: model.with_record_shift({})}, beside)
     for n, other in joints.items():
         if n != joint and len(other.state.rungs) == 1:
             rungs = [replace(other.state.rungs[0], fit=arm.fits[n])]
             joints[n] = replace(other, state=other.state.with_rungs(rungs))
     here = joints[joint]
     records = {**arm.prepared, joint: here.search.prepared}
-    fresh = with_known(records, {**arm.fits, joint: here.state.fit}, prepared, joint)
+    fresh = with_known(records, {**arm.fits, joint: here.state.fit}, beside, joint)
     late = arm.fits[joint].model.record_shift
-    return _begin_joint(joint, here.search, fresh, here.state.fit.model.with_record_shift(late))
+    model = here.state.fit.model.with_record_shift(late)
+    return begun(joint, here.search, fresh, model, prepared)
 
 
 def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
@@ -195,19 +176,8 @@ def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
     return state.rungs
 
 
-def with_known(
-    records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
-) -> Prepared:
-    """A joint's records with what the other joints say of the links by their fits."""
-    if prepared.base is None:
-        return records[joint]
-    sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
-    known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
-    return with_others(records[joint], known, sizes[joint], fits[joint].model)
-
-
 def _rungs(
-    joints: dict[str, _Joint], order: list[str], first: ArmFit, prepared: PreparedArm
+    joints: dict[str, Joint], order: list[str], first: ArmFit, prepared: PreparedArm
 ) -> tuple[ArmRung, ...]:
     """The ladder of the arm: each effect with all joints estimated again; none raises the error.
 
@@ -223,7 +193,7 @@ def _rungs(
             last = waiting[-1] if waiting else rungs[-1]
             models = {n: f.model for n, f in last.fit.fits.items()} | {j: rung.fit.model}
             fit = estimate_arm(models, prepared)
-            waiting.append(ArmRung(rung.added, fit, rung.instead_of))
+            waiting.append(ArmRung(rung.added, fit, rung.instead_of, joint.other))
             why = _refusal(joint, last.fit, fit)
             if why:
                 break
@@ -235,7 +205,7 @@ def _rungs(
     return tuple(rungs)
 
 
-def _refusal(joint: _Joint, before: ArmFit, after: ArmFit) -> str:
+def _refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
     """Why an effect is not there with all joints estimated together; "": it is.
 
     One that passes on less of what sensors read must explain more than that: the hidden tip of a
@@ -255,7 +225,7 @@ def _refusal(joint: _Joint, before: ArmFit, after: ArmFit) -> str:
     return "" if left <= kept * (there / sensors) ** 2 else NO_MORE_THAN_NOISE
 
 
-def _cut_ladder(joint: _Joint, kept: int, refused: Sequence[ArmRung], why: str) -> _Joint:
+def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -> Joint:
     """The joint with the first rungs of its ladder; the others are set aside.
 
     refused: the other candidates with all joints estimated again
@@ -276,12 +246,21 @@ def _cut_ladder(joint: _Joint, kept: int, refused: Sequence[ArmRung], why: str) 
 def _conclude(
     experiment: Experiment,
     prepared: PreparedArm,
-    joints: dict[str, _Joint],
+    joints: dict[str, Joint],
     rungs: tuple[ArmRung, ...],
 ) -> ArmDiagnosis:
     """The verdict on each joint with the final links, and on the arm."""
     last = rungs[-1].fit
     diagnoses = {j: _conclude_joint(joints[j], last.fits[j], prepared) for j in prepared.joints}
+    for rung in rungs:
+        if rung.added is None or rung.follows is None:
+            continue
+        at = rung.added.at
+        relevant = joints[at].search.criteria.relevant
+        said = untold_way(rung, last, prepared, relevant=relevant)
+        if said is not None:
+            more = (*diagnoses[at].untold, said)
+            diagnoses[at] = replace(diagnoses[at], untold=more)
     verdicts = {d.verdict for d in diagnoses.values()}
     whole = "undecided"
     if "effects_missing" in verdicts:
@@ -292,7 +271,7 @@ def _conclude(
     return ArmDiagnosis(experiment, prepared, whole, rungs, diagnoses, errors)
 
 
-def _conclude_joint(joint: _Joint, fit: Fit, prepared: PreparedArm) -> Diagnosis:
+def _conclude_joint(joint: Joint, fit: Fit, prepared: PreparedArm) -> Diagnosis:
     """The diagnosis of one joint, its last rung with the final links."""
     rungs = (*joint.state.rungs[:-1], replace(joint.state.rungs[-1], fit=fit))
     return conclude(joint.search, joint.state, rungs, beside=prepared.beside(joint.name))

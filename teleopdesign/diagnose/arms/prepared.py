@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ...arms import BaseParameters, Chain, base_parameters
 from ...arms.base_parameters import columns_with_motors
 from ...by_value import ByValue
+from ...effects import EFFECTS
 from ...errors import ExperimentError
 from ...measurement.bandwidth import default_bandwidth
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array
 from ...measurement.motion import LinkForces, Motion
+from ...model import Model
 from ..noise_floor import DRAWS, read_again
 from ..prepare import Prepared, Stretch, prepare
 
@@ -29,6 +31,7 @@ class PreparedArm(ByValue):
     base: the base parameters that are estimated; None: the links are those of the description
     joints: joint -> its records, as an experiment on one body
     size: joint -> root of its measured squares on the fit records
+    others: joint -> the joint whose motion is its channel `other_position`
     """
 
     experiment: Experiment
@@ -36,6 +39,7 @@ class PreparedArm(ByValue):
     base: BaseParameters | None
     joints: Mapping[str, Prepared]
     size: Mapping[str, float]
+    others: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def initial(self) -> tuple[float, ...]:
@@ -119,6 +123,23 @@ def with_inertias(prepared: PreparedArm, inertias: Mapping[str, float]) -> Prepa
     """
     joints = {j: with_inertia(one, inertias[j]) for j, one in prepared.joints.items()}
     return replace(prepared, joints=joints)
+
+
+def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
+    """The records with the part of the links that the bodies of a fitted model have already.
+
+    It is what they have beyond the inertia of their motors, which the experiment states.
+    """
+    # a search among few effects knows no others, not those of the experiment either
+    there = {e.name: e for body in model.bodies.values() for e in body.effects}
+    stated = Model.from_experiment(prepared.experiment, {**EFFECTS, **model.known, **there})
+    return with_inertias(
+        prepared,
+        {
+            j: model.parameters[f"{j}.inertia"].value - stated.parameters[f"{j}.inertia"].value
+            for j in prepared.joints
+        },
+    )
 
 
 def with_inertia(records: Prepared, inertia: float) -> Prepared:

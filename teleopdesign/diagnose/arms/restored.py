@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...effects import EFFECTS, Effect
-from ...errors import ExperimentError
+from ...errors import ExperimentError, did_you_mean, quote
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..answers import SavedAnswer
@@ -16,7 +16,8 @@ from ..diagnosis import Diagnosis
 from ..rung import Rung
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit
-from .prepared import PreparedArm, isolate_joint, prepare_arm, with_inertias
+from .other_motion import with_other_motions
+from .prepared import PreparedArm, isolate_joint, prepare_arm, with_bodies_of
 
 
 def restore_arm_diagnosis(
@@ -34,12 +35,8 @@ def restore_arm_diagnosis(
     saved.require(experiment)
     prepared = prepare_arm(experiment)
     models = _models(saved, experiment, prepared, known)
-    stated = Model.from_experiment(experiment, known)
-    inertias = {
-        j: models[-1].parameters[f"{j}.inertia"].value - stated.parameters[f"{j}.inertia"].value
-        for j in prepared.joints
-    }
-    prepared = with_inertias(prepared, inertias)
+    prepared = with_bodies_of(models[-1], prepared)
+    prepared = with_other_motions(prepared, _others(saved, prepared))
     joints = {
         j: restore_diagnosis(
             saved.of_joint(j), isolate_joint(experiment, j), known, records=records
@@ -54,6 +51,18 @@ def restore_arm_diagnosis(
     )
     errors = _link_errors(saved, prepared)
     return ArmDiagnosis(experiment, prepared, saved.verdict, rungs, joints, errors)
+
+
+def _others(saved: SavedAnswer, prepared: PreparedArm) -> dict[str, str]:
+    """Joint -> the joint whose motion is its channel `other_position`."""
+    others: dict[str, str] = saved.content.get("other_motion", {})
+    for joint in (*others, *others.values()):
+        if joint not in prepared.joints:
+            raise ExperimentError(
+                f"{saved.file}: other_motion: no joint {quote(joint)}, has "
+                f"{', '.join(prepared.joints)}{did_you_mean(joint, prepared.joints)}"
+            )
+    return others
 
 
 def _models(
@@ -108,7 +117,7 @@ def _rung(
     key = row["added"]["effect"], row["added"]["at"]
     if key not in added:
         raise ExperimentError(f"{where}: {key[0]} at {key[1]}: no joint's own ladder has it")
-    return ArmRung(added[key].added, fit, added[key].instead_of)
+    return ArmRung(added[key].added, fit, added[key].instead_of, prepared.others.get(key[1]))
 
 
 def _link_errors(saved: SavedAnswer, prepared: PreparedArm) -> tuple[float, ...]:

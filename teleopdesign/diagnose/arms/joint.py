@@ -1,0 +1,69 @@
+"""One joint of an arm while its ladder is climbed, with what the other joints say of the links."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ...model import Model
+from ..fit import Fit, estimate, fit_squares
+from ..ladder_state import LadderSearch, LadderState, look
+from ..prepare import Prepared
+from ..rung import Rung
+from .fit import knowledge, misfits, with_others
+from .other_motion import most_coupled, with_other_motion
+from .prepared import PreparedArm
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Where the ladder of one joint stands.
+
+    is_stale: others have changed what the links are
+    other: the joint whose motion is its channel `other_position`; None: none was chosen
+    """
+
+    name: str
+    search: LadderSearch
+    state: LadderState
+    is_stale: bool = False
+    other: str | None = None
+
+    @property
+    def gain(self) -> float:
+        """Part of its measured squares that its best supported effect takes from the arm's."""
+        base = fit_squares(self.state.fit)
+        fits = [r.fit for r in self.state.supported]
+        whole = sum(s.measured for s in self.search.prepared.of("fit"))
+        return max((base - fit_squares(f) for f in fits), default=0.0) / whole
+
+
+def begun(
+    name: str, search: LadderSearch, records: Prepared, model: Model, prepared: PreparedArm
+) -> Joint:
+    """A joint whose ladder begins, with what the others say of the links now.
+
+    records: its own, with that;  prepared: those of the arm
+    """
+    fit = estimate(model, records)
+    other = most_coupled(name, records, fit, prepared)
+    if other is not None:
+        records = with_other_motion(records, prepared.joints[other])
+    search = replace(search, whole=records, prepared=records)
+    return Joint(name, search, look(search, (Rung(None, fit),)), other=other)
+
+
+def others_of(joints: Mapping[str, Joint]) -> dict[str, str]:
+    """Joint -> the joint whose motion is its channel `other_position`, where one was chosen."""
+    return {name: one.other for name, one in joints.items() if one.other is not None}
+
+
+def with_known(
+    records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
+) -> Prepared:
+    """A joint's records with what the other joints say of the links by their fits."""
+    if prepared.base is None:
+        return records[joint]
+    sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
+    known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
+    return with_others(records[joint], known, sizes[joint], fits[joint].model)

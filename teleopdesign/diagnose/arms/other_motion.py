@@ -1,0 +1,79 @@
+"""The motion of another joint that may act on a joint: a channel of its records for `coupling`.
+
+Geared wrists, differentials and cables that pass a joint let one motor push another's joint. Which
+one is not said by the kinematics. So of all other joints that one is a joint's `other_position`
+whose motion promises to take most of what the joint's model leaves, by one linear step. A joint
+whose log states such a channel keeps that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ...effects import Effect
+from ...model import Model
+from ..fit import Fit
+from ..linear_start import linear_starts
+from ..prepare import Prepared
+from .prepared import PreparedArm
+
+
+def follows_another(effect: Effect) -> bool:
+    """Whether the laws of an effect need the motion of another joint."""
+    return "other_position" in effect.channels()
+
+
+def with_other_motions(prepared: PreparedArm, others: Mapping[str, str]) -> PreparedArm:
+    """The arm's records with the motion of another joint beside that of some joints.
+
+    others: joint -> the other one
+    """
+    joints = {
+        j: with_other_motion(records, prepared.joints[others[j]]) if j in others else records
+        for j, records in prepared.joints.items()
+    }
+    return replace(prepared, joints=joints, others={**prepared.others, **others})
+
+
+def with_other_motion(records: Prepared, other: Prepared) -> Prepared:
+    """A joint's records with the motion of another joint at the same rows."""
+    stretches = []
+    for mine, its in zip(records.stretches, other.stretches, strict=True):
+        there = {
+            f"other_{name}": getattr(its.motion, name)
+            for name in ("position", "velocity", "acceleration")
+        }
+        motion = replace(mine.motion, further={**mine.motion.further, **there})
+        stretches.append(replace(mine, motion=motion))
+    return replace(records, stretches=tuple(stretches))
+
+
+def most_coupled(joint: str, records: Prepared, fit: Fit, prepared: PreparedArm) -> str | None:
+    """The other joint whose motion promises most at a joint.
+
+    records, fit: of the joint, with what the others say of the links
+    returns: None where its log states another motion, or no effect asks for one
+    """
+    if any("other_position" in s.motion.further for s in prepared.joints[joint].stretches):
+        return None
+    effects = [e for e in fit.model.known.values() if _asks(e, fit.model, joint)]
+    kinds, promised = prepared.experiment.bodies, dict[str, float]()
+    for name, other in prepared.joints.items():
+        if name == joint or kinds[name].axis != kinds[joint].axis:
+            continue
+        beside = with_other_motion(records, other)
+        for effect in effects:
+            model = fit.model.with_effect(effect, at=joint)
+            (start, *_) = linear_starts([model], effect, joint, beside, fit)
+            promised[name] = min(start.promised, promised.get(name, start.promised))
+    return min(promised, key=lambda name: promised[name], default=None)
+
+
+def _asks(effect: Effect, model: Model, joint: str) -> bool:
+    """Whether an effect that a joint lacks is linear in its strength and needs another motion."""
+    return (
+        follows_another(effect)
+        and effect.strength is not None
+        and not model.body(joint).has(effect.name)
+    )

@@ -1,0 +1,41 @@
+"""Whether a coupling between two joints is told from one that acts the other way.
+
+What couples two joints both ways alike may be a part of the links' inertia. Then a force at one
+joint by the motion of another leaves the same as the opposite force at that other joint: links take
+up the rest.
+"""
+
+from __future__ import annotations
+
+from ..candidates import Candidate
+from ..diagnosis import Untold
+from .diagnosis import ArmRung
+from .fit import ArmFit, estimate_arm
+from .other_motion import follows_another, with_other_motions
+from .prepared import PreparedArm
+
+
+def untold_way(
+    rung: ArmRung, last: ArmFit, prepared: PreparedArm, *, relevant: float
+) -> Untold | None:
+    """What cannot be told of an added effect that follows another joint's motion; None: nothing.
+
+    last: the fit with all that was added;  relevant: part of the squares that counts
+    """
+    added, other = rung.added, rung.follows
+    if added is None or other is None:
+        return None
+    models = {j: fit.model for j, fit in last.fits.items()}
+    if any(follows_another(e) for e in models[other].body(other).effects):
+        return None
+    models[added.at] = models[added.at].without_effect(added.effect.name, at=added.at)
+    models[other] = models[other].with_effect(added.effect, at=other)
+    turned = estimate_arm(models, with_other_motions(prepared, {other: added.at}))
+    if turned.check_error**2 > (1.0 + relevant) * last.check_error**2:
+        return None
+    there = Candidate(added.effect, other)
+    return Untold(
+        added,
+        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm, "
+        f"where {100 * last.check_error:.3g} % are left: links can take up what couples both alike",
+    )

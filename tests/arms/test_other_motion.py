@@ -1,0 +1,94 @@
+"""A motor that pushes another joint: which motion acts on a joint, and that none does without."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from arms.arm_simulator import random_arm, write_experiment
+
+import teleopdesign as td
+from teleopdesign.diagnose.answers import load_answer
+from teleopdesign.diagnose.arms.answer import write_arm_answer
+from teleopdesign.diagnose.arms.fit import estimate_arm
+from teleopdesign.diagnose.arms.other_motion import most_coupled, with_other_motions
+from teleopdesign.diagnose.arms.prepared import prepare_arm
+from teleopdesign.diagnose.arms.restored import restore_arm_diagnosis
+from teleopdesign.diagnose.search_plan import QUICK
+from teleopdesign.errors import ExperimentError
+
+SECONDS = 10.0
+AMONG = ("coupling", "spring", "quadratic_drag")
+
+
+def made(place, hidden, joints=3):
+    generator = np.random.default_rng(11)
+    arm = random_arm(generator, joints)
+    return write_experiment(place, arm, generator, hidden, seconds=SECONDS)
+
+
+@pytest.fixture(scope="module")
+def coupled(tmp_path_factory):
+    """The motor of joint 2 pushes joint 1, and joint 1 does not push joint 2."""
+    return made(tmp_path_factory.mktemp("coupled") / "arm", ("coupling", 0, 1.0))
+
+
+def test_the_motion_of_a_joint_stands_beside_another(coupled):
+    prepared = with_other_motions(prepare_arm(td.load_experiment(coupled)), {"joint1": "joint3"})
+    assert prepared.others == {"joint1": "joint3"}
+    for mine, its in zip(
+        prepared.joints["joint1"].stretches, prepared.joints["joint3"].stretches, strict=True
+    ):
+        assert np.array_equal(mine.motion.further["other_acceleration"], its.motion.acceleration)
+        assert "other_position" not in its.motion.further
+
+
+@pytest.mark.slow
+def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
+    experiment = td.load_experiment(coupled)
+    prepared, stated = prepare_arm(experiment), td.Model.from_experiment(experiment)
+    models = {
+        j: td.Model({j: body}, stated.known).with_links(prepared.initial)
+        for j, body in stated.bodies.items()
+    }
+    arm = estimate_arm(models, prepared)
+    records, fit = arm.prepared["joint1"], arm.fits["joint1"]
+    assert most_coupled("joint1", records, fit, prepared) == "joint2"
+    # a log that states what moves beside the joint keeps it
+    with_channel = with_other_motions(prepared, {"joint1": "joint3"})
+    assert most_coupled("joint1", records, fit, with_channel) is None
+
+
+@pytest.mark.slow
+def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupled, tmp_path):
+    experiment = td.load_experiment(coupled)
+    diagnosis = td.find_missing_in_arm(experiment, plan=QUICK, among=AMONG)
+    # at the other joint with the other sign it is the same, for links that nobody knows may couple
+    # the two both ways: that is said
+    (named,) = diagnosis.missing
+    other = {"joint1": "joint2", "joint2": "joint1"}[named.at]
+    assert named.effect.name == "coupling"
+    assert f"coupling at {named.at} by the motion of {other}" in repr(diagnosis)
+    assert f"coupling at {other} by the motion of {named.at} leaves" in repr(diagnosis)
+    path = tmp_path / "answer.json"
+    write_arm_answer(diagnosis, path)
+    content = json.loads(path.read_text())
+    assert content["missing"] == [{"effect": "coupling", "at": named.at, "follows": other}]
+    assert content["other_motion"][named.at] == other
+    again = restore_arm_diagnosis(load_answer(path), experiment)
+    assert again.after.check_error == pytest.approx(diagnosis.after.check_error, rel=1e-6)
+    assert repr(again.rungs[-1].said) == repr(diagnosis.rungs[-1].said)
+    content["other_motion"] = {"joint1": "joint7"}
+    path.write_text(json.dumps(content))
+    with pytest.raises(ExperimentError, match='other_motion: no joint "joint7", has joint1'):
+        restore_arm_diagnosis(load_answer(path), experiment)
+
+
+@pytest.mark.slow
+def test_no_coupling_is_named_where_none_is(tmp_path):
+    diagnosis = td.find_missing_in_arm(
+        td.load_experiment(made(tmp_path / "arm", None)), plan=QUICK, among=("coupling",)
+    )
+    assert diagnosis.verdict == "model_adequate"
+    assert diagnosis.missing == () and len(diagnosis.rungs) == 1
