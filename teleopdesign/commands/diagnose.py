@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError, ModelError
+from ..errors import ModelError
 from ..plain_data import write_beside
 from ._diagnosis import (
     add_search,
@@ -22,7 +23,10 @@ from ._report import write_arm_page, write_page
 
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis, Diagnosis, SimulationComparison
+    from ..diagnose.arms.prepared import PreparedArm
+    from ..diagnose.prepare import Prepared
     from ..measurement import Experiment
+    from ..model import Model
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -61,7 +65,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=float,
         nargs=2,
         metavar=("K", "B"),
-        help="with --simulate: stiffness and damping (SI) of the loop that held the device",
+        help="with --simulate: stiffness and damping (SI) of the loop that held the device, of an "
+        "arm: each joint",
     )
     parser.add_argument(
         "--report", type=Path, metavar="F", help="write a page with everything (.html)"
@@ -127,18 +132,14 @@ def run(options: argparse.Namespace) -> int:
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """The same for an arm."""
-    if options.simulate:
-        raise ExperimentError(
-            "--simulate: not there for an arm, whose joints push each other: `teleopdesign "
-            "export` writes one joint for a simulator"
-        )
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
 
     diagnosis = search_missing(find_missing_in_arm, experiment, options)
     print_diagnosis(diagnosis)
+    simulation = _simulation_of_arm(diagnosis, options)
     if options.json is not None:
-        write_arm_answer(diagnosis, options.json)
+        write_arm_answer(diagnosis, options.json, simulation=simulation)
     if options.predictions is not None:
         write_arm_predictions(diagnosis, options.predictions)
     if options.figure is not None:
@@ -167,12 +168,33 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
     """The final model driven by the recorded command, printed; None: it was not asked for."""
     if not options.simulate:
         return None
-    from ..diagnose import RecordedLoop
     from ..diagnose.by_simulation import compare_by_simulation
+
+    return _simulated(compare_by_simulation, diagnosis.model, diagnosis.prepared, options)
+
+
+def _simulation_of_arm(
+    diagnosis: ArmDiagnosis, options: argparse.Namespace
+) -> SimulationComparison | None:
+    """The same for an arm."""
+    if not options.simulate:
+        return None
+    from ..diagnose.arms.by_simulation import compare_arm_by_simulation
+
+    return _simulated(compare_arm_by_simulation, diagnosis.after.model, diagnosis.prepared, options)
+
+
+def _simulated(
+    compared: Callable[..., SimulationComparison],
+    model: Model,
+    prepared: Prepared | PreparedArm,
+    options: argparse.Namespace,
+) -> SimulationComparison:
+    from ..diagnose import RecordedLoop
 
     loop = None if options.loop is None else RecordedLoop(*options.loop)
     say("simulating the final model")
-    comparison = compare_by_simulation(diagnosis.model, diagnosis.prepared, loop=loop)
+    comparison = compared(model, prepared, loop=loop)
     say("")
     print(f"\n{comparison}")
     return comparison

@@ -13,9 +13,9 @@ reference was.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from .prepare import Prepared, prepare
 from .record_offsets import apply_record_offsets
 from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
 from .threads import map_in_threads
+
+if TYPE_CHECKING:
+    from .arms.prepared import PreparedArm
 
 #: s, horizons after which the model is set back onto the measured motion; then the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
@@ -85,15 +88,15 @@ class SimulationComparison(ByValue):
 
     fit_error, check_error: relative force errors beside it (NaN where there is no such record)
     errors: for each use and body, the shortest horizon first
-    loop: what holds the body; None: nothing does
+    loop: what holds the body, or joint -> what holds that joint of an arm; None: nothing does
     """
 
     model: Model
-    prepared: Prepared
+    prepared: Prepared | PreparedArm
     fit_error: float
     check_error: float
     errors: tuple[HorizonError, ...]
-    loop: RecordedLoop | None = None
+    loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None
 
     def error(self, horizon: float, *, use: str = "check", at: str | None = None) -> HorizonError:
         """The errors of one horizon (s; inf: the whole record); at: default the only body.
@@ -195,7 +198,9 @@ def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
     axes = {place: body.axis for place, body in comparison.model.bodies.items()}
     loop = comparison.loop
     return {
-        "loop": None if loop is None else {"stiffness": loop.stiffness, "damping": loop.damping},
+        "loop": {j: _loop_data(one) for j, one in loop.items()}
+        if isinstance(loop, Mapping)
+        else _loop_data(loop),
         "horizons": [
             {
                 "use": e.use,
@@ -215,6 +220,10 @@ def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
             for e in comparison.errors
         ],
     }
+
+
+def _loop_data(loop: RecordedLoop | None) -> dict[str, float] | None:
+    return None if loop is None else {"stiffness": loop.stiffness, "damping": loop.damping}
 
 
 def _driven_stretches(
@@ -243,17 +252,35 @@ def _error(driven: Sequence[_Driven], use: str, place: str, horizon: float) -> H
     """Errors over one horizon (s), all stretches together."""
     parts = map_in_threads(lambda d: _deviations(d, horizon), driven)
     x, v = (np.concatenate([part[i] for part in parts]) for i in range(2))
-    position = np.concatenate([d.motion.position[d.first : d.end] for d in driven])
-    velocity = np.concatenate([d.motion.velocity[d.first : d.end] for d in driven])
-    by_position, by_velocity = _rms(x), _rms(v)
+    rows = [(d.motion, d.first, d.end) for d in driven]
+    return horizon_error(use, place, horizon, x, v, rows)
+
+
+def horizon_error(
+    use: str,
+    at: str,
+    horizon: float,
+    position: Array,
+    velocity: Array,
+    rows: Sequence[tuple[Motion, int, int]],
+) -> HorizonError:
+    """The errors of a body by what it comes away over one horizon, at all rows together.
+
+    position, velocity: simulated less measured;  rows: motions, the first row that counts, the end
+    """
+    measured = {
+        name: np.concatenate([getattr(m, name)[first:end] for m, first, end in rows])
+        for name in ("position", "velocity")
+    }
+    by_position, by_velocity = _rms(position), _rms(velocity)
     return HorizonError(
         use,
-        place,
+        at,
         horizon,
         by_position,
         by_velocity,
-        by_position / max(float(np.std(position)), 1e-300),
-        by_velocity / max(_rms(velocity), 1e-300),
+        by_position / max(float(np.std(measured["position"])), 1e-300),
+        by_velocity / max(_rms(measured["velocity"]), 1e-300),
     )
 
 

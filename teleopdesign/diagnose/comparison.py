@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -16,6 +17,7 @@ from ..notebook import html_table
 from ..plain_data import write_netcdf
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
+from .arms.by_simulation import compare_arm_by_simulation
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
@@ -82,7 +84,7 @@ def compare(
     experiment: Experiment,
     *,
     by: Literal["simulation"],
-    loop: RecordedLoop | None = None,
+    loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None,
 ) -> SimulationComparison: ...
 
 
@@ -91,19 +93,24 @@ def compare(
     experiment: Experiment,
     *,
     by: Literal["force", "simulation"] = "force",
-    loop: RecordedLoop | None = None,
+    loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None,
     seed: int = 0,
 ) -> Comparison | SimulationComparison:
     """Compare the model with every record of the experiment, without estimation.
 
     by: "force": what the model leaves of the force along the measured motion; "simulation": how far
         the model moves away when the recorded forces drive it
-    loop: of a simulation, the controller that held the device; None: nothing holds the model
+    loop: of a simulation, the controller that held the device, of an arm each joint, or joint ->
+        its controller; None: nothing holds the model
     seed: of the draws for the noise floor
     raises ExperimentError: the experiment lacks what the comparison needs
     raises ModelError: a loop without a simulation, a model that cannot be simulated
     """
     if by == "simulation":
+        if experiment.arm is not None:
+            return compare_arm_by_simulation(model, experiment, loop=loop)
+        if isinstance(loop, Mapping):
+            raise ModelError("compare: a loop for each joint: found an experiment without an arm")
         return compare_by_simulation(model, experiment, loop=loop)
     if loop is not None:
         raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')

@@ -25,6 +25,7 @@ from ..answer import (
 )
 from ..answers.bodies import model_data
 from ..answers.fingerprint import experiment_data
+from ..by_simulation import SimulationComparison, simulation_data
 from ..learnable import learnable_data
 from ..record_offsets import apply_record_offsets
 from ..record_shift import shift_data
@@ -58,6 +59,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         "cannot_tell": [row for d in joints for row in untold_rows(d)],
         "set_aside": [row for d in joints for row in set_aside_rows(d)],
         "record_shift": shifts,
+        "other_motion": dict(diagnosis.prepared.others),
         "model_parameters": _parameters(diagnosis),
         **learnable_data(diagnosis.learnable, None),
         "left_over_noise_floors": make_plain(diagnosis.left),
@@ -74,6 +76,8 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
 def _missing_effects(rung: ArmRung) -> dict[str, str]:
     assert rung.added is not None
     place = place_data(rung.added.key)
+    if rung.follows is not None:
+        place = place | {"follows": rung.follows}
     instead = rung.instead_of
     return place if instead is None else place | {"instead_of": instead.effect.name}
 
@@ -109,9 +113,20 @@ def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
     return rows
 
 
-def write_arm_answer(diagnosis: ArmDiagnosis, path: str | Path) -> None:
-    """Write the answer as JSON, with where its experiment is, as seen from the answer."""
-    write_json(path, with_folder(arm_answer(diagnosis), diagnosis.experiment, path))
+def write_arm_answer(
+    diagnosis: ArmDiagnosis,
+    path: str | Path,
+    *,
+    simulation: SimulationComparison | None = None,
+) -> None:
+    """Write the answer as JSON, with where its experiment is, as seen from the answer.
+
+    simulation: the final model compared by simulation, to be written too
+    """
+    content = with_folder(arm_answer(diagnosis), diagnosis.experiment, path)
+    if simulation is not None:
+        content["simulation"] = simulation_data(simulation)
+    write_json(path, content)
 
 
 def write_arm_predictions(diagnosis: ArmDiagnosis, path: str | Path) -> None:
