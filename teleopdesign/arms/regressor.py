@@ -47,11 +47,11 @@ def force_columns(arm: Chain, position: Array, velocity: Array, acceleration: Ar
     force, moment = (np.stack(x) for x in zip(*map(_link_columns, frames), strict=True))
     columns = np.zeros((len(frames), *force.shape[:3]))
     for j in range(len(frames)):
-        columns[j, j:] = _felt(arm.links[j], frames[j], force[j:], moment[j:])
+        columns[j, j:] = _carried_load(arm.links[j], frames[j], force[j:], moment[j:])
     return columns.reshape(len(frames), -1, position.shape[1])
 
 
-def _felt(link: Link, frame: _Frames, force: Array, moment: Array) -> Array:
+def _carried_load(link: Link, frame: _Frames, force: Array, moment: Array) -> Array:
     """What a joint carries (..., n) of forces and moments about the origin of the base (..., n, 3).
 
     All in the axes of the base;  link, frame: of that joint

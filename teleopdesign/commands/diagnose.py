@@ -170,7 +170,7 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
         return None
     from ..diagnose.by_simulation import compare_by_simulation
 
-    return _simulated(compare_by_simulation, diagnosis.model, diagnosis.prepared, options)
+    return _simulate(compare_by_simulation, diagnosis.model, diagnosis.prepared, options)
 
 
 def _simulation_of_arm(
@@ -181,10 +181,10 @@ def _simulation_of_arm(
         return None
     from ..diagnose.arms.by_simulation import compare_arm_by_simulation
 
-    return _simulated(compare_arm_by_simulation, diagnosis.after.model, diagnosis.prepared, options)
+    return _simulate(compare_arm_by_simulation, diagnosis.after.model, diagnosis.prepared, options)
 
 
-def _simulated(
+def _simulate(
     compared: Callable[..., SimulationComparison],
     model: Model,
     prepared: Prepared | PreparedArm,

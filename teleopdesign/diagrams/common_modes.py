@@ -50,7 +50,7 @@ def with_common_modes(
         return system
     if any(p.degree() > q.degree() for row in ratios for p, q in row):
         return system  # improper: refused entry by entry
-    matrices = _observed(*_by_columns(ratios))
+    matrices = _drop_unobserved(*_realise_columns(ratios))
     if len(matrices[0]) == sum(q.degree() for row in ratios for _, q in row):
         return system  # no state would be less
     if all(_is_decimal(x) for m in matrices for row in m for x in row):
@@ -81,7 +81,7 @@ def _shared_poles(denominators: Sequence[sp.Poly]) -> np.ndarray:
     return np.concatenate([np.empty(0, dtype=complex), *roots])
 
 
-def _by_columns(
+def _realise_columns(
     ratios: Sequence[Sequence[tuple[sp.Poly, sp.Poly]]],
 ) -> tuple[Fractions, Fractions, Fractions, Fractions]:
     """A, B, C, D: for each input the companion form of its column's common denominator."""
@@ -108,7 +108,7 @@ def _by_columns(
     return a, b, c, d
 
 
-def _observed(
+def _drop_unobserved(
     a: Fractions, b: Fractions, c: Fractions, d: Fractions
 ) -> tuple[Fractions, Fractions, Fractions, Fractions]:
     """Without the states that no output shows: in the rows of C, C A, C A^2 .. as coordinates."""

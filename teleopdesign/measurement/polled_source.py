@@ -186,7 +186,7 @@ def _clock_from_position(stamps: Array, x: Array) -> tuple[float, float] | None:
         known, rows = float(np.ptp(stamps[here])), here.stop - here.start
         here = slice(max(0, here.start - rows), min(len(x), here.stop + rows))
         lines = OffNeighbours(stamps[here], x[here]).some(TRIAL)
-        period, phase = _refined(lines, period, phase, 0.25 * period**2 / known)
+        period, phase = _refine(lines, period, phase, 0.25 * period**2 / known)
     explained, slope, error = OffNeighbours(stamps, x).fit(period, phase)
     if explained < EXPLAINED or slope < _SURE * error or not _SPEED[0] < slope < _SPEED[1]:
         return None
@@ -212,12 +212,10 @@ def _in_stretch(lines: OffNeighbours, usual: float) -> tuple[float, float] | Non
         if f / m >= band[0]
     ]
     _, period, phase = min(trials)
-    return _refined(lines.some(TRIAL), period, phase, 0.25 * period**2 / duration)
+    return _refine(lines.some(TRIAL), period, phase, 0.25 * period**2 / duration)
 
 
-def _refined(
-    lines: OffNeighbours, period: float, phase: float, width: float
-) -> tuple[float, float]:
+def _refine(lines: OffNeighbours, period: float, phase: float, width: float) -> tuple[float, float]:
     """The best clock near one;  width: s, by which its period may be wrong."""
     phase += period * round((lines.middle - phase) / period)
     turn = np.linspace(-0.5, 0.5, 9) / 8
@@ -242,7 +240,9 @@ def _best_near(
     )
 
 
-def _clock_from_changes(stamps: Array, new: NDArray[np.bool_], x: Array) -> tuple[float, float] | None:
+def _clock_from_changes(
+    stamps: Array, new: NDArray[np.bool_], x: Array
+) -> tuple[float, float] | None:
     """Period and phase of a source that is read more often than it writes: rows change at ticks."""
     changed = np.flatnonzero(new[1:]) + 1
     if np.mean(new) > OFTEN or len(changed) < FEWEST:

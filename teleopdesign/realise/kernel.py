@@ -207,7 +207,7 @@ def refine_factor(measure: float, bound: float, power: float) -> int:
     return math.ceil(math.pow(measure / bound, 1 / power) * 1.0001)
 
 
-def refined(needed: int, least: int) -> int | None:
+def round_up_steps(needed: int, least: int) -> int | None:
     """Steps a sample on a grid that `FINER` allows, as many as needed or more; None: none is so.
 
     least: steps a sample of the grid that was asked for

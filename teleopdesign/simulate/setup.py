@@ -299,9 +299,9 @@ class Setup:
 
     def _refined(self, needed: int, least: int) -> int:
         """Steps a sample, as many as needed or more; ModelError where those are too many."""
-        from ..realise.kernel import long_step_error, refined
+        from ..realise.kernel import long_step_error, round_up_steps
 
-        inner = refined(needed, least)
+        inner = round_up_steps(needed, least)
         if inner is None:
             raise long_step_error(self.step, self.sampling.period / needed, "is far too long")
         return inner

@@ -109,7 +109,7 @@ def _errors_of(
     models: Mapping[str, Model], prepared: PreparedArm, use: str, answers: Array
 ) -> list[HorizonError]:
     """Errors of all joints on the records of one use, the shortest horizon first."""
-    along = _along(models, prepared, use, answers)
+    along = _follow_stretches(models, prepared, use, answers)
     longest = max((one.length for one in along), default=0.0)
     horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(along)
     parts = [_deviations(one, horizons) for one in along]
@@ -122,7 +122,7 @@ def _errors_of(
     return errors
 
 
-def _along(
+def _follow_stretches(
     models: Mapping[str, Model], prepared: PreparedArm, use: str, answers: Array
 ) -> list[_Along]:
     """The arm along each stretch of one use, each joint as its record has it."""

@@ -109,7 +109,7 @@ def led_arm(
     zeros = {"F_led": lambda t: 0.0 * t, "F": lambda t: 0.0 * t}
     k, row = len(bodies), motions[0].sample_time
     setup = prepare(
-        _wired(present, answers),
+        _wire_led_arm(present, answers),
         duration=row,
         inputs={f"{name}{j + 1}": zero for name, zero in zeros.items() for j in range(k)},
         computer=Sampling(period=row),
@@ -119,7 +119,7 @@ def led_arm(
     return LedArm(links, tuple(motions), setup, answers, np.array(late), wholes)
 
 
-def _wired(bodies: Sequence[Body], answers: Array) -> Diagram:
+def _wire_led_arm(bodies: Sequence[Body], answers: Array) -> Diagram:
     """The bodies on X1, X2 ... with U = F_led - (stiffness + damping s) X, joined by the links."""
     k = len(bodies)
     blocks: list[Block] = []
@@ -267,15 +267,14 @@ def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) 
         for x in (loop.interactions, loop.followed)
     )
     signals = {"F": interaction - force[:, None], "F_led": loop.commands[:, row, None] + followed}
-    memory = first_memory(made, 1, {})
+    memory = first_memory(made, 1, parameters, {})
     memory[: len(state)] = state
     nowhere, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
     with np.errstate(all="ignore"):  # a course that leaves all bounds ends in what is no number
         made.loop.run(
             *grid(made, timing, 1),
             False,
-            parameters,
-            _ordered(layout.inputs, signals),
+            _arrange_signals(layout.inputs, signals),
             np.zeros((0, timing.samples + 1)),
             memory,
             nowhere,
@@ -289,7 +288,7 @@ def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) 
     state[:] = memory[: len(state)]
 
 
-def _ordered(names: Sequence[str], signals: Mapping[str, Array]) -> Array:
+def _arrange_signals(names: Sequence[str], signals: Mapping[str, Array]) -> Array:
     """The signals (k, n) of the joints in the order of the loop's inputs, "F2" that of joint 2."""
     places = [re.fullmatch(r"(\D+)(\d+)", name) for name in names]
     return np.array([signals[at[1]][int(at[2]) - 1] for at in places if at is not None])

@@ -38,7 +38,7 @@ class Joint:
         return max((base - fit_squares(f) for f in fits), default=0.0) / whole
 
 
-def begun(
+def begin_joint(
     name: str, search: LadderSearch, records: Prepared, model: Model, prepared: PreparedArm
 ) -> Joint:
     """A joint whose ladder begins, with what the others say of the links now.

@@ -26,7 +26,7 @@ from ..search_plan import PLAN, SearchPlan
 from .bodies import as_bodies, with_final_bodies
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, link_errors
-from .joint import Joint, begun, others_of, with_known
+from .joint import Joint, begin_joint, others_of, with_known
 from .other_motion import with_other_motions
 from .other_way import untold_way
 from .prepared import PreparedArm, isolate_joint, prepare_arm
@@ -78,7 +78,7 @@ def find_missing_in_arm(
             plan=plan.for_joints(len(prepared.joints)),
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
-        joints[j] = begun(j, search, first.prepared[j], first.fits[j].model, prepared)
+        joints[j] = begin_joint(j, search, first.prepared[j], first.fits[j].model, prepared)
     order = _climb(joints, prepared)
     prepared = with_other_motions(prepared, others_of(joints))
     said("all joints together")
@@ -117,7 +117,7 @@ def _climb(joints: dict[str, Joint], prepared: PreparedArm) -> list[str]:
             records = {n: x.search.prepared for n, x in joints.items()}
             beside = with_other_motions(prepared, others_of(joints))
             fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, beside, j)
-            joints[j] = begun(j, here.search, fresh, here.state.fit.model, prepared)
+            joints[j] = begin_joint(j, here.search, fresh, here.state.fit.model, prepared)
             continue
         astray = _astray(here)
         if astray is not None:
@@ -168,7 +168,7 @@ def _begin_joint_again(
     fresh = with_known(records, {**arm.fits, joint: here.state.fit}, beside, joint)
     late = arm.fits[joint].model.record_shift
     model = here.state.fit.model.with_record_shift(late)
-    return begun(joint, here.search, fresh, model, prepared)
+    return begin_joint(joint, here.search, fresh, model, prepared)
 
 
 def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:

@@ -36,7 +36,7 @@ def restore_arm_diagnosis(
     prepared = prepare_arm(experiment)
     models = _models(saved, experiment, prepared, known)
     prepared = with_bodies_of(models[-1], prepared)
-    prepared = with_other_motions(prepared, _others(saved, prepared))
+    prepared = with_other_motions(prepared, _other_joints(saved, prepared))
     joints = {
         j: restore_diagnosis(
             saved.of_joint(j), isolate_joint(experiment, j), known, records=records
@@ -53,7 +53,7 @@ def restore_arm_diagnosis(
     return ArmDiagnosis(experiment, prepared, saved.verdict, rungs, joints, errors)
 
 
-def _others(saved: SavedAnswer, prepared: PreparedArm) -> dict[str, str]:
+def _other_joints(saved: SavedAnswer, prepared: PreparedArm) -> dict[str, str]:
     """Joint -> the joint whose motion is its channel `other_position`."""
     others: dict[str, str] = saved.content.get("other_motion", {})
     for joint in (*others, *others.values()):

@@ -149,7 +149,7 @@ def state_absolute_stability(c: dict[str, Any]) -> str:
 
 def _is_positive_real(box: SignsOverBox, n: list[Poly], d: Poly) -> bool:
     plus, times = box.algebra.plus, box.algebra.times
-    known = _signed(box, n, d)
+    known = _scale_signs(box, n, d)
     if known is None:
         return False
     n, d, residues = known
@@ -161,14 +161,14 @@ def _is_positive_real(box: SignsOverBox, n: list[Poly], d: Poly) -> bool:
     even, odd = plus(a, c), plus(b, e, -1)
     size = plus(times(even, even), _times_x(times(odd, odd)))
     minor = plus(times(box.algebra.number(4), times(first, second)), size, -1)
-    return _balanced(box, residues) and box.are_non_negative(
+    return _is_balanced(box, residues) and box.are_non_negative(
         [first, second, minor], box.cross(d, d)[0]
     )
 
 
 def _is_absolutely_stable(box: SignsOverBox, n: list[Poly], d: Poly) -> bool:
     plus, times, number = box.algebra.plus, box.algebra.times, box.algebra.number
-    known = _signed(box, n, d)
+    known = _scale_signs(box, n, d)
     if known is None:
         return False
     n, d, residues = known
@@ -176,12 +176,12 @@ def _is_absolutely_stable(box: SignsOverBox, n: list[Poly], d: Poly) -> bool:
     real, odd = box.cross(times(n[1], n[2]), times(d, d))
     a = plus(times(number(2), times(first, second)), real, -1)
     size = plus(times(real, real), _times_x(times(odd, odd)))
-    return _balanced(box, residues) and box.are_non_negative(
+    return _is_balanced(box, residues) and box.are_non_negative(
         [first, second, a, plus(times(a, a), size, -1)], box.cross(d, d)[0]
     )
 
 
-def _balanced(box: SignsOverBox, residues: list[list[Poly]]) -> bool:
+def _is_balanced(box: SignsOverBox, residues: list[list[Poly]]) -> bool:
     """Whether k11, k22 >= 0 and k11 k22 >= k12 k21, all over the box."""
     plus, times = box.algebra.plus, box.algebra.times
     for k11, k12, k21, k22 in residues:
@@ -191,7 +191,7 @@ def _balanced(box: SignsOverBox, residues: list[list[Poly]]) -> bool:
     return True
 
 
-def _signed(
+def _scale_signs(
     box: SignsOverBox, n: list[Poly], d: Poly
 ) -> tuple[list[Poly], Poly, list[list[Poly]]] | None:
     """N and d with d's highest coefficient > 0, and residues at infinity and 0, times a number > 0.

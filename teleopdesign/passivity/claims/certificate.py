@@ -72,16 +72,16 @@ def read_certificate(path: str | Path) -> Certificate:
 
 def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
     """That a matrix of rational functions of s (6x6 at most) is positive real."""
-    rows = [[written(e) for e in row] for row in impedance]
-    return sealed({"kind": "positive real", "title": title, "impedance": rows})
+    rows = [[checker_text(e) for e in row] for row in impedance]
+    return seal({"kind": "positive real", "title": title, "impedance": rows})
 
 
 def absolute_stability_certificate(
     title: str, impedance: Sequence[Sequence[sp.Expr]]
 ) -> Certificate:
     """That a 2x2 matrix of rational functions of s is absolutely stable, residues included."""
-    rows = [[written(e) for e in row] for row in impedance]
-    return sealed({"kind": "absolute stability", "title": title, "impedance": rows})
+    rows = [[checker_text(e) for e in row] for row in impedance]
+    return seal({"kind": "absolute stability", "title": title, "impedance": rows})
 
 
 def storage_certificate(
@@ -123,11 +123,11 @@ def storage_certificate(
         "positive": _text(positive),
         "nonnegative": _text(nonnegative),
         "rates": _text(rates),
-        "supply": written(supply),
-        "storage": written(storage),
+        "supply": checker_text(supply),
+        "storage": checker_text(storage),
         "signs": list(signs),
         "invariant": {
-            n: {"expression": written(h), "rate": written(rate)}
+            n: {"expression": checker_text(h), "rate": checker_text(rate)}
             for n, (h, rate) in invariant.items()
         },
         "proofs": {
@@ -136,7 +136,7 @@ def storage_certificate(
         },
         "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
     }
-    return sealed(content)
+    return seal(content)
 
 
 def _cases(number: int) -> list[str]:
@@ -147,14 +147,14 @@ def _cases(number: int) -> list[str]:
 
 
 def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:
-    return {name: written(e) for name, e in expressions.items()}
+    return {name: checker_text(e) for name, e in expressions.items()}
 
 
 def _terms(terms: Sequence[Term]) -> list[list[object]]:
-    return [[written(w), dict(powers), written(e)] for w, powers, e in terms]
+    return [[checker_text(w), dict(powers), checker_text(e)] for w, powers, e in terms]
 
 
-def written(expression: sp.Expr | int) -> str:
+def checker_text(expression: sp.Expr | int) -> str:
     """Text that the checker reads; ModelError for what is not rational, floats included."""
     e = sp.sympify(expression)
     for part in sp.preorder_traversal(e):
@@ -164,7 +164,7 @@ def written(expression: sp.Expr | int) -> str:
     return str(e)
 
 
-def sealed(content: dict[str, Any]) -> Certificate:
+def seal(content: dict[str, Any]) -> Certificate:
     """With the digest that `checker` expects."""
     text = json.dumps(content, sort_keys=True)
     return Certificate({**content, "digest": hashlib.sha256(text.encode()).hexdigest()})

@@ -119,10 +119,10 @@ def _non_negative(cell: list[Any]) -> Answer:
     (b,) = cell
     if (b >= 0).all():
         return "yes"
-    return "no" if min(_at_corners(b)) < 0 else "halve"
+    return "no" if min(_corner_values(b)) < 0 else "halve"
 
 
-def _at_corners(b: Any) -> list[int]:
+def _corner_values(b: Any) -> list[int]:
     """Values at all corners of the cell: there the coefficients are values."""
     return [b[at] for at in product(*((0, n - 1) for n in b.shape))]
 
@@ -134,7 +134,7 @@ def _is_apart_from_zero(cell: list[Any]) -> Answer:
     if all(b[(0,) * b.ndim] == 0 for b in cell):
         return "no"
     if len(cell) == 1:  # between corners of either sign it is zero somewhere
-        at_corners = _at_corners(cell[0])
+        at_corners = _corner_values(cell[0])
         return "halve" if min(at_corners) > 0 or max(at_corners) < 0 else "no"
     if len(cell) == 2:
         near = [_round_coefficients(b) for b in cell]

@@ -8,7 +8,7 @@ from functools import reduce
 import sympy as sp
 
 from ..checker.effort import NAMES
-from ..claims.certificate import Certificate, sealed, written
+from ..claims.certificate import Certificate, checker_text, seal
 from .box import ValueBox
 from .conditions import Conditions, size_of
 
@@ -26,8 +26,8 @@ def stability_certificate(
 
     raises ModelError: the checker does not accept it
     """
-    fields: dict[str, object] = {"polynomial": _text(polynomial.as_expr(), _renamed(ask, box))}
-    return _accepted(ask, box, "stable over a box", title, fields)
+    fields: dict[str, object] = {"polynomial": _text(polynomial.as_expr(), _plain_names(ask, box))}
+    return _certify(ask, box, "stable over a box", title, fields)
 
 
 def impedance_certificate(
@@ -40,7 +40,7 @@ def impedance_certificate(
     parts = [tuple(map(ask.poly, sp.fraction(sp.cancel(e)))) for e in z]
     d = reduce(sp.lcm, (q for _, q in parts))
     n = [p * sp.quo(d, q) for p, q in parts]
-    names, size = _renamed(ask, box), z.shape[0]
+    names, size = _plain_names(ask, box), z.shape[0]
     rows = [n[i * size : (i + 1) * size] for i in range(size)]
     fields: dict[str, object] = {
         "numerators": [[_text(e.as_expr(), names) for e in row] for row in rows],
@@ -48,17 +48,17 @@ def impedance_certificate(
     }
     if claim == "passive":
         fields["scale"] = str(size_of(ask.middle(n[0]), ask.middle(d)))
-    return _accepted(ask, box, KINDS[claim], title, fields)
+    return _certify(ask, box, KINDS[claim], title, fields)
 
 
-def _accepted(
+def _certify(
     ask: Conditions,
     box: ValueBox,
     kind: str,
     title: str,
     fields: dict[str, object],
 ) -> Certificate:
-    names = _renamed(ask, box)
+    names = _plain_names(ask, box)
     ends = zip(names.values(), box.exact, strict=True)
     content = {
         "kind": kind,
@@ -67,12 +67,12 @@ def _accepted(
         "squares": [_text(p.as_expr(), names) for p in ask.effort.squares],
         **fields,
     }
-    made = sealed(content)
+    made = seal(content)
     made.check()
     return made
 
 
-def _renamed(ask: Conditions, box: ValueBox) -> dict[sp.Symbol, sp.Symbol]:
+def _plain_names(ask: Conditions, box: ValueBox) -> dict[sp.Symbol, sp.Symbol]:
     """Plain names for values: "Z_M.inertia" is Z_M_inertia where no other one is."""
     plain = [
         re.sub(r"_+", "_", re.sub(r"\W", "_", n, flags=re.ASCII)).strip("_") for n in box.names
@@ -84,4 +84,4 @@ def _renamed(ask: Conditions, box: ValueBox) -> dict[sp.Symbol, sp.Symbol]:
 
 
 def _text(expression: sp.Expr, names: dict[sp.Symbol, sp.Symbol]) -> str:
-    return written(expression.xreplace(names))
+    return checker_text(expression.xreplace(names))

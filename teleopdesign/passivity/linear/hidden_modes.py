@@ -61,7 +61,7 @@ def growth_within(diagram: Diagram) -> float | None:
     diagram: with values, linear
     raises ModelError: no force from outside drives a body
     """
-    at, diagram = ports(diagram), with_shared_states(with_tips(_at_once(diagram)))
+    at, diagram = ports(diagram), with_shared_states(with_tips(_drop_zero_delays(diagram)))
     linear = linear_blocks(diagram)
     values = symbol_values(linear)
     forms = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
@@ -238,7 +238,7 @@ def controllers_grow(diagram: Diagram) -> bool:
     )
 
 
-def _at_once(diagram: Diagram) -> Diagram:
+def _drop_zero_delays(diagram: Diagram) -> Diagram:
     """The diagram with gains of 1 in the place of dead times of 0."""
     return _with_gains(diagram, 1.0, lambda stage: stage.value_of("dead_time") == 0)
 
