@@ -104,11 +104,11 @@ THEOREM = Theorem(
 
 ASK = """
 from teleopdesign import Body, EFFECTS
-from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.theorems import Question, settle
 
 body = Body("prismatic", {"inertia": 0.15}).with_effect(EFFECTS["coulomb"], {"level": 0.5})
-print(*[one.topic for one in settle(Question(identified(body)), simulated=False)])
+print(*[one.topic for one in settle(Question(identify_device(body)), simulated=False)])
 """
 
 

@@ -58,7 +58,7 @@ def _relative(
     parts: Sequence[tuple[Traced, Traced | None]],
     parameters: int,
 ) -> list[tuple[Array, Array]]:
-    """Residuals and tangents at the scale of the measured force, from those of `_residual_along`."""
+    """Residuals and tangents at the scale of the measured force, by `_residual_along`."""
     scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
     for place in _bodies_that_lose_force(model):
         moving = {

@@ -115,9 +115,9 @@ def test_the_checker_is_one_folder_that_imports_only_the_standard_library(file):
 
 
 def test_the_checker_is_short_enough_to_be_read_whole():
-    """1400 lines in files of at most 300, each a concept with its proof."""
+    """1900 lines in files of at most 300, each a concept with its proof."""
     lengths = [len(file.read_text().splitlines()) for file in FOLDER.glob("*.py")]
-    assert sum(lengths) <= 1400 and max(lengths) <= 300
+    assert sum(lengths) <= 1900 and max(lengths) <= 300
 
 
 def test_every_proof_has_certificates_that_the_checker_accepts(certificates):

@@ -21,8 +21,9 @@ posix = pytest.mark.skipif(not Path("/proc").is_dir(), reason="modes and devices
 KERNEL = """
 import numpy as np
 from teleopdesign.measurement import zero_phase
-from teleopdesign.realise.compiled import compiled
-f = compiled("from numba import njit\\n@njit(cache=True)\\ndef f(x):\\n    return 2 * x\\n", "f")
+from teleopdesign.realise.compiled import compile_source
+source = "from numba import njit\\n@njit(cache=True)\\ndef f(x):\\n    return 2 * x\\n"
+f = compile_source(source, "f")
 sos, state = zero_phase.sections(20.0, 1e-3)
 y = np.ones((50, 1))
 zero_phase.one_way(y, sos, state, False)
