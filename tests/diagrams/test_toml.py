@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 from diagrams.random_diagrams import diagrams
 from diagrams.several_axes import two_armed_teleoperator, two_rods
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 
 from teleopdesign.blocks import CONTACT
 from teleopdesign.cli import main
@@ -140,7 +140,13 @@ def reading(tmp_path):
 @given(diagram=diagrams(geometry=True))
 def test_what_is_written_is_read_as_the_same_diagram(tmp_path_factory, diagram):
     file = tmp_path_factory.getbasetemp() / "random.toml"
-    write_diagram(diagram, file)
+    try:
+        write_diagram(diagram, file)
+    except (
+        ModelError
+    ) as error:  # such as 1/(3 (pi - 0.785)), whose factors are read in another order
+        assert "has no form in a file" in str(error)
+        assume(False)
     assert read_diagram(file) == diagram
 
 
