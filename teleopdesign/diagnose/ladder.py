@@ -87,7 +87,9 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         return straighten(search, state)
     added = add(search, state)
     if added is not None:
-        return remove(search, added) or added
+        fewer = remove(search, added)
+        # two effects that each make the other one superfluous would take turns
+        return added if fewer is None or fewer.effects in state.visited else fewer
     if (straight := straighten(search, state)) is not None:
         return straight
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):

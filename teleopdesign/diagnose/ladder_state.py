@@ -86,6 +86,8 @@ class LadderState:
         none of them is replaced again, so that two effects cannot take turns
     set_aside: effects that were accepted and are not there by the errors that the answer would
         state: none of them is added again
+    visited: sets of effects that the models of earlier states had: a ladder that came back to one
+        would go round for ever
     """
 
     rungs: tuple[Rung, ...]
@@ -99,6 +101,12 @@ class LadderState:
     straightened: bool = False
     came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
+    visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
+
+    @property
+    def effects(self) -> frozenset[tuple[str, str]]:
+        """Effects of the last rung's model, with their places."""
+        return frozenset(self.fit.model.effects)
 
     @property
     def fit(self) -> Fit:
@@ -180,6 +188,7 @@ def look(
     )
     if before is None:
         return LadderState(rungs, floors, first, ranking, tone, supported)
-    return replace(
+    state = replace(
         before, rungs=rungs, floors=floors, ranking=ranking, tone=tone, supported=supported
     )
+    return replace(state, visited=before.visited | {state.effects})

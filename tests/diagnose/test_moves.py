@@ -1,12 +1,14 @@
 """Each move of the ladder alone: what it leads to, and when it is none."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from diagnose.made_records import jittered
 from diagnose.own_cases import write_own
 
 from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose import ladder as climbing
 from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import remove_doubtful_rung
@@ -168,3 +170,30 @@ def test_what_only_weakens_the_jitter_of_a_clock_goes_when_the_missing_effect_is
     assert state.floor.jitters
     state = with_effects(search, state, "transmission_compliance", "quadratic_drag")
     assert added(remove(search, state)) == ["quadratic_drag"]
+
+
+def test_two_effects_that_make_each_other_superfluous_do_not_take_turns(monkeypatch):
+    """A third is added, and one of the others goes: only to a set that was not there yet."""
+
+    def state_of(effects, visited):
+        return SimpleNamespace(effects=frozenset(effects), visited=visited, step=len(effects) + 1)
+
+    def add_missing(_, state):
+        missing = min({"a", "b", "c"} - state.effects, default=None)
+        return missing and state_of(state.effects | {missing}, state.visited)
+
+    def remove_older(_, state):
+        newest = {frozenset("abc"): {"a": "b", "b": "a"}}.get(state.effects, {})
+        gone = newest.get(min(state.effects - before))
+        return gone and state_of(state.effects - {gone}, state.visited)
+
+    monkeypatch.setattr(climbing, "add", add_missing)
+    monkeypatch.setattr(climbing, "remove", remove_older)
+    search = SimpleNamespace(plan=SimpleNamespace(most_effects=5))
+    sets, visited = [frozenset("bc")], frozenset({frozenset("bc")})
+    while len(sets[-1]) < 3:
+        before = sets[-1]
+        sets.append(climbing.make_next_move(search, state_of(before, visited)).effects)
+        visited |= {sets[-1]}
+        assert len(sets) < 5
+    assert sets == [frozenset("bc"), frozenset("ac"), frozenset("abc")]
