@@ -181,49 +181,19 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
     """
     models = [model]
     for name, place in model.absent:
-        effect = model.body(place).effect(name)
+        parameters = model.body(place).effect(name).parameters
         free = [
             n
-            for n, p in effect.parameters.items()
+            for n, p in parameters.items()
             if p.search.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
         ]
-        grid = [
-            values
-            for sizes in _sizes(effect, model, place, scale)
-            for values in product(*(_starts(effect, n, sizes) for n in free))
+        grids = [
+            [m * scale[parameters[n].scale] for m in parameters[n].search.starts] for n in free
         ]
         names = [f"{place}.{name}.{n}" for n in free]
         models = [
-            m.with_values(dict(zip(names, values, strict=True))) for m in models for values in grid
+            m.with_values(dict(zip(names, values, strict=True)))
+            for m in models
+            for values in product(*grids)
         ]
     return models
-
-
-def _starts(effect: Effect, name: str, scale: dict[str, float]) -> list[float]:
-    """Starting values of a parameter, in SI."""
-    parameter = effect.parameters[name]
-    return [m * scale[parameter.scale] for m in parameter.search.starts]
-
-
-def _sizes(
-    effect: Effect, model: Model, place: str, scale: dict[str, float]
-) -> list[dict[str, float]]:
-    """The record's sizes; of a structure that starts with too large a tip, the body's as well.
-
-    Where friction takes most of the force, force over acceleration is many times the inertia: from
-    a tip of that size, which is no part of the body, no fit comes back.
-    """
-    if effect.role != "structure":
-        return [scale]
-    whole = model.parameters[f"{place}.inertia"].value
-    tips = [
-        tip
-        for n, p in effect.parameters.items()
-        if p.quantity == "inertia"
-        for tip in _starts(effect, n, scale)
-    ]
-    if not 0.0 < whole <= max(tips, default=0.0):
-        return [scale]
-    part = whole / scale["inertia"]
-    of_inertia = ("inertia", "resonance_stiffness", "resonance_damping")
-    return [scale, {**scale, **{n: part * scale[n] for n in of_inertia}}]

@@ -28,8 +28,7 @@ def channels(effect: Effect) -> frozenset[str]:
 @lru_cache(maxsize=256)
 def strength(effect: Effect) -> str | None:
     """Parameter in which the law is linear and that is zero where the effect is absent; or None."""
-    # friction of a hidden tip changes the tip's course: no force is proportional to it
-    if len(effect.absent) != 1 or effect.states or effect.role == "tip_level":
+    if len(effect.absent) != 1 or effect.states:
         return None
     ((name, value),) = effect.absent.items()
     linear = sp.diff(effect.expression(), effect.symbols()[name], 2) == 0

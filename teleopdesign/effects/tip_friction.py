@@ -40,9 +40,7 @@ EFFECT = Effect(
     law=law,
     parameters={
         "level": Parameter(
-            "force",
-            "F_t: friction force while the tip slides",
-            search=FitSearch(starts=(0.03, 0.1, 0.3)),
+            "force", "F_t: friction force while the tip slides", search=FitSearch(starts=(0.1,))
         )
     },
     absent={"level": 0.0},

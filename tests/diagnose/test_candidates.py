@@ -161,19 +161,6 @@ def test_a_search_starts_within_bounds_at_every_combination(name, model, prepare
             assert declared.lower <= value <= declared.upper
 
 
-@pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.role == "structure"))
-def test_a_tip_starts_as_a_part_of_a_body_whose_friction_takes_most_of_the_force(
-    name, model, prepared
-):
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    light = model.with_values({"device.inertia": 0.1 * unit["inertia"]}).with_effect(name)
-    heavy = model.with_values({"device.inertia": 10 * unit["inertia"]}).with_effect(name)
-    tip = f"device.{name}.tip_inertia"
-    parts = {m.parameters[tip].value / (0.1 * unit["inertia"]) for m in make_starts(light, unit)}
-    assert any(part < 1 for part in parts)
-    assert len(make_starts(light, unit)) == 2 * len(make_starts(heavy, unit))
-
-
 def test_scales_are_those_of_the_record(prepared):
     motions = [s.motion for s in prepared.of("fit")]
     unit = scales(motions, prepared.bandwidth)

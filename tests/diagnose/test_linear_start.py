@@ -70,8 +70,6 @@ def test_a_fine_period_is_found_among_a_hundred(cogged, base):
         ("actuation_delay", None, None),
         ("presliding", None, None),
         ("contact_hardening", None, None),
-        # the tip that it holds takes another course: no force is proportional to it
-        ("tip_friction", None, None),
     ],
 )
 def test_a_strength_is_what_the_law_is_linear_in(name, strength, phase):

@@ -84,7 +84,7 @@ STARTS = {
     "presliding.stiffness": (3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4),
     "shear_thinning.exponent": (0.25, 0.5, 0.75),
     "stribeck.stribeck_velocity": (0.02, 0.1, 0.5),
-    "tip_friction.level": (0.03, 0.1, 0.3),
+    "tip_friction.level": (0.1,),
     "torque_ripple.amplitude": (0.05,),
     "torque_ripple.period": WAVES,
     "torque_ripple.phase": (0.0,),
@@ -189,6 +189,7 @@ def test_what_depends_on_the_place_and_on_time_is_that_of_the_physics(name):
 
 #: the parameter that a law is proportional to, where no hidden state depends on it
 STRENGTH = {
+    "tip_friction": "level",
     "added_inertia": "inertia",
     "bias": "force",
     "contact_damping": "damping",
