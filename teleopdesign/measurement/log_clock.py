@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ..errors import ExperimentError, quote
 from .channel import Channel
-from .polled_source import polled_source, reading_of_source
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock, counted_time, segments_of
 from .repeated_rows import repeated_rows
@@ -60,10 +59,9 @@ def clock_of_log(
         stamps = columns.values[channels["time"].column] * (to_seconds or 1.0)
         where = f"{name}: channels.time"
     labels = _labels(columns, channels, name)
-    may_poll = sample_rate is None and labels is None
-    rows, stamps, left_out = _used_rows(
-        columns, channels, on_this_clock, filled, stamps, file, may_poll=may_poll
-    )
+    again = _mark_repeated(columns, channels, on_this_clock, filled) & _later(stamps)
+    rows = np.flatnonzero(filled & ~again)
+    stamps = stamps[rows]
     steps: list[ReadingStep] = []
     if len(stamps) and abs(stamps[0]) > DATE:
         stamps = stamps - stamps[0]
@@ -86,7 +84,16 @@ def clock_of_log(
                 f"{100 * empty / len(filled):.2g} % of the rows",
             )
         )
-    return LogClock(clock, stamped), steps + left_out + _order(clock, file, len(filled)) + more
+    if again.any():
+        steps.append(
+            ReadingStep(
+                file,
+                f"{count_of(int(again.sum()), 'row')} the same as the one before",
+                "read as lost",
+                f"{100 * float(again.mean()):.2g} % of the rows",
+            )
+        )
+    return LogClock(clock, stamped), steps + _order(clock, file, len(filled)) + more
 
 
 def _filled_rows(
@@ -137,49 +144,6 @@ def _mark_repeated(
     if every and filled.any():
         repeated[filled] = repeated_rows(every, of("position"), of("interaction_force"))
     return repeated
-
-
-def _used_rows(
-    columns: LogColumns,
-    channels: Mapping[str, Channel],
-    on_this_clock: set[str],
-    filled: NDArray[np.bool_],
-    stamps: Array,
-    file: str,
-    *,
-    may_poll: bool,
-) -> tuple[NDArray[np.intp], Array, list[ReadingStep]]:
-    """Rows (m,) that are readings of their own instant, when each was taken, and what is said.
-
-    stamps: s, of every row of the log;  may_poll: the rows may hold the last state of a source
-    """
-    rows = np.flatnonzero(filled)
-    if may_poll:
-        same = _repeats(columns, channels, rows, on_this_clock)
-        source = polled_source(stamps[rows], same, _positions(columns, channels, rows))
-        if source is not None:
-            first = np.diff(source.ticks, prepend=source.ticks[0] - 1) > 0
-            return rows[first], source.instants[first], [reading_of_source(source, first, file)]
-    again = _mark_repeated(columns, channels, on_this_clock, filled) & _later(stamps)
-    rows = np.flatnonzero(filled & ~again)
-    if not again.any():
-        return rows, stamps[rows], []
-    text = f"{count_of(int(again.sum()), 'row')} the same as the one before"
-    effect = f"{100 * float(again.mean()):.2g} % of the rows"
-    return rows, stamps[rows], [ReadingStep(file, text, "read as lost", effect)]
-
-
-def _positions(
-    columns: LogColumns, channels: Mapping[str, Channel], rows: NDArray[np.intp]
-) -> list[Array]:
-    """The positions (m,) that are in the rows of this clock."""
-    return [
-        columns.values[column][rows]
-        for channel in channels.values()
-        if channel.quantity == "position"
-        for column in channel.columns
-        if column not in columns.stamps
-    ]
 
 
 def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> Array | None:
@@ -243,7 +207,14 @@ def _stamps(
     h = clock.sample_time
     if clock.counted or clock.jitter <= EVEN * h:
         return False, []
-    positions = _positions(columns, channels, clock.rows)
+    named = [
+        column
+        for channel in channels.values()
+        if channel.quantity == "position"
+        for column in channel.columns
+        if column not in columns.stamps
+    ]
+    positions = [columns.values[c][clock.rows] for c in named]
     if math.isinf(clock.jitter):
         steps = np.diff(clock.stamps) / h
         text = f"uneven stamps, steps of {steps.min():.2g} to {steps.max():.2g} times {h:.3g} s"
