@@ -70,7 +70,7 @@ def _(BackgroundTask, Workbench, among, choice, files, folder, mo, set_note, set
         if choice.value is None:
             set_note("choose an experiment first")
             return
-        path = files.inside(folder, choice.value)
+        path = files.resolve_inside(folder, choice.value)
         set_note("")
         set_task(
             BackgroundTask(
@@ -151,7 +151,7 @@ def _(choice, folder, mo, names, open_button, views):
     mo.vstack(
         [
             mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
-            views.beside(choice, open_button)
+            views.place_side_by_side(choice, open_button)
             if names
             else mo.md("No experiment here yet. Bring a log of your own:"),
         ]
@@ -188,7 +188,7 @@ def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task, views):
         shown = mo.md("")
     else:
         pulse.value  # noqa: B018 - the cell runs again at each of its beats
-        shown = views.beside(mo.md(f"**{task.name}** … {task.progress}"), cancel, pulse)
+        shown = views.place_side_by_side(mo.md(f"**{task.name}** … {task.progress}"), cancel, pulse)
     shown  # noqa: B018 - a cell shows its last line
     return
 
