@@ -185,7 +185,7 @@ def _simulation_of_arm(
 
 
 def _simulate(
-    compared: Callable[..., SimulationComparison],
+    compare: Callable[..., SimulationComparison],
     model: Model,
     prepared: Prepared | PreparedArm,
     options: argparse.Namespace,
@@ -194,7 +194,7 @@ def _simulate(
 
     loop = None if options.loop is None else RecordedLoop(*options.loop)
     say("simulating the final model")
-    comparison = compared(model, prepared, loop=loop)
+    comparison = compare(model, prepared, loop=loop)
     say("")
     print(f"\n{comparison}")
     return comparison

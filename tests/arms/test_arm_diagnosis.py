@@ -9,13 +9,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from arms.arm_simulator import random_arm, write_experiment
+from arms.stated_models import stated_models
 from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
 from teleopdesign.commands.diagnose import _suggest_for_joints
 from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
-from teleopdesign.diagnose.arms.prepared import PreparedArm, prepare_arm
+from teleopdesign.diagnose.arms.prepared import PreparedArm
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.shared_links import Knowledge
 from teleopdesign.measurement.filtering import Array
@@ -25,11 +26,7 @@ from teleopdesign.measurement.zero_phase import zero_phase
 def fitted(folder) -> tuple[PreparedArm, ArmFit]:
     """The model of an experiment on an arm, estimated."""
     experiment = td.load_experiment(folder)
-    prepared, model = prepare_arm(experiment), td.Model.from_experiment(experiment)
-    models = {
-        j: td.Model({j: body}, model.known).with_links(prepared.initial)
-        for j, body in model.bodies.items()
-    }
+    prepared, models = stated_models(experiment)
     return prepared, estimate_arm(models, prepared)
 
 

@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from arms.arm_simulator import random_arm, write_experiment
+from arms.stated_models import stated_models
 
 import teleopdesign as td
 from teleopdesign.cli import main
@@ -52,11 +53,7 @@ def answer(folder) -> Path:
 
 def test_two_rounds_settle_links_that_a_missing_effect_had_led_astray(folder):
     experiment = td.load_experiment(folder)
-    prepared, stated = prepare_arm(experiment), td.Model.from_experiment(experiment)
-    models = {
-        j: td.Model({j: body}, stated.known).with_links(prepared.initial)
-        for j, body in stated.bodies.items()
-    }
+    prepared, models = stated_models(experiment)
     astray = estimate_arm(models, prepared)
     assert max(astray.fit_errors.values()) > 0.03
     models = {j: f.model for j, f in astray.fits.items()}

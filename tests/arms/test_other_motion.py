@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 from arms.arm_simulator import random_arm, write_experiment
+from arms.stated_models import stated_models
 
 import teleopdesign as td
 from teleopdesign.diagnose.answers import load_answer
@@ -47,11 +48,7 @@ def test_the_motion_of_a_joint_stands_beside_another(coupled):
 @pytest.mark.slow
 def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
     experiment = td.load_experiment(coupled)
-    prepared, stated = prepare_arm(experiment), td.Model.from_experiment(experiment)
-    models = {
-        j: td.Model({j: body}, stated.known).with_links(prepared.initial)
-        for j, body in stated.bodies.items()
-    }
+    prepared, models = stated_models(experiment)
     arm = estimate_arm(models, prepared)
     records, fit = arm.prepared["joint1"], arm.fits["joint1"]
     assert most_coupled("joint1", records, fit, prepared) == "joint2"
