@@ -53,6 +53,10 @@ class Criteria:
     #: standard errors by which a parameter that makes an effect what it is must differ from zero.
     #: Lower: a gap is named that noise alone asks for; higher: a small one is missed
     surely: float = 5.0
+    #: times its value, and part of it, at which such a parameter must leave more (by `close`), all
+    #: others fitted again. Four: where the squares are a parabola, a quarter of what is `surely`
+    #: there is 3.75 standard errors off. Higher: any gap is named; lower: a coarse one is not
+    times: float = 4.0
     #: part of the squares that one linear step must promise, from which a start is worth a step.
     #: Higher: faster, and effects that are linear in no strength are missed
     worth: float = 0.01

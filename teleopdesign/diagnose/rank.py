@@ -22,6 +22,7 @@ from .ranking import Ranked, Ranking
 from .search import base_of, estimate_from_starts, from_stated
 from .search_plan import PLAN
 from .threads import map_in_threads
+from .width import OpenWidths
 
 
 def _is_part_of(small: Candidate, large: Candidate) -> bool:
@@ -73,7 +74,7 @@ def _contenders_refined(
     prepared: Prepared,
     *,
     stated: Model | None,
-    criteria: Criteria,
+    widths: OpenWidths,
 ) -> list[tuple[Candidate, Fit]]:
     """The attempts with fine fits of those that contend.
 
@@ -81,7 +82,7 @@ def _contenders_refined(
     """
     attempts, refined = list(attempts), set[int]()
     for contending in (PLAN.leading, PLAN.contending):
-        most = (1.0 + contending) * _least_squares_that_count(attempts, base, prepared, criteria)
+        most = (1.0 + contending) * _least_squares_that_count(attempts, base, widths)
         chosen = [
             i
             for i, (_, fit) in enumerate(attempts)
@@ -97,22 +98,24 @@ def _contenders_refined(
 
 
 def _least_squares_that_count(
-    attempts: Collection[tuple[Candidate, Fit]], base: Fit, prepared: Prepared, criteria: Criteria
+    attempts: Collection[tuple[Candidate, Fit]], base: Fit, widths: OpenWidths
 ) -> float:
     """Least squares of an attempt that counts; all do where none counts.
 
     One that is refused, is not identifiable, deserves no name or leaves more unseen is no measure
     of what others must reach.
     """
-    counted = [
-        fit
-        for candidate, fit in attempts
-        if not refusal(base, fit, criteria=criteria)
-        and is_identifiable(fit, base, criteria=criteria)
-        and check_squares(fit) < check_squares(base)
-        and not _implausible(base, candidate, fit, prepared)
-    ]
-    return min(map(fit_squares, counted or [f for _, f in attempts]), default=0.0)
+    criteria = widths.criteria
+    for candidate, fit in sorted(attempts, key=lambda attempt: fit_squares(attempt[1])):
+        if (
+            not refusal(base, fit, criteria=criteria)
+            and is_identifiable(fit, base, criteria=criteria)
+            and check_squares(fit) < check_squares(base)
+            and not _implausible(base, candidate, fit, widths.prepared)
+            and not widths.explain(fit, candidate)
+        ):
+            return fit_squares(fit)
+    return min((fit_squares(f) for _, f in attempts), default=0.0)
 
 
 def rank_candidates(
@@ -159,8 +162,9 @@ def rank_candidates(
     fits.sort(key=lambda cf: possible.index(cf[0]))
     fits = map_in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
     worthless = (1.0 - worth) * fit_squares(base)
-    fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, criteria=criteria)
-    results = map_in_threads(lambda cf: _ranked_best(base, cf, prepared, criteria), fits)
+    widths = OpenWidths(prepared, criteria)
+    fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, widths=widths)
+    results = map_in_threads(lambda cf: _ranked_best(base, cf, widths), fits)
     ordered = sorted(results, key=rank_key)
     entries = [
         replace(r, behind=whole_score(r.fit, ordered[0].fit) if i else 0.0)
@@ -177,11 +181,17 @@ def make_ranked(
     prepared: Prepared,
     instead_of: Candidate | None = None,
     criteria: Criteria = CRITERIA,
+    widths: OpenWidths | None = None,
 ) -> Ranked:
     """A candidate that was fitted on top of a base, as the first of a ranking.
 
     instead_of: effect of the base that the fitted model lacks
+    widths: asked of a candidate that gains enough to matter; None: none is asked
     """
+    implausible = _implausible(base, candidate, fit, prepared)
+    gains = check_squares(fit) < (1.0 - criteria.relevant) * check_squares(base)
+    if widths is not None and gains and not implausible:
+        implausible = widths.explain(fit, candidate)
     return Ranked(
         candidate=candidate,
         fit=fit,
@@ -189,7 +199,7 @@ def make_ranked(
         behind=0.0,
         is_identifiable=is_identifiable(fit, base, criteria=criteria),
         refused=refusal(base, fit, criteria=criteria),
-        implausible=_implausible(base, candidate, fit, prepared),
+        implausible=implausible,
         instead_of=instead_of,
     )
 
@@ -209,12 +219,11 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     return f"beside it {new[0]}" if new else ""
 
 
-def _ranked_best(
-    base: Fit, fitted: tuple[Candidate, Fit], prepared: Prepared, criteria: Criteria
-) -> Ranked:
+def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:
     """The candidate beside the base, or in the place of an effect that it makes superfluous."""
     candidate, fit = fitted
-    beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria)
+    prepared, criteria = widths.prepared, widths.criteria
+    beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria, widths=widths)
     gains = check_squares(fit) < (1.0 - criteria.relevant) * check_squares(base)
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
@@ -230,5 +239,11 @@ def _ranked_best(
     if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(fit):
         return beside
     return make_ranked(
-        base, candidate, alone, prepared=prepared, instead_of=superfluous, criteria=criteria
+        base,
+        candidate,
+        alone,
+        prepared=prepared,
+        instead_of=superfluous,
+        criteria=criteria,
+        widths=widths,
     )

@@ -31,7 +31,8 @@ class FitSearch:
         travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
     within: upper bound in that scale, where a larger value would mean something else
     chosen: set at the first start and not estimated: other parameters are relative to this one
-    essential: must be surely more than zero, for at zero the effect would be another one
+    essential: must be surely more than zero, for at zero the effect would be another one; and other
+        values of it must leave more, all else fitted again
     """
 
     starts: tuple[float, ...] = (0.01, 0.1)

@@ -1,0 +1,64 @@
+"""Whether records determine what an effect cannot be without, such as the width of a gap.
+
+A tip that knocks against its gap meets it at moments that depend on all that was before: the
+squares go up and down with the width. A standard error is the slope within one dent of them, and
+knows nothing of the next dent. So the parameter is held at other values, and the rest fitted again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from ..quantity import unit_after_number
+from .candidates import Candidate
+from .criteria import CRITERIA, Criteria
+from .effort import EFFORTS
+from .evidence import whole_score
+from .fit import Fit, estimate
+from .prepare import Prepared
+
+
+def explain_open_width(
+    fit: Fit, candidate: Candidate, prepared: Prepared, *, criteria: Criteria = CRITERIA
+) -> str:
+    """Which other value of an essential parameter leaves as little, as a sentence; "": none does.
+
+    Each is held at a part and at a multiple of its value (`Criteria.times`), the others are fitted
+    again from where they are.
+    """
+    for name, declared in candidate.effect.parameters.items():
+        full = f"{candidate.at}.{candidate.effect.name}.{name}"
+        if not declared.search.essential or full not in fit.free:
+            continue
+        best = fit.model.parameters[full]
+        for other in (best.value / criteria.times, best.value * criteria.times):
+            if not declared.lower <= other <= declared.upper:
+                continue
+            held = fit.model.with_values({full: replace(best, value=other, fixed=True)})
+            again = estimate(held, prepared, effort=EFFORTS.rough)
+            if whole_score(again, fit) < criteria.close:
+                unit = unit_after_number(fit.model.unit(full))
+                return (
+                    f"{name} = {other:.3g}{unit} leaves as little as {best.value:.3g}{unit}: these "
+                    "records do not determine it"
+                )
+    return ""
+
+
+@dataclass(frozen=True)
+class OpenWidths:
+    """What `explain_open_width` said of the fits of one ranking; each is asked once."""
+
+    prepared: Prepared
+    criteria: Criteria = CRITERIA
+    #: by the fit's identity, which holds while the fit stands beside it
+    known: dict[int, tuple[Fit, str]] = field(default_factory=dict)
+
+    def explain(self, fit: Fit, candidate: Candidate) -> str:
+        """What is said of that fit; "" where the records determine what is essential."""
+        if not any(p.search.essential for p in candidate.effect.parameters.values()):
+            return ""
+        if id(fit) not in self.known:
+            said = explain_open_width(fit, candidate, self.prepared, criteria=self.criteria)
+            self.known[id(fit)] = (fit, said)
+        return self.known[id(fit)][1]

@@ -1,0 +1,87 @@
+"""What an effect cannot be without is determined only where other values of it leave more."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+from diagnose.made_records import write_made
+
+from teleopdesign import Effect, FitSearch, Model, Parameter, load_experiment
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.rank import make_ranked
+from teleopdesign.diagnose.width import OpenWidths, explain_open_width
+
+LEVEL, WIDTH = 0.3, 0.5
+STATED = "coulomb = { level = { value = 0.05, unit = 'N*m' } }"
+#: friction that grows with the speed up to a level, over a width without which it is another one
+EFFECT = Effect(
+    role="force",
+    law=lambda now, p: p.level * sp.tanh(now.velocity / p.width),
+    parameters={
+        "level": Parameter("force", "level"),
+        "width": Parameter(
+            "velocity", "width", search=FitSearch(starts=(0.2, 1.0), essential=True)
+        ),
+    },
+    absent={"level": 0.0},
+    energy="dissipates",
+).named("rounded_friction", "")
+OF_WIDTH = "device.rounded_friction.width"
+
+
+def recorded(folder, speed):
+    """An experiment on a body with such friction, at speeds up to that one (rad/s)."""
+
+    def motion(t, phase=0.0):
+        return speed * (np.sin(1.1 * t + phase) / 2.2 + np.sin(1.9 * t) / 3.8)
+
+    records = {"fit": [(12.0, motion)], "check": [(8.0, lambda t: motion(t, 0.7))]}
+
+    def force(t, x, v):
+        return 0.05 * np.sign(v) + LEVEL * np.tanh(v / WIDTH)
+
+    write_made(folder, records, force, effects=STATED, step=1e-6, noise=0.002)
+    return load_experiment(folder)
+
+
+def fit_at_truth(experiment):
+    """The fit that begins at the true values, and the prepared records."""
+    prepared = prepare(experiment)
+    known = {"coulomb": Model.from_experiment(experiment).known["coulomb"]}
+    model = Model.from_experiment(experiment, known).with_effect(EFFECT, at="device")
+    model = model.with_values({"device.rounded_friction.level": LEVEL, OF_WIDTH: WIDTH})
+    return estimate(model, prepared), prepared
+
+
+@pytest.mark.parametrize(("speed", "open_width"), [(1.5, False), (0.1, True)])
+def test_a_width_is_determined_by_motion_beyond_it(tmp_path, speed, open_width):
+    fit, prepared = fit_at_truth(recorded(tmp_path, speed))
+    said = explain_open_width(fit, Candidate(EFFECT, "device"), prepared)
+    assert bool(said) == open_width
+    if open_width:
+        assert "rad/s leaves as little as" in said and "do not determine it" in said
+
+
+def test_only_what_is_essential_and_free_is_asked(tmp_path):
+    fit, prepared = fit_at_truth(recorded(tmp_path, 0.1))
+    widths = OpenWidths(prepared)
+    parameters = {n: replace(p, search=FitSearch()) for n, p in EFFECT.parameters.items()}
+    plain = Candidate(replace(EFFECT, parameters=parameters), "device")
+    assert widths.explain(fit, plain) == ""
+    assert not widths.known  # nothing was fitted
+    held = replace(fit.model.parameters[OF_WIDTH], fixed=True)
+    fixed = estimate(fit.model.with_values({OF_WIDTH: held}), prepared)
+    assert widths.explain(fixed, Candidate(EFFECT, "device")) == ""
+
+
+def test_a_candidate_of_any_width_does_not_count(tmp_path):
+    fit, prepared = fit_at_truth(recorded(tmp_path, 0.1))
+    base = estimate(fit.model.without_effect(EFFECT.name, at="device"), prepared)
+    candidate = Candidate(EFFECT, "device")
+    unasked = make_ranked(base, candidate, fit, prepared=prepared)
+    asked = make_ranked(base, candidate, fit, prepared=prepared, widths=OpenWidths(prepared))
+    assert "determine" not in unasked.implausible
+    assert "determine" in asked.note and not asked.counts
