@@ -16,12 +16,13 @@ from ..diagrams import Control, Diagram
 from ..errors import ModelError, UnstableLoop
 from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
+from .late_loop import LateRatio, count_growing, crossings, late_ratio
 from .measured_loop import measured_crossings
 
 if TYPE_CHECKING:
     import control
 
-#: order of the Pade approximation by which the loop without further delay is shown stable
+#: order of the Pade approximation by which a sampled loop without further delay is shown stable
 _PADE = 8
 #: rad/s; crossings are sought between these on a grid of so many points, then refined
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 20001
@@ -104,13 +105,13 @@ def _count_growing_poles(form: sp.Expr) -> int:
 def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     """Dead time (s) in the loop at which it begins to oscillate; inf where its gain stays below 1.
 
-    A loop with a measured response is judged between its frequencies, see `measured_crossings`.
+    0 where the gain does not fall below 1 at high frequency: there the least dead time makes motion
+    grow, the faster the shorter. A loop with a measured response is judged between its frequencies,
+    see `measured_crossings`.
     raises ModelError: the loop is unstable without any delay (`UnstableLoop`); a controller was
         left out of it; its gain is above 1 where its samples no longer tell a frequency from
         others, or at the highest frequency that was measured
     """
-    import control
-
     if isinstance(loop, LoopGain):
         if gone := [name for name in loop.left_out if "." not in name]:
             raise ModelError(
@@ -119,16 +120,42 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
             )
         if loop.expression.atoms(AppliedUndef):
             return _smallest_delay(*measured_crossings(loop.expression, growing=loop.growing))
-        whole = loop.transfer_function(delay_order=_PADE)
+        if loop.held:
+            if _grows_by_pade(loop):
+                raise _unstable()
+            return _smallest_delay(*_crossings(loop, np.zeros(0)))
+        ratio = late_ratio(loop.expression)
     else:
-        whole = loop
-    if (np.real(control.feedback(whole, 1).poles()) >= 0).any():
-        raise UnstableLoop("delay margin: the loop is unstable without delay")
+        ratio = _ratio_of(loop)
+    if count_growing(ratio.closed):
+        raise _unstable()
+    if not ratio.fades():
+        return 0.0
     if isinstance(loop, LoopGain) and loop.has_delay:
-        phase, crossing = _crossings(loop)
-    else:
-        _, phase, _, _, crossing, _ = control.stability_margins(whole, returnall=True)
-    return _smallest_delay(phase, crossing)
+        return _smallest_delay(*_crossings(loop, ratio.corners()))
+    (above,), (below,) = ratio.above.values(), ratio.below.values()
+    w = crossings(above, below)
+    gain = np.polyval(above, 1j * w) / np.polyval(below, 1j * w)
+    return _smallest_delay(np.degrees(np.angle(gain)) + 180, w)
+
+
+def _unstable() -> UnstableLoop:
+    return UnstableLoop("delay margin: the loop is unstable without delay")
+
+
+def _ratio_of(system: control.TransferFunction) -> LateRatio:
+    if system.isdtime(strict=True):
+        raise ModelError("delay margin: expected a system in continuous time, found a discrete one")
+    above, below = (np.trim_zeros(np.ravel(p[0][0]), "f") for p in (system.num, system.den))
+    return LateRatio({0.0: above}, {0.0: below})
+
+
+def _grows_by_pade(loop: LoopGain) -> bool:
+    """Of what is held: its samples tell no frequency beyond half their rate, as Pade does not."""
+    import control
+
+    whole = loop.transfer_function(delay_order=_PADE)
+    return bool((np.real(control.feedback(whole, 1).poles()) >= 0).any())
 
 
 def _smallest_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
@@ -137,8 +164,11 @@ def _smallest_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
     return float(delays.min()) if len(delays) else float("inf")
 
 
-def _crossings(loop: LoopGain) -> tuple[np.ndarray, np.ndarray]:
-    """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1."""
+def _crossings(loop: LoopGain, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1.
+
+    corners: frequencies that a grid may pass over, narrow resonances among them, rad/s
+    """
     from scipy.optimize import brentq
 
     call = numerical(loop.expression)
@@ -146,7 +176,10 @@ def _crossings(loop: LoopGain) -> tuple[np.ndarray, np.ndarray]:
     def above(w: float) -> float:
         return float(np.log(np.abs(call(np.array([1j * w]))[0])))
 
-    grid = np.geomspace(_SLOWEST, min(loop.fastest, _FASTEST), _POINTS)
+    slowest, fastest = _SLOWEST, min(loop.fastest, _FASTEST)
+    if len(corners):
+        slowest, fastest = min(slowest, corners.min() / 1e4), max(fastest, corners.max() * 1e4)
+    grid = np.unique(np.concatenate([np.geomspace(slowest, fastest, _POINTS), corners]))
     size = np.abs(call(1j * grid))
     if np.isfinite(loop.fastest) and size[-1] >= 1:
         raise ModelError(

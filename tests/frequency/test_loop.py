@@ -3,13 +3,15 @@
 import control
 import numpy as np
 import pytest
+import sympy as sp
 from devices import CANCELLATION, FEEDBACK, body
 
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
-from teleopdesign.frequency import bode, delay_margin, loop_gain
+from teleopdesign.errors import ModelError, UnstableLoop
+from teleopdesign.frequency import LoopGain, bode, delay_margin, loop_gain
+from teleopdesign.realise.lti import S
 from teleopdesign.simulate import Sampling, simulate
 
 
@@ -143,3 +145,67 @@ def test_a_dead_time_in_the_loop_is_exact():
     with_delay = haptic_interface(device, hand=body(0.5), force_feedback=FEEDBACK)
     found = delay_margin(loop_gain(with_delay))
     assert found == pytest.approx(delay_margin(loop_gain(interface())) - late, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [([2, 1], [1, 1]), ([2.0], [1]), ([3, 1], [1, 0]), ([1, 2], [1, 1]), ([1, 3, 1], [1, 1, 1]),
+     ([1.8, -0.9], [1, 1])],
+)  # fmt: skip
+def test_a_loop_that_lets_all_high_frequencies_pass_bears_no_delay(above, below):
+    """The least dead time T makes it grow, at ln(abs(L))/T; no frequency has a gain of 1 there."""
+    assert delay_margin(control.tf(above, below)) == 0
+
+
+@pytest.mark.parametrize(("hand", "margin"), [(0.5, 0.0), (0.05, float("inf"))])
+def test_force_feedback_without_a_low_pass_bears_no_delay_where_the_hand_is_heavy(hand, margin):
+    """Its loop passes all high frequencies with gain * hand/(device + hand): 1.15 and 0.375."""
+    law = controller("gain", {"gain": 1.5})
+    diagram = haptic_interface(body(0.15), hand=body(hand), force_feedback=law)
+    assert delay_margin(loop_gain(diagram)) == margin
+
+
+def late(above, below, time):
+    """above/below, late, as the gain of a loop."""
+    p, q = (sp.Poly([sp.Rational(repr(c)) for c in side], S).as_expr() for side in (above, below))
+    return LoopGain(p / q * sp.exp(-S * sp.Rational(repr(time))), "H", (), (), float("inf"))
+
+
+def test_a_late_loop_that_grows_beyond_what_pade_shows_is_refused():
+    """A pole at +0.145 1/s at about 8 rad/s, 2.44 s late: 19 rad, where order 8 ends."""
+    loop = late([5.041, 1.261], [1, 0.06519, 61.98, 2.92842], 2.44)
+    with pytest.raises(UnstableLoop):
+        delay_margin(loop)
+
+
+def narrow(time):
+    """A gain of 10 over a width of 1e-8 of 7 rad/s; elsewhere it is far below 1."""
+    width, w = 1e-8, 7.0
+    return late([10 * 2 * width * w, 0.0], [1, 2 * width * w, w * w], time)
+
+
+@pytest.mark.parametrize("time", [0.0, 1e-6, 0.1])
+def test_a_resonance_is_seen_though_it_is_narrower_than_a_grid(time):
+    """Above it the gain is 1 at a phase of -arccos(1/10)."""
+    expected = (np.pi - np.arccos(0.1)) / 7.0
+    assert delay_margin(narrow(time)) == pytest.approx(expected - time, rel=1e-4)
+
+
+def test_a_narrow_resonance_that_grows_is_refused():
+    with pytest.raises(UnstableLoop):
+        delay_margin(narrow(0.3))
+
+
+def test_a_late_loop_that_lets_all_high_frequencies_pass_is_refused():
+    for gain, grows in ((1.1, True), (0.9, False)):
+        loop = late([gain, 1.0], [1.0, 2.0], 0.01)
+        if grows:
+            with pytest.raises(UnstableLoop):
+                delay_margin(loop)
+        else:
+            assert delay_margin(loop) == float("inf")
+
+
+def test_a_discrete_loop_alone_has_no_delay_margin_in_continuous_time():
+    with pytest.raises(ModelError, match="continuous time"):
+        delay_margin(control.tf([0.5], [1, -0.5], 1e-3))

@@ -25,6 +25,7 @@ from .box_certificates import impedance_certificate, stability_certificate
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
 from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
+from .late_stability import judge_late_stability
 from .worst import MarginFunction, pole_margin, port_margin, search_worst
 
 #: claims that the package knows, and the unit of their margins
@@ -40,6 +41,9 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
         raise ModelError(f"{middle.name}: stable: {', '.join(bent)} has no linear form")
     family = family_of(middle, box)
     if family is None or not family.is_rational:
+        late = judge_late_stability(middle, box, points, seed)
+        if late is not None:
+            return late
         raise ModelError(
             f"{middle.name}: stable: expected rational blocks whose values are in their linear form"
         )

@@ -33,10 +33,12 @@ def claim_over_intervals(
     intervals: names of `diagram.values` -> (low, high), SI; hand and environment as others
     claim: "passive": at all ports together, hands and environments (`Z_H`, `Z_E`) left out;
         "absolutely stable": two ports between any passive terminations; "stable": every pole of the
-        whole diagram, hand and environment with it, has a negative real part; or a function of a
-        diagram that returns a margin (>= 0: it holds) or a `Claim`
+        whole diagram, hand and environment with it, has a negative real part, delay blocks and
+        intervals of their times included; or a function of a diagram that returns a margin (>= 0:
+        it holds) or a `Claim`
     points: looked at beside the vertices and the middle;  seed: of these
-    returns: proved over the whole box where exact reasoning shows it (linear, without dead times;
+    returns: proved over the whole box where exact reasoning shows it (linear; with dead
+        times "stable" alone, from no dead time on, in floats with a bound of their rounding;
         friction with its cancellation by the theorems on them), refuted at a point, or checked
         numerically. Controllers act in continuous time
     raises ModelError: an unknown value or claim, an interval that is none, no port

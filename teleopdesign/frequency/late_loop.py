@@ -1,0 +1,233 @@
+"""A gain round a loop as sums of polynomials in s, each late: poles of the loop, where it is 1.
+
+    1 + L(s) = 0  where  f(s) = sum_k p_k(s) e^(-s T_k) = 0,   T_0 = 0
+
+Where p_0 is of the highest degree alone (or its leading coefficient outweighs the others there),
+f(j w)/(j w + a)^n has no other turns than those that zeros of f with Re s > 0 make: minus half a
+turn each, from w = 0 up (Mikhailov). Further out than `_find_lead` p_0 leads the phase.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import sympy as sp
+
+from ..errors import ModelError
+from ..realise.lti import S
+
+Terms = Mapping[float, np.ndarray]
+
+#: frequencies from the slowest to the fastest root, before steps of the phase are halved
+_POINTS = 4001
+#: rad; a larger step of the phase is halved. A quarter turn would do where f is far from zero
+_STEP = 0.5
+#: of a root's size: what rounding leaves of a real part
+_ROUNDING = 1e-13
+#: samples of the phase: beyond, dead times are too long against what the loop still lets pass
+_MOST = 2_000_000
+
+
+@dataclass(frozen=True)
+class LateRatio:
+    """above/below; each: dead time (s) -> coefficients in s, highest power first."""
+
+    above: Terms
+    below: Terms
+
+    @property
+    def closed(self) -> Terms:
+        """above + below: zero at the poles of the closed loop."""
+        times = sorted({*self.above, *self.below})
+        none = np.zeros(1)
+        sums = {t: np.polyadd(self.above.get(t, none), self.below.get(t, none)) for t in times}
+        return {t: p for t, p in ((t, np.trim_zeros(p, "f")) for t, p in sums.items()) if len(p)}
+
+    def fades(self) -> bool:
+        """Whether its size is below 1 at all high frequencies, whatever its dead times."""
+        degree = _degree(self.below)
+        if _degree(self.above) > degree:
+            return False
+        first, *others = (abs(_coefficient(p, degree)) for p in self.below.values())
+        return sum(abs(_coefficient(p, degree)) for p in self.above.values()) < first - sum(others)
+
+    def corners(self) -> np.ndarray:
+        """Sizes of all roots of its polynomials, with points across narrow resonances, rad/s."""
+        polynomials = (p for terms in (self.above, self.below, self.closed) for p in terms.values())
+        roots = np.concatenate([np.zeros(0), *(_roots(p) for p in polynomials)])
+        roots = roots[np.abs(roots) > 0]
+        size = np.abs(roots)[:, None]
+        # a root on the axis itself has no width: 1e-9 of its size is what rounding leaves
+        width = np.maximum(np.abs(roots.real)[:, None], 1e-9 * size)
+        across = np.abs(roots.imag)[:, None] + width * np.linspace(-3, 3, 25)
+        points = np.concatenate([size.ravel(), across.ravel()])
+        return np.asarray(np.unique(points[points > 0]))
+
+
+def late_ratio(expression: sp.Expr) -> LateRatio:
+    """The expression in `S` and e^(-s T) as such a ratio.
+
+    raises ModelError: it is none
+    """
+    powers = sorted(expression.atoms(sp.exp), key=str)
+    marks = [sp.Dummy(f"late_{k}") for k in range(len(powers))]
+    times = [-power.args[0].coeff(S) for power in powers]
+    plain = expression.xreplace(dict(zip(powers, marks, strict=True)))
+    sides = sp.fraction(sp.cancel(sp.together(plain)))
+    if not all(t.is_Rational for t in times) or not all(p.is_polynomial(S, *marks) for p in sides):
+        raise ModelError("delay margin: expected a ratio of polynomials in s and dead times")
+    made: list[dict[Fraction, dict[int, float]]] = []
+    for side in sides:
+        terms: dict[Fraction, dict[int, float]] = {}
+        for (degree, *exponents), c in sp.Poly(side, S, *marks).terms():
+            late = sum((n * t for n, t in zip(exponents, times, strict=True)), sp.S(0))
+            of_this = terms.setdefault(Fraction(int(late.p), int(late.q)), {})
+            of_this[degree] = of_this.get(degree, 0.0) + float(c)
+        made.append(terms)
+    first = min(t for terms in made for t in terms)
+    above, below = ({float(t - first): _array(p) for t, p in sorted(m.items())} for m in made)
+    return LateRatio(above, below)
+
+
+def count_growing(terms: Terms) -> int:
+    """Zeros of f with a positive real part, at least 1 where there are any.
+
+    Those on the axis within rounding count as well. So does a late term that is as strong as the
+    first one at high frequency: at the least change of dead times there are zeros without number.
+    raises ModelError: the dead times turn the phase more often than can be followed
+    """
+    if not terms:
+        return 1
+    start = min(terms)
+    terms = {t - start: p for t, p in terms.items()}
+    first, *others = terms.values()
+    degree = len(first) - 1
+    if not others:
+        # a root on the axis comes out of rounding on either side
+        roots = _roots(first)
+        return int((roots.real >= -_ROUNDING * np.abs(roots)).sum())
+    weight = sum(abs(_coefficient(p, degree)) for p in others)
+    if _degree(terms) > degree or weight >= abs(first[0]):
+        return 1
+    ratio = LateRatio(terms, {0.0: first})
+    corners = ratio.corners()
+    corners = corners if len(corners) else np.ones(1)
+    scale = float(np.exp(np.mean(np.log(corners))))
+    last = _find_lead(first, others, corners.max())
+    number = int(last * max(terms) / _STEP) + 2
+    if number > _MOST:
+        raise ModelError("dead times are too long against the fastest that the loop lets pass")
+    slow = np.geomspace(corners.min() / 1e4, last, _POINTS)
+    w = np.unique(np.concatenate([slow, corners, np.linspace(0.0, last, number)]))
+
+    def at(points: np.ndarray) -> np.ndarray:
+        s = 1j * points
+        total = sum((np.polyval(p, s) * np.exp(-s * t) for t, p in terms.items()), 0 * s)
+        return np.asarray(total / (s + scale) ** degree)
+
+    turned = _turn(at, w)
+    if turned is None:
+        return 1
+    # further out the phase stays within a quarter turn of that of p_0, whose roots are slower
+    end = 1j * w[-1]
+    turned -= float(np.angle(at(w[-1:])[0] * (end + scale) ** degree / np.polyval(first, end)))
+    turned += float(degree * np.angle(1 + scale / end) - np.angle(1 - _roots(first) / end).sum())
+    return max(round(-turned / np.pi), 0)
+
+
+def _turn(at: Callable[[np.ndarray], np.ndarray], w: np.ndarray) -> float | None:
+    """Change of phase along these frequencies, rad; None: it jumps, at a zero on the axis."""
+    values = at(w)
+    while (values != 0).all():
+        steps = np.angle(values[1:] / values[:-1])
+        wide = np.flatnonzero(np.abs(steps) > _STEP)
+        if not len(wide):
+            return float(steps.sum())
+        middle = (w[wide] + w[wide + 1]) / 2
+        if len(w) > _MOST or (middle == w[wide]).any() or (middle == w[wide + 1]).any():
+            return None
+        w, values = np.insert(w, wide + 1, middle), np.insert(values, wide + 1, at(middle))
+    return None
+
+
+def _find_lead(first: np.ndarray, others: Sequence[np.ndarray], start: float) -> float:
+    """A frequency, at least `start`, beyond which the others are less than the first, rad/s."""
+    degree, w = len(first) - 1, start
+    far = sum(abs(_coefficient(p, degree)) for p in others) / abs(first[0])
+    for _ in range(200):
+        beyond = w * np.geomspace(1.0, 1e6, 400)
+        size = sum((np.abs(np.polyval(p, 1j * beyond)) for p in others), 0 * beyond)
+        if (size < (0.7 + 0.3 * far) * np.abs(np.polyval(first, 1j * beyond))).all():
+            return w
+        w *= 2
+    raise ModelError("a late term is about as strong as the others at high frequency")
+
+
+def crossings(above: np.ndarray, below: np.ndarray) -> np.ndarray:
+    """Frequencies at which abs(above/below) = 1, rad/s: roots of a polynomial, none missed.
+
+    above, below: coefficients in s, highest first. A gain within 1e-12 of 1 counts as 1
+    """
+    (a, b), (c, d) = _halves(above), _halves(below)
+    x = [Fraction(0), Fraction(1)]
+    first = _add(_multiply(a, a), _multiply(x, _multiply(b, b)))
+    second = _add(_multiply(c, c), _multiply(x, _multiply(d, d)))
+    size = _add(first, [-e for e in second])
+    while size and not size[-1]:
+        size.pop()
+    if len(size) < 2:
+        return np.zeros(0)
+    most = max(abs(e) for e in size)
+    roots = _roots(np.array([float(e / most) for e in reversed(size)]))
+    near = (roots.real > 0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots))
+    return np.asarray(np.sqrt(roots.real[near]))
+
+
+def _halves(p: np.ndarray) -> tuple[list[Fraction], list[Fraction]]:
+    """(a, b) in w^2, lowest first, with p(j w) = a + j w b."""
+    exact = [Fraction(float(c)) for c in p[::-1]]
+    turned = [c * (-1) ** (k // 2) for k, c in enumerate(exact)]
+    return turned[::2], turned[1::2]
+
+
+def _multiply(p: list[Fraction], q: list[Fraction]) -> list[Fraction]:
+    out = [Fraction(0)] * max(len(p) + len(q) - 1, 0)
+    for i, a in enumerate(p):
+        for k, b in enumerate(q):
+            out[i + k] += a * b
+    return out
+
+
+def _add(p: list[Fraction], q: list[Fraction]) -> list[Fraction]:
+    longer, shorter = (p, q) if len(p) >= len(q) else (q, p)
+    return [c + (shorter[k] if k < len(shorter) else 0) for k, c in enumerate(longer)]
+
+
+def _roots(p: np.ndarray) -> np.ndarray:
+    """Roots of a polynomial whose coefficients may lie decades apart: computed near size 1."""
+    p = np.trim_zeros(np.asarray(p, dtype=float), "f")
+    kept = np.trim_zeros(p, "b")
+    zeros = np.zeros(len(p) - len(kept), dtype=complex)
+    if len(kept) < 2:
+        return zeros
+    scale = abs(kept[-1] / kept[0]) ** (1 / (len(kept) - 1))
+    powers = scale ** -np.arange(len(kept), dtype=float)
+    return np.concatenate([np.roots(kept * powers / kept[0]) * scale, zeros])
+
+
+def _array(coefficients: Mapping[int, float]) -> np.ndarray:
+    out = np.zeros(max(coefficients) + 1)
+    for degree, c in coefficients.items():
+        out[-1 - degree] = c
+    return out
+
+
+def _coefficient(p: np.ndarray, degree: int) -> float:
+    return float(p[-1 - degree]) if len(p) > degree else 0.0
+
+
+def _degree(terms: Terms) -> int:
+    return max((len(p) for p in terms.values()), default=0) - 1

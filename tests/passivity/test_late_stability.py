@@ -1,0 +1,114 @@
+"""Stability over intervals of dead times: proved up to the exact limit, refuted beyond it."""
+
+import numpy as np
+import pytest
+from devices import body
+from passivity.attacks.test_late_boxes import late_diagram
+from realise.test_delay_blocks import held
+
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import claim_over_intervals
+from teleopdesign.passivity.intervals.late_cells import LateTerms, is_zero_free
+from teleopdesign.passivity.intervals.late_roots import holds_root, rightmost_root
+
+TIME = "T_1.delay.time"
+DAMPING, STIFFNESS, MASS = 5.0, 20.0, 0.1
+
+
+def limit(stiffness):
+    """m (jw)^2 + b jw = -k e^(-jwT): the smallest such T, s."""
+    w = np.roots([MASS**2, 0, DAMPING**2, 0, -(stiffness**2)])
+    w = w[(np.abs(w.imag) < 1e-9) & (w.real > 0)].real[0]
+    return np.arctan2(DAMPING, MASS * w) / w
+
+
+def terms(rows, values=(), times=((0.0, 1.0),)):
+    """rows: coefficient, then powers of s, values and late factors."""
+    made = np.array(rows, dtype=float)
+    return LateTerms(
+        made[:, 0],
+        made[:, 1:].astype(int),
+        np.array(values, dtype=float).reshape(-1, 2),
+        np.array(times, dtype=float),
+        tuple(range(len(values))),
+        tuple(range(len(values), len(values) + len(times))),
+    )
+
+
+@pytest.mark.parametrize(("share", "status"), [(0.999, "proved"), (1.02, "refuted")])
+def test_a_late_spring_is_stable_up_to_its_exact_limit(share, status):
+    box = {TIME: (0.01, float(share * limit(STIFFNESS)))}
+    claim = claim_over_intervals(held(0.01, damping=DAMPING), box, claim="stable", points=4)
+    assert claim.status == status, claim
+
+
+@pytest.mark.parametrize(("share", "status"), [(0.99, "proved"), (1.03, "refuted")])
+def test_a_gain_within_an_interval_counts_at_its_worst(share, status):
+    box = {TIME: (0.0, float(share * limit(25.0))), "P.spring_damper.stiffness": (10.0, 25.0)}
+    claim = claim_over_intervals(held(0.01, damping=DAMPING), box, claim="stable", points=4)
+    assert claim.status == status, claim
+    if status == "refuted":
+        assert claim.worst["P.spring_damper.stiffness"] == 25.0
+
+
+def test_a_fixed_dead_time_beside_an_interval_of_a_gain():
+    time = limit(25.0)
+    for share, status in ((0.99, "proved"), (1.03, "refuted")):
+        diagram = held(float(share * time), damping=DAMPING)
+        box = {"P.spring_damper.stiffness": (10.0, 25.0)}
+        assert claim_over_intervals(diagram, box, claim="stable", points=4).status == status
+
+
+def test_what_is_stable_with_a_dead_time_alone_is_no_proof():
+    """x'' + 10 x - 2.9 x(t - T): a late push damps. Without a dead time it swings for ever."""
+    values = {
+        "M.inertia": 1.0, "M.viscous.damping": 0.0, "M.spring.stiffness": 10.0,
+        "P.proportional_derivative.stiffness": 0.1, "P.proportional_derivative.damping": 0.0,
+        "P.proportional_derivative.bandwidth": 10.0, "G.gain.gain": -3.0, TIME: 0.5,
+        "T_2.delay.time": 0.0,
+    }  # fmt: skip
+    claim = claim_over_intervals(late_diagram(values), {TIME: (0.4, 0.6)}, claim="stable", points=4)
+    assert claim.status == "evidence" and claim.margin > 0.4, claim
+
+
+def test_a_zero_inside_is_never_called_free_of_zeros():
+    rng = np.random.default_rng(3)
+    for _ in range(12):
+        w, time, value = rng.uniform(0.2, 5), rng.uniform(0.05, 0.95), rng.uniform(-0.9, 0.9)
+        # s^2 + a s + b + (c + v - v_0) e^(-s T) with f(jw) = 0 at that T and v = v_0
+        c, a = rng.uniform(0.1, 3), 0.0
+        late = c * np.exp(-1j * w * time)
+        a, b = -late.imag / w, w * w - late.real
+        rows = [(1, 2, 0, 0), (a, 1, 0, 0), (b, 0, 0, 0), (c - value, 0, 0, 1), (1, 0, 1, 1)]
+        assert is_zero_free(terms(rows, [(-1.0, 1.0)]), most=3000) is None
+
+
+def test_terms_as_strong_as_the_first_at_high_frequency_are_not_called_free_of_zeros():
+    assert is_zero_free(terms([(1, 1, 0), (1, 0, 0), (0.9, 1, 1)])) is not None
+    assert is_zero_free(terms([(1, 1, 0), (1, 0, 0), (1.0, 1, 1)])) is None
+    assert is_zero_free(terms([(1, 1, 1), (1, 0, 0)])) is None
+
+
+def test_a_root_is_shown_only_where_there_is_one():
+    late = {0.0: np.array([1.0, 0.0]), 1.0: np.array([2.0])}  # s + 2 e^(-s): grows, 2 > pi/2
+    root = rightmost_root(late)
+    radius = holds_root(late, root)
+    assert root.real > 0 and radius is not None and radius < root.real
+    assert abs(root + 2 * np.exp(-root)) < 1e-12
+    assert holds_root(late, root + 0.5) is None
+
+
+def test_a_root_is_followed_from_where_there_is_no_dead_time():
+    """A spring of 291 N/m that is 0.076 s late, beside what damps: at T = 0 its roots decay."""
+    late = {0.0: np.array([1.0, 3.452, 2.443, 0.3395]), 0.07643: np.array([291.1, 209.3])}
+    root = rightmost_root(late)
+    assert root.real > 1 and holds_root(late, root) is not None
+
+
+def test_a_dead_time_of_an_actuator_is_refused_in_one_line():
+    device = body(0.1, viscous__damping=1.0, spring__stiffness=1.0, actuation_delay__delay=0.01)
+    with pytest.raises(ModelError, match="rational blocks"):
+        claim_over_intervals(
+            haptic_interface(device), {"Z_M.inertia": (0.1, 0.2)}, claim="stable", points=2
+        )
