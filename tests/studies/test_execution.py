@@ -36,6 +36,7 @@ def study_code(out, model="slow_product", points=300, **more):
     )
 
 
+@pytest.mark.slow
 def test_two_processes_give_the_data_set_of_one(tmp_path):
     one = td.study(models.product, AXES, measures=models.value, workers=1)
     two = td.study(models.product, AXES, measures=models.value, workers=2)
