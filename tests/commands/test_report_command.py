@@ -32,6 +32,7 @@ def data_of(page):
     return json.loads(re.search(r'id="teleopdesign-data">(.*?)</script>', text, re.DOTALL)[1])
 
 
+@pytest.mark.slow
 def test_the_page_of_an_answer_tells_what_the_answer_tells(answer, capsys):
     assert main(["report", str(answer)]) == 0
     page = answer.with_suffix(".html")

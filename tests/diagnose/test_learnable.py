@@ -87,6 +87,7 @@ def test_a_run_that_never_comes_back_tells_the_trees_no_clock(prepared):
     assert inputs_along([motion])[0].shape == (n, 6)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_figure(diagnosis, prepared):
     model = diagnosis.before.model
     assert learnable(model, prepared, seed=3) == learnable(model, prepared, seed=3)

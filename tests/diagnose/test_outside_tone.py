@@ -164,6 +164,7 @@ def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
     assert not depends_on_time(EFFECTS["torque_ripple"])
 
 
+@pytest.mark.slow
 def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
     prepared, found = rod
     floor = NoiseFloor(0.01, "stated", drawn=0.01)

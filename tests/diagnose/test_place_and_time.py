@@ -165,6 +165,7 @@ def test_gravity_that_the_catalogue_lacks_is_called_no_cogging(tmp_path):
     assert "does not repeat within the travel" in cogging.implausible
 
 
+@pytest.mark.slow
 def test_eight_turns_of_a_motor_show_its_cogging(tmp_path):
     def turning(speed):
         return 8 * TURN / speed, lambda t: speed * t

@@ -52,6 +52,7 @@ def test_a_pendulum_whose_bend_is_seen_stays_one(tmp_path):
     assert [c.effect.name for c in diagnosis.missing] == ["gravity"]
 
 
+@pytest.mark.slow
 def test_a_users_spring_that_a_pendulum_takes_the_place_of_is_not_added_again(tmp_path):
     user = f"{USER}\nspring = {{}}"
     pendulum = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4), user)

@@ -118,6 +118,7 @@ def test_a_computer_steps_the_states_together(pole, discrete):
         assert np.abs(found[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
 
 
+@pytest.mark.slow
 def test_what_grows_inside_is_counted_once():
     """The loop decays, though each of four entries has a pole in the right half plane."""
     assert growth_within(two_rods(stabilising(3.0))) is None

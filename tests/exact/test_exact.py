@@ -50,6 +50,7 @@ def test_a_mass_sticks_and_slips_on_the_belt():
     assert 0.2 < stuck.mean() < 0.9 and np.count_nonzero(np.diff(stuck.astype(int)) == 1) >= 3
 
 
+@pytest.mark.slow
 def test_energy_between_two_masses_without_losses_is_kept():
     """Work of the drive = kinetic energy and that of the contact spring; velocities by spline."""
     from scipy.interpolate import make_interp_spline

@@ -87,6 +87,7 @@ class Track:
         self.stuck = self._stuck()
         cumulated = np.concatenate([[0.0], np.cumsum(self.command) * m.period])
         self._integral = cumulated
+        self._last: tuple[float, np.ndarray] | None = None
         self.true_sensor = m.rows("interaction")[:, i] if self.has_sensor else 0 * self.rows_x
         self.noise_x = self.position - self.rows_x
         self.scale = lowpass(self.command + self.sensed, self.bandwidth, self.rate)
@@ -104,12 +105,19 @@ class Track:
         still = np.ptp(view, axis=1) < self.resolution
         return np.convolve(still, np.ones(2 * w + 1), mode="same") > 0.5
 
+    def _late(self, delay: float) -> np.ndarray:
+        """The command later by the delay, averages over the fine intervals; the last is kept."""
+        if self._last is None or self._last[0] != delay:
+            dt = self.motion.period / self.motion.sub
+            t = np.arange(len(self.x) + 1) * dt - delay
+            rows = np.arange(len(self._integral)) * self.motion.period
+            self._last = delay, np.diff(np.interp(t, rows, self._integral)) / dt
+        return self._last[1]
+
     def acting(self, p: Parameters) -> np.ndarray:
         """Acting force on the fine grid, averages over the fine intervals."""
         dt = self.motion.period / self.motion.sub
-        t = np.arange(len(self.x) + 1) * dt - p.get("delay", 0.0)
-        rows = np.arange(len(self._integral)) * self.motion.period
-        u = np.diff(np.interp(t, rows, self._integral)) / dt
+        u = self._late(p.get("delay", 0.0))
         lag = p.get("lag", 0.0)
         if lag > 0:
             e = math.exp(-dt / lag)
@@ -121,7 +129,7 @@ class Track:
                 1
                 + p["ripple"] * np.sin(2 * np.pi * self.x / p["ripple_period"] + p["ripple_phase"])
             )
-        return np.clip(u, -p.get("limit", np.inf), p.get("limit", np.inf))
+        return np.clip(u, -p["limit"], p["limit"]) if "limit" in p else u
 
     def residual(self, p: Parameters, noisy: bool = True) -> np.ndarray:
         """Low-passed force residual of the model p."""
@@ -129,14 +137,15 @@ class Track:
         v, x = self.v_fine, self.x
         u = self.acting(p)
         level = np.full(len(x), p.get("level", 0.0))
-        t = np.arange(len(x)) * self.motion.period / sub
         if p.get("level_wave"):
             level *= 1 + p["level_wave"] * np.sin(
                 2 * np.pi * x / p["level_wave_period"] + p["level_wave_phase"]
             )
         if p.get("drift_fraction"):
+            t = np.arange(len(x)) * self.motion.period / sub
             level *= 1 - p["drift_fraction"] * (1 - np.exp(-t / p["drift_time"]))
-        level += p.get("half_difference", 0.0) * np.sign(v)
+        if p.get("half_difference"):
+            level += p["half_difference"] * np.sign(v)
         if p.get("load_coefficient"):
             level += p["load_coefficient"] * np.abs(u)
         if p.get("extra_static_level"):
@@ -146,11 +155,16 @@ class Track:
         friction = np.empty_like(x)
         viscous = p.get("bristle_damping", 0.0) * sub / self.motion.period if soft else 0.0
         _bristle(self.dx, level, soft or p["bristle_stiffness"], viscous, friction)
-        force = v * (p.get("damping", 0.0) + p.get("drag", 0.0) * np.abs(v))
-        force = force + p.get("damping_difference", 0.0) * np.abs(v)
-        force = (
-            force + p.get("bias", 0.0) + p.get("spring", 0.0) * x + p.get("hardening", 0.0) * x**3
-        )
+        force = v * p.get("damping", 0.0)  # terms that are zero cost the time of those that are not
+        if p.get("drag"):
+            force = v * (p.get("damping", 0.0) + p["drag"] * np.abs(v))
+        if p.get("damping_difference"):
+            force = force + p["damping_difference"] * np.abs(v)
+        force = force + p.get("bias", 0.0)
+        if p.get("spring"):
+            force = force + p["spring"] * x
+        if p.get("hardening"):
+            force = force + p["hardening"] * x**3
         if p.get("thinning"):
             force = force + p["thinning"] * np.sign(v) * np.abs(v) ** p["thinning_power"]
         if p.get("gravity"):

@@ -258,12 +258,12 @@ def test_the_command_says_in_one_line_what_is_wrong(one_speed, capsys, arguments
 
 
 def known_of(poor, number):
-    """Effects to choose from: all of `MOST` for the first of two truths, then the usual ones.
+    """Effects to choose from: all of `MOST` for the first truth at one place, else the usual ones.
 
-    The time of a search grows with the square of their number: for one speed too, the usual ones.
+    The time of a search grows with the square of their number.
     """
     usual = {"coulomb", "viscous", "quadratic_drag", "bias", "spring", *poor.rivals}
-    whole = number == 0 and poor is not POOR["one speed"]
+    whole = number == 0 and poor is POOR["one place"]
     return MOST if whole else {n: e for n, e in MOST.items() if n in usual}
 
 

@@ -70,7 +70,7 @@ def test_a_theorem_states_a_hypothesis_for_each_of_its_numbers(theorem, function
 @pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
 def test_within_its_hypotheses_a_theorem_answers(theorem, function):
     rng = random.Random(3)
-    statuses = {function(**inside(function, rng)).status for _ in range(5)}
+    statuses = {function(**inside(function, rng)).status for _ in range(2)}
     assert statuses <= {"proved", "refuted", "evidence", "unknown"}
 
 
@@ -154,6 +154,7 @@ def test_no_claim_on_a_wall_passes_over_steps_of_the_encoder():
                 assert "steps" in one.claim.statement
 
 
+@pytest.mark.slow
 def test_damping_that_a_theorem_spends_is_not_spent_again_by_the_linear_rest():
     """f_D = 0.6 N of 0.5 N with a = 4 mm/s rests on B = 2.5 N s/m, which the rest has, too."""
     device = body(0.15).with_effect(EFFECTS["coulomb"], {"level": 0.5})

@@ -151,14 +151,14 @@ def test_exact_test_and_sweep_agree_on_random_impedances():
 
 
 @pytest.mark.slow
-def test_exact_test_inequality_and_sweep_agree_on_hundreds_of_random_impedances(cvxpy):
-    """Seven kinds, 50 each: passive by construction, improper, marginal, growing, badly scaled."""
+def test_exact_test_inequality_and_sweep_agree_on_a_hundred_and_more_random_impedances(cvxpy):
+    """Seven kinds, 20 each: passive by construction, improper, marginal, growing, badly scaled."""
     rng = np.random.default_rng(11)
     found, proved = [], 0
-    for kind in KINDS * 50:
+    for kind in KINDS * 20:
         z = impedance(random_impedance(rng, kind))
         proved += positive_real(z).status == "proved"
         if problem := contradiction(z, lmi=True):
             found.append(f"{kind}: {z}: {problem}")
     assert found == []
-    assert 50 < proved < 300  # both verdicts are exercised
+    assert 20 < proved < 120  # both verdicts are exercised

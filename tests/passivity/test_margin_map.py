@@ -32,6 +32,7 @@ def lab(**channels):
     return four_channel(arm, arm, master_control=own, slave_control=own, channels=laws, delay=0.005)
 
 
+@pytest.mark.slow
 def test_each_point_is_the_two_port_of_the_diagram_at_its_values():
     """Derived once with symbols, and by the exact matrix of one diagram: rounding apart."""
     diagram = lab(C_2=reflected(0.1), C_3=reflected(0.2))

@@ -233,6 +233,7 @@ def test_a_text_is_refused_and_not_run(accept, capfd):
     assert not capfd.readouterr().out
 
 
+@pytest.mark.slow
 def test_numbers_of_sixteen_digits_are_settled_in_seconds_and_what_is_proved_is_accepted():
     """Twenty-six lags in series with nothing to cancel: remainders would have 10 000 digits."""
     rng = np.random.default_rng(1)

@@ -1,4 +1,4 @@
-"""Hundreds of random devices: claims, refuting motions and a search in simulation must agree."""
+"""Many random devices: claims, refuting motions and a search in simulation must agree."""
 
 from collections import Counter
 
@@ -14,6 +14,8 @@ from passivity.friction_systems import (
 )
 
 SEED, SYSTEMS = 20261, 400
+#: of them, those that a search in simulation takes on: half a second each
+SEARCHED = 150
 
 
 def one(**changed):
@@ -71,7 +73,7 @@ def test_claims_join_to_one_verdict(system, expected):
 def test_theorems_refutations_and_search_never_contradict_each_other():
     """No motion where a proof says that there is none; every refuting motion gives out energy."""
     rng, counts, contradictions = np.random.default_rng(SEED), Counter(), []
-    for _ in range(SYSTEMS):
+    for _ in range(SEARCHED):
         system = random_system(rng)
         said, by, record = verdict(system)
         motion = found_by_search(system, rng, number=8)
@@ -83,7 +85,8 @@ def test_theorems_refutations_and_search_never_contradict_each_other():
                 motion = confirmed(system, theory_motion(system, record))
         counts[said, motion is not None] += 1
     assert not contradictions
-    assert counts["proved", False] > 80 and counts["refuted", True] > 160
+    assert counts["proved", False] > SEARCHED / 5
+    assert counts["refuted", True] > 0.4 * SEARCHED
     # the search sees what there is to see: where it is silent, that means something. What it misses
     # are motions far slower, or of far more rounds, than a simulation of 30 000 steps holds
     assert counts["refuted", True] > 4 * counts["refuted", False]

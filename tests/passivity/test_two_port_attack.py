@@ -50,7 +50,7 @@ def judged(rng, kind, *, whole):
 
 @pytest.mark.parametrize(
     ("seed", "number"),
-    [(1, 30), *(pytest.param(k, 210, marks=pytest.mark.slow) for k in range(2, 5))],
+    [(1, 30), pytest.param(2, 105, marks=pytest.mark.slow)],
 )
 def test_no_termination_contradicts_what_is_claimed(seed, number):
     rng = np.random.default_rng(seed)
@@ -65,7 +65,7 @@ def test_no_termination_contradicts_what_is_claimed(seed, number):
 @pytest.mark.slow
 def test_what_is_passive_has_no_wave_that_gives_out_energy():
     """Hermitian part over a grid of the right half plane, against the test of the matrix."""
-    rng, number = np.random.default_rng(4), 150
+    rng, number = np.random.default_rng(4), 75
     size, angle = np.geomspace(1e-7, 1e7, 113), np.linspace(0, 0.499 * np.pi, 9)
     s = (size[:, None] * np.exp(1j * angle)).ravel()
     counts = Counter()

@@ -226,6 +226,7 @@ def channel_energy(rng, scale, slope):
     return energy.min() / turned.sum()
 
 
+@pytest.mark.slow
 @given(slope=st.floats(0, 0.9), seed=st.integers(0, 2**31))
 @settings(max_examples=40)
 def test_varying_delays_with_a_small_enough_scale_give_out_nothing(slope, seed):

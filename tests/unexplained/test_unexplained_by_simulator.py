@@ -44,13 +44,11 @@ def test_what_the_independent_simulator_hides_is_said(tmp_path, effect):
 
 @pytest.mark.slow
 def test_where_the_independent_simulator_hides_nothing_nothing_is_said(tmp_path):
-    alarms, number_of_cases = 0, 25
-    for seed in range(number_of_cases):
-        folder = write_own(tmp_path / str(seed), None, seed=1000 + seed)
+    for seed in range(1000, 1012):
+        folder = write_own(tmp_path / str(seed), None, seed=seed)
         prepared = prepare(load_experiment(folder))
         fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
-        alarms += describe_residual(fit, prepared).largest is not None
-    assert alarms <= number_of_cases // 50, "2 % of records"
+        assert describe_residual(fit, prepared).largest is None, seed
 
 
 @pytest.mark.slow

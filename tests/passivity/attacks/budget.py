@@ -15,13 +15,15 @@ SEED = int(os.environ.get("TELEOPDESIGN_ATTACK_SEED", "1"))
 
 
 def attacked(plain, slow):
-    """Parameters (seed, number): few systems in the plain run, in `slow` as many as are asked."""
+    """Parameters (seed, number): few systems in the plain run, in `slow` as many as are asked.
+
+    plain: 0 where even a few take seconds
+    """
     asked = int(os.environ.get("TELEOPDESIGN_ATTACKS", slow))
-    return pytest.mark.parametrize(
-        ("seed", "number"),
-        [(SEED, plain), pytest.param(SEED + 1000, asked, marks=pytest.mark.slow)],
-        ids=("sample", "many"),
-    )
+    drawn = [pytest.param(SEED + 1000, asked, marks=pytest.mark.slow, id="many")]
+    if plain:
+        drawn.insert(0, pytest.param(SEED, plain, id="sample"))
+    return pytest.mark.parametrize(("seed", "number"), drawn)
 
 
 def climbed(rng, energy, start, rounds=40, spread=0.3):

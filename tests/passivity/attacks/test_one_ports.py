@@ -111,7 +111,7 @@ def gives_out(wave):
     return float(-(power @ weight) @ half)
 
 
-@attacked(12, 300)
+@attacked(12, 120)
 def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))

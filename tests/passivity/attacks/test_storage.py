@@ -125,7 +125,7 @@ def random_friction(rng):
     return Dahl(own, soft * 10 ** rng.uniform(-1, 0.7)), friction
 
 
-@attacked(8, 100)
+@attacked(0, 40)
 def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
     rng, counts, nearest = np.random.default_rng(seed), Counter(), []
     for k in range(number):
