@@ -26,6 +26,7 @@ from .doors.text import open_text
 from .doors.workbook import open_workbook
 from .numbers_in_cells import numbers_of
 from .reading import ReadingStep
+from .wrapped_stamps import unwrap_stamps
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -146,7 +147,11 @@ def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
     except MemoryError:
         raise ExperimentError(f"{file}: too large for this machine's memory") from None
     stamps = {n: values[clock] for n, clock in clocks.items()}
-    columns = LogColumns({n: values[n] for n in names}, stamps, log.notes + log.left_out())
+    notes = log.notes + log.left_out()
+    for name in (n for n in names if wanted[n] == "channels.time"):
+        values[name], more = unwrap_stamps(values[name])
+        notes += more
+    columns = LogColumns({n: values[n] for n in names}, stamps, notes)
     _refuse_different_lengths(columns, file, wanted)
     return columns
 
