@@ -40,7 +40,7 @@ _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
 
 #: quantity -> words that a name of it may hold, the surest first
 WORDS: dict[str, tuple[str, ...]] = {
-    "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo",
+    "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo", "ts",
              "時間", "时间", "時刻", "시간", "время"),
     "position": (
         "position", "pos", "angle", "winkel", "weg", "theta", "enc", "encoder", "phi", "q", "x",
@@ -60,7 +60,7 @@ WORDS: dict[str, tuple[str, ...]] = {
         "torque", "current", "strom", "moment", "drehmoment", "effort", "motor", "command", "cmd",
         "tau", "force", "kraft", "u", "i", "f", "control", "couple", "courant", "corriente",
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
-        "扭矩", "토크", "전류", "момент", "ток", "сила",
+        "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps",
     ),
     "segment": ("segment", "run", "trial"),
 }  # fmt: skip

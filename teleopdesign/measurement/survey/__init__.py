@@ -58,7 +58,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         raw[time_name], _ = unwrap_stamps(raw[time_name])
     time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     duration = duration_of(raw, time_name, unit, choices)
-    survey = Survey("", {}, duration, guesses, time, columns, unread=unread)
+    survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:
