@@ -40,6 +40,7 @@ SYMBOLS = {
     "%": ParsedUnit(1e-2, (0, 0, 0, 0, 0, 0)),
     "Nmm": ParsedUnit(1e-3, (1, 2, -2, 0, 0, 0)),
     "min": ParsedUnit(60.0, (0, 0, 1, 0, 0, 0)),
+    "day": ParsedUnit(86_400.0, (0, 0, 1, 0, 0, 0)),
     "deg": ParsedUnit(math.pi / 180, (0, 0, 0, 0, 0, 1)),
     "°": ParsedUnit(math.pi / 180, (0, 0, 0, 0, 0, 1)),
     "rev": ParsedUnit(2 * math.pi, (0, 0, 0, 0, 0, 1)),

@@ -220,26 +220,6 @@ def _(get_bench, mo, pages):
 
 
 @app.cell
-def _(bench, body, rung, use, views):
-    residual_view = views.residual_view(bench, body, use, rung)
-    return (residual_view,)
-
-
-@app.cell
-def _(bench, mo, pages):
-    several = list(pages.rung_options(bench).items())
-    one_model = mo.ui.dropdown(options=dict(several), value=several[0][0], label="One model")
-    other_model = mo.ui.dropdown(options=dict(several), value=several[-1][0], label="Another")
-    return one_model, other_model
-
-
-@app.cell
-def _(bench, body, one_model, other_model, use, views):
-    compare_view = views.compare_view(bench, (one_model, other_model), body, use)
-    return (compare_view,)
-
-
-@app.cell
 def _(BackgroundTask, TeleopDesignError, bench, mo, pages, set_bench, set_note, set_task):
     options = pages.candidate_options(bench)
     candidate = mo.ui.dropdown(
@@ -276,12 +256,33 @@ def _(BackgroundTask, TeleopDesignError, bench, mo, pages, set_bench, set_note, 
 
 @app.cell
 def _(add_button, all_button, back_button, bench, candidate, rank_button, views):
-    ladder_view = views.ladder_view(
+    # shown by a cell before the charts: the new rung is on the page while they are drawn
+    views.ladder_view(
         bench,
         candidate,
         {"add": add_button, "back": back_button, "rank": rank_button, "all": all_button},
     )
-    return (ladder_view,)
+    return
+
+
+@app.cell
+def _(bench, body, rung, use, views):
+    residual_view = views.residual_view(bench, body, use, rung)
+    return (residual_view,)
+
+
+@app.cell
+def _(bench, mo, pages):
+    several = list(pages.rung_options(bench).items())
+    one_model = mo.ui.dropdown(options=dict(several), value=several[0][0], label="One model")
+    other_model = mo.ui.dropdown(options=dict(several), value=several[-1][0], label="Another")
+    return one_model, other_model
+
+
+@app.cell
+def _(bench, body, one_model, other_model, use, views):
+    compare_view = views.compare_view(bench, (one_model, other_model), body, use)
+    return (compare_view,)
 
 
 @app.cell
@@ -338,28 +339,22 @@ def _(
     compare_view,
     design_view,
     export_view,
-    ladder_view,
     left_view,
     mo,
     next_view,
     residual_view,
     slider_view,
 ):
-    mo.vstack(
-        [
-            ladder_view,
-            mo.ui.tabs(
-                {
-                    "Residual": residual_view,
-                    "Compare": compare_view,
-                    "Parameters": slider_view,
-                    "What is left": left_view,
-                    "Next experiment": next_view,
-                    "Design": design_view,
-                    "Export": export_view,
-                }
-            ),
-        ]
+    mo.ui.tabs(
+        {
+            "Residual": residual_view,
+            "Compare": compare_view,
+            "Parameters": slider_view,
+            "What is left": left_view,
+            "Next experiment": next_view,
+            "Design": design_view,
+            "Export": export_view,
+        }
     )
     return
 

@@ -146,8 +146,31 @@ def survey_text(survey: Survey, name: str) -> str:
         lines += [f"  {column:<{width}} {why}" for column, why in survey.unused.items()]
     if survey.guesses:
         lines.append("guessed:")
-        lines += [f"  {key}: {why}" for key, why in survey.guesses.items()]
+        for key, why in survey.guesses.items():
+            lines.append(f"  {key}: {why}")
+            if (option := _option_of(key, survey)) and "--" not in why:
+                lines.append(f"    otherwise: {option}")
     return "\n".join(lines)
+
+
+def _option_of(key: str, survey: Survey) -> str:
+    """What to type where a guess is wrong; "" where an option does not say it."""
+    _, quantity, part = (*key.split("."), "", "")[:3]
+    columns = {"actuator_force": "force", "interaction_force": "hand"}
+    if part == "column":
+        return f"--{columns.get(quantity, quantity)} COLUMN"
+    if part == "unit":
+        column = survey.channels.get(quantity, {}).get("column", "COLUMN")
+        return f"--unit {shell_word(f'{column}=UNIT')}"
+    if part == "torque_constant":
+        unit = survey.channels[quantity][part]["unit"]
+        return f'--torque-constant "VALUE {unit}"'
+    other = "revolute" if survey.axis == "prismatic" else "prismatic"
+    return {
+        "channels.position.counts_per_turn": "--counts-per-turn N",
+        "model.device.axis": f"--axis {other}",
+        "sample_rate": "--sample-rate HZ",
+    }.get(key, "")
 
 
 def _short(value: object) -> str:

@@ -20,7 +20,12 @@ ALIASES = {
     "inc": "counts", "volt": "V", "volts": "V", "v": "V", "rads": "rad/s", "degs": "deg/s",
     "с": "s", "мс": "ms", "град": "deg", "рад": "rad", "м": "m", "мм": "mm", "н": "N",
     "нм": "Nm", "н·м": "Nm", "н*м": "Nm", "а": "A", "°": "deg", "度": "deg", "秒": "s", "초": "s",
-    "u/min": "rpm", "1/min": "rpm", "min-1": "rpm",
+    "u/min": "rpm", "1/min": "rpm", "min-1": "rpm", "r/min": "rpm", "tr/min": "rpm",
+    "об/мин": "rpm", "度/秒": "deg/s", "度/s": "deg/s", "град/с": "deg/s", "рад/с": "rad/s",
+    "м/с": "m/s", "мм/с": "mm/s", "弧度": "rad", "弧度/秒": "rad/s", "毫秒": "ms", "微秒": "us",
+    "安": "A", "牛": "N", "牛米": "Nm", "牛·米": "Nm", "毫米": "mm", "米": "m", "毫米/秒": "mm/s",
+    "米/秒": "m/s", "ミリ秒": "ms", "ラジアン": "rad", "도": "deg", "days": "day",
+    "tage": "day", "jours": "day",
 }  # fmt: skip
 _BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])([^()\[\]{}]++)[)\]}]\s*+$")
 #: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
@@ -29,11 +34,13 @@ _OF_TWO = re.compile(
 )
 #: an object of a field bus: "0x6077:00"
 _ADDRESS = re.compile(r"\b0[xX][0-9A-Fa-f]{2,8}\b")
+#: "angle / °", as ISO 80000 writes it: with spaces, so that "pos/vel" is a name
+_SLASH = re.compile(r"\s/\s+\(?([^()/]+(?:/[^()/]+)?)\)?\s*$")
 _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
 
 #: quantity -> words that a name of it may hold, the surest first
 WORDS: dict[str, tuple[str, ...]] = {
-    "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo",
+    "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo", "ts",
              "時間", "时间", "時刻", "시간", "время"),
     "position": (
         "position", "pos", "angle", "winkel", "weg", "theta", "enc", "encoder", "phi", "q", "x",
@@ -53,7 +60,7 @@ WORDS: dict[str, tuple[str, ...]] = {
         "torque", "current", "strom", "moment", "drehmoment", "effort", "motor", "command", "cmd",
         "tau", "force", "kraft", "u", "i", "f", "control", "couple", "courant", "corriente",
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
-        "扭矩", "토크", "전류", "момент", "ток", "сила",
+        "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps",
     ),
     "segment": ("segment", "run", "trial"),
 }  # fmt: skip
@@ -80,7 +87,9 @@ WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consig
 
 def bare_name(name: str) -> str:
     """A name without the unit in brackets at its end."""
-    return _BRACKETS.sub("", bare_column(name)).strip()
+    bare = _BRACKETS.sub("", bare_column(name)).rstrip(" /").strip()
+    slash = _SLASH.search(bare)
+    return bare[: slash.start()] if slash and unit_of_text(slash.group(1)) else bare
 
 
 def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic") -> str | None:
@@ -97,7 +106,7 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
         if quantity is None or _suits(both, quantity, axis):
             return both
     tail = _TAIL.search(name)
-    for text, sure in ((match, True), (tail, False)):
+    for text, sure in ((match, True), (_SLASH.search(name), True), (tail, False)):
         if text is None:
             continue
         unit = unit_of_text(text.group(1))

@@ -252,4 +252,6 @@ def log_of(data: Any) -> Log:
             f"{_WHERE}: data: found {type(data).__name__}, expected a DataFrame, a Dataset of "
             f"xarray or a dict of arrays{file}"
         )
+    # dates and durations are read in seconds, whatever their names say: "time_ms"
+    units |= {n: "s" for n, v in columns.items() if np.asarray(v).dtype.kind in "mM"}
     return Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, units)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, quote
-from .doors._cells import number_of
+from .doors._cells import number_of, stamps_in_texts
 
 Array = NDArray[np.float64]
 #: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
@@ -51,6 +51,9 @@ def _seconds(values: NDArray[Any]) -> Array:
 def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
     """Objects as numbers where all are, written as text or not: None is an empty cell."""
     if any(isinstance(v, str) for v in values):
+        stamps = stamps_in_texts(values.tolist())
+        if stamps is not None:
+            return stamps
         values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
     if all(v is None or isinstance(v, int | float | np.number) for v in values):
         return np.array([np.nan if v is None else v for v in values], dtype=np.float64)

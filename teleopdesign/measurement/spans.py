@@ -10,6 +10,7 @@ from ..errors import ExperimentError
 from .channel import Channel, factor_of
 from .description import BodyDescription
 from .tables import LogColumns
+from .wrapped_stamps import seconds_since_first
 
 
 def cut_to(
@@ -22,7 +23,7 @@ def cut_to(
 ) -> LogColumns:
     """The rows between two instants.
 
-    span: (begin, end) in s from the first row
+    span: (begin, end) in s from the first row; a clock that was set back counts on
     raises ExperimentError: no two numbers in order, or no row between them
     """
     if len(span) != 2 or not np.isfinite(span).all() or not span[0] < span[1]:
@@ -36,8 +37,7 @@ def cut_to(
     else:
         count = max(map(len, columns.values.values()))
         stamps = np.arange(count) / sample_rate
-    first = stamps[np.isfinite(stamps)][:1]
-    since = stamps - (first[0] if len(first) else 0.0)
+    since = seconds_since_first(stamps)
     inside = (since >= span[0]) & (since < span[1])
     if not inside.any():
         last = float(np.nanmax(since)) if len(since) else 0.0

@@ -9,10 +9,20 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+#: s in a day
+DAY = 86_400.0
+#: days between two rows: 0.2 s, as in seconds
+LONGEST_DAYS = 0.2 / DAY
+_SHORTEST = 1.0  # s, of a record
+
 
 def unit_of_steps(stamps: Array) -> tuple[str, str]:
     """Unit of a time from its usual step, and why if it is a guess."""
-    step = float(np.median(np.abs(np.diff(stamps[np.isfinite(stamps)]))))
+    finite = stamps[np.isfinite(stamps)]
+    step = float(np.median(np.abs(np.diff(finite))))
+    # a spreadsheet counts days; in s, such a log would be shorter than a record may be
+    if step < LONGEST_DAYS and _SHORTEST / DAY < float(np.ptp(finite)) < _SHORTEST:
+        return "day", f"steps of {step:.4g} are those of a log only in days"
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
     unit = next(name for largest, name in scales if step < largest or largest == math.inf)
     if unit == "s" and step > 1e-5:

@@ -20,12 +20,14 @@ from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
 from .doors.folder import open_folder
 from .doors.hdf5 import open_hdf5
+from .doors.json_records import open_json
 from .doors.matlab import open_matlab
 from .doors.parquet import open_parquet
 from .doors.text import open_text
 from .doors.workbook import open_workbook
 from .numbers_in_cells import numbers_of
 from .reading import ReadingStep
+from .wrapped_stamps import unwrap_stamps
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -41,6 +43,12 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".log": open_text,
     ".lvm": open_text,
     ".asc": open_text,
+    ".sto": open_text,
+    ".mot": open_text,
+    ".trc": open_text,
+    ".json": open_json,
+    ".jsonl": open_json,
+    ".ndjson": open_json,
     ".parquet": open_parquet,
     ".xlsx": open_workbook,
     ".mat": open_matlab,
@@ -51,6 +59,16 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
+#: how files begin that are known by it
+BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
+    b"\x89HDF\r\n\x1a\n": open_hdf5,
+    b"PAR1": open_parquet,
+    b"MATLAB ": open_matlab,
+    b"{": open_json,
+    b"[": open_json,
+}
+#: bytes of a file that are looked at where its ending says nothing
+LOOKED_AT = 4096
 #: what makes a folder an experiment
 EXPERIMENT = "experiment.toml"
 
@@ -84,6 +102,8 @@ def open_log(path: Path, file: str) -> Log:
     if opened is None:
         name = path.name.lower()
         opened = next((door for ending, door in DOORS.items() if name.endswith(ending)), None)
+    if opened is None and path.is_file():
+        opened = _read_with_errors(lambda: _door_by_content(path, file), file)
     if opened is None and (path / EXPERIMENT).exists():
         word = shlex.quote(str(path))
         raise ExperimentError(
@@ -97,6 +117,22 @@ def open_log(path: Path, file: str) -> Log:
     log = _read_with_errors(lambda: door(path, file), file)
     refuse_odd_names(log, file)
     return replace(log, read=lambda wanted: _read_with_errors(lambda: log.read(wanted), file))
+
+
+def _door_by_content(path: Path, file: str) -> Callable[[Path, str], Log] | None:
+    """The door of a file with an ending that says nothing: "run12", "log.data"; None: no log."""
+    with path.open("rb") as stream:
+        head = stream.read(LOOKED_AT)
+    for begin, door in BEGINNINGS.items():
+        if head.startswith(begin):
+            return door
+    if head[:2] in (b"PK", b"\x1f\x8b") or b"\0" in head or b"\n" not in head:
+        return None
+    try:
+        open_text(path, file)
+    except ExperimentError:  # a text, but no table: its ending is what is wrong
+        return None
+    return open_text
 
 
 def tables_in(folder: Path) -> list[Path]:
@@ -146,7 +182,11 @@ def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
     except MemoryError:
         raise ExperimentError(f"{file}: too large for this machine's memory") from None
     stamps = {n: values[clock] for n, clock in clocks.items()}
-    columns = LogColumns({n: values[n] for n in names}, stamps, log.notes + log.left_out())
+    notes = log.notes + log.left_out()
+    for name in (n for n in names if wanted[n] == "channels.time"):
+        values[name], more = unwrap_stamps(values[name])
+        notes += more
+    columns = LogColumns({n: values[n] for n in names}, stamps, notes)
     _refuse_different_lengths(columns, file, wanted)
     return columns
 

@@ -9,6 +9,17 @@ from app.browser import CHROMIUM, WHY, opened, picture, press
 
 from teleopdesign import example
 
+#: presses *Add* and counts the seconds until the page holds the new rung
+SECONDS_TO_THE_NEW_RUNG = """() => new Promise(done => {
+    const below = root => [...root.querySelectorAll('*')].flatMap(
+        e => e.shadowRoot ? [e, ...below(e.shadowRoot)] : [e]);
+    const shown = () => below(document).some(e => e.textContent.includes('+ stribeck at device'));
+    const begin = performance.now();
+    const look = () => shown() ? done((performance.now() - begin) / 1000) : setTimeout(look, 5);
+    below(document).find(e => e.tagName === 'BUTTON' && e.textContent.trim() === 'Add').click();
+    look();
+})"""
+
 
 def status(address):
     try:
@@ -62,8 +73,10 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         page.get_by_text("+ stribeck at device").first.wait_for()
         press(page, "Take back")
         page.get_by_text("+ stribeck at device").first.wait_for(state="detached")
-        press(page, "Add")
-        page.get_by_text("+ stribeck at device").first.wait_for()
+        page.wait_for_timeout(3000)  # the charts are drawn
+        # 0.23 to 0.34 s at load 5 on two cores; 1.8 to 2.6 s with the ladder behind the charts. The
+        # bound allows for a machine that does other things as well
+        assert page.evaluate(SECONDS_TO_THE_NEW_RUNG) < 1.5
         page.get_by_role("tab", name="Compare").click()
         page.get_by_role("cell", name="device.stribeck.extra_static_level").wait_for()
         page.locator("canvas, svg.marks").first.wait_for()

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import math
 import re
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
 from ...errors import ExperimentError, quote
+from ._dates import stamps_of
 from ._log import Array
 
 #: digits are taken once ("++"): a cell of a million digits and a letter is decided at once
 _NUMBER = re.compile(
     r"[-+]?(\d++(?:\.\d*+)?|\.\d++)([ed][-+]?\d++)?$|[-+]?(nan|inf|infinity)$", re.I
 )
+#: thousands with commas between, as spreadsheets print them: "1,000.0"
+_THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})++(?:\.\d*+)?$")
 #: what loggers and tables write where there is no reading, in lower case
 NO_READING = frozenset(
     "n/a na n.a. #n/a #na null none nil - -- --- ? * . missing invalid "
     "#value! #div/0! #num! #ref!".split()
 )
-_DAY = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[ T](.*)$")
-_ZONE = re.compile(r"(Z|[-+]\d{2}:?\d{2})$")
-_TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)$")
 
 _NO_ROWS = np.empty(0)
 
@@ -35,6 +34,9 @@ def is_empty(cell: str) -> bool:
 
 
 def is_number(cell: str, comma: bool) -> bool:
+    """Whether a cell is a number; comma: with a decimal comma, else with a point."""
+    if not comma and _THOUSANDS.match(cell):
+        return True
     return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
 
 
@@ -43,6 +45,8 @@ def number_of(cell: str) -> float | str:
     cell = cell.strip()
     if is_empty(cell):
         return math.nan
+    if _THOUSANDS.match(cell):
+        cell = cell.replace(",", "")
     if not _NUMBER.match(cell):
         return cell
     return float(cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell)
@@ -50,37 +54,24 @@ def number_of(cell: str) -> float | str:
 
 def seconds_of(cell: str) -> float | None:
     """A date or a time of day as seconds; None: it is neither."""
-    if ":" not in cell and "T" not in cell and cell.count("-") < 2:
+    if ":" not in cell and max(map(cell.count, "-/.")) < 2:
         return None
     stamp = stamps_of([cell])
     return None if stamp is None else float(stamp[0])
 
 
-def stamps_of(cells: Sequence[str]) -> Array | None:
-    """Dates or times of day as seconds, from midnight or the first day; None: some are neither."""
-    day = _TIME_OF_DAY.match(cells[0])
-    try:
-        if day is not None:
-            parts = [c.replace(",", ".").split(":") for c in cells]
-            return np.array([3600.0 * int(h) + 60.0 * int(m) + float(s) for h, m, s in parts])
-        written = [_ZONE.sub("", _turn_date(c)).replace(",", ".") for c in cells]
-        with warnings.catch_warnings(action="ignore", category=UserWarning):  # of a time zone
-            stamps = np.array(written, dtype="datetime64[ns]")
-    except (ValueError, IndexError):
+def stamps_in_texts(cells: Sequence[object]) -> Array | None:
+    """Dates or times of day of a column in s, NaN in empty cells; None: they are something else."""
+    filled = [k for k, cell in enumerate(cells) if cell is not None and not is_empty(str(cell))]
+    texts = [cell for k in filled if isinstance(cell := cells[k], str)]
+    if not texts or len(texts) < len(filled) or seconds_of(texts[0]) is None:
         return None
-    if np.isnat(stamps).any():
+    stamps = stamps_of(texts)
+    if stamps is None:
         return None
-    seconds: Array = (stamps - stamps[0].astype("datetime64[D]")).astype(np.int64) * 1e-9
-    return seconds
-
-
-def _turn_date(cell: str) -> str:
-    """A date that begins with the day, as one that begins with the year."""
-    match = _DAY.match(cell)
-    if match is None:
-        return cell.replace(" ", "T", 1)
-    day, month, year, rest = match.groups()
-    return f"{year}-{int(month):02d}-{int(day):02d}T{rest}"
+    out = np.full(len(cells), np.nan)
+    out[filled] = stamps
+    return out
 
 
 class CellColumns:
@@ -119,7 +110,7 @@ def _begins_with_text(cells: Sequence[str]) -> bool:
 
 
 def _seconds_or_numbers(cells: Sequence[str], where: str) -> Array:
-    stamps = stamps_of(cells)
+    stamps = stamps_in_texts(cells)
     return _numbers(cells, where) if stamps is None else stamps
 
 

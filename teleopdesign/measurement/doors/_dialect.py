@@ -13,9 +13,9 @@ from typing import IO, cast
 import numpy as np
 
 from ...errors import ExperimentError, quote
-from ...quantity import is_unit
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
+from ._header import bare_unit, is_unit_cell, names_and_units
 from ._log import number_names
 
 COMMENTS = ("#", "%", "//")
@@ -24,11 +24,16 @@ SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": 
 LOOKED_AT = 65_536
 #: rows of numbers that follow each other in a table: a header of blocks has two ("X0", "Delta_X")
 IN_A_ROW = 3
+#: lines above a table that are kept, for what they say of constants
+MOST_REMARKS = 100
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a table is written. `first`: line of the first row of numbers, from 0."""
+    """How a table is written. `first`: line of the first row of numbers, from 0.
+
+    dates: columns of dates or times of day;  remarks: lines above the table that are not its header
+    """
 
     encoding: str
     separator: str
@@ -37,6 +42,8 @@ class Dialect:
     units: tuple[str, ...]
     first: int
     named: bool = True
+    dates: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 def dialect_of(path: Path, file: str) -> Dialect:
@@ -62,7 +69,15 @@ def dialect_of(path: Path, file: str) -> Dialect:
     named = bool(header)
     if not named:
         header = tuple(f"column {k + 1}" for k in range(width))
-    return Dialect(encoding, separator, comma, number_names(header), units, first, named)
+    names = number_names(header)
+    cells = cells_of(lines[first], separator)
+    dates = tuple(
+        name
+        for name, cell in zip(names, cells, strict=False)
+        if not is_number(cell, comma) and seconds_of(cell) is not None
+    )
+    remarks = tuple(line.strip() for line in lines[:first] if line.strip())[:MOST_REMARKS]
+    return Dialect(encoding, separator, comma, names, units, first, named, dates, remarks)
 
 
 def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, int]:
@@ -152,7 +167,7 @@ def _header(
     rows = []
     cells: list[str] = []
     for line in plain:
-        text = line.lstrip()
+        text = line.lstrip(" ")  # not tabs: the first cell of a row of titles may be empty
         for mark in COMMENTS:
             text = text.removeprefix(mark)
         cells = cells_of(text.strip() if separator == " " else text.strip("\n"), separator)
@@ -166,18 +181,11 @@ def _header(
         last = plain[-1] if plain and not plain[-1].lstrip().startswith(COMMENTS) else ""
         names = cells_of(last, separator) if last else []
         return (() if _is_data(names, comma) else tuple(names)), ()
-    if len(rows) > 1 and all(is_unit_cell(c) for c in rows[-1]) and any(rows[-1]):
-        return rows[-2], tuple(c.strip("[]() ") for c in rows[-1])
+    joined, said = names_and_units(rows)
     for label, *units in rows[:-1]:  # a row of units that says so itself: "Y_Unit_Label"
-        if "unit" in label.lower() and any(units) and all(map(is_unit_cell, units)):
-            return rows[-1], ("", *(c.strip("[]() ") for c in units))
-    return rows[-1], ()
-
-
-def is_unit_cell(cell: str) -> bool:
-    """Whether the cell may stand in a row of units: a unit, in brackets or not, or nothing."""
-    bare = cell.strip("[]() ")
-    return not bare or bare in ("-", "counts", "ticks") or is_unit(bare)
+        if not said and "unit" in label.lower() and any(units) and all(map(is_unit_cell, units)):
+            return rows[-1], ("", *map(bare_unit, units))
+    return joined, said
 
 
 def open_bytes(path: Path) -> IO[bytes]:

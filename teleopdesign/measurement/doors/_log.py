@@ -37,6 +37,7 @@ class Log:
     units: what the file itself says of units, by column
     notes: remarks on the file ("semicolons, decimal comma")
     clocks: column -> the column with its stamps, where a log has several clocks (topics of a bag)
+    remarks: lines of text above the table, names and units among them
     left_out: what was found about the rows, once they are read ("3 lines that are no rows")
     """
 
@@ -46,6 +47,7 @@ class Log:
     notes: tuple[str, ...] = ()
     clocks: Mapping[str, str] = field(default_factory=dict)
     left_out: Callable[[], tuple[str, ...]] = tuple
+    remarks: tuple[str, ...] = ()
 
 
 def optional(module: str, file: str, extra: str = "io") -> ModuleType:

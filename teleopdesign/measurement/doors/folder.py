@@ -90,6 +90,7 @@ def _seconds(log: Log, column: str, file: str) -> Array:
     from ..column_names import unit_in_name
     from ..numbers_in_cells import numbers_of
     from ..stamp_unit import unit_of_steps
+    from ..wrapped_stamps import unwrap_stamps
 
     values = np.asarray(log.read({column: "channels.time"})[column])
     if values.dtype.kind == "M":
@@ -102,7 +103,7 @@ def _seconds(log: Log, column: str, file: str) -> Array:
     unit = log.units.get(column) or unit_in_name(column, "time")
     if unit is None or not measures(unit, "time"):
         unit = unit_of_steps(stamps)[0]
-    return np.asarray(stamps * si_factor(unit, quantity="time"))
+    return np.asarray(unwrap_stamps(stamps)[0] * si_factor(unit, quantity="time"))
 
 
 def _require_shared_time(seconds: Mapping[str, Array], file: str) -> None:

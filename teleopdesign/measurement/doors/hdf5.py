@@ -11,11 +11,18 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import ExperimentError, quote
+from ..column_names import unit_of_text
 from ._log import Log, how_to_save, optional, part, parts_of, refuse_size, refusing_damage
 
 _KIND = "HDF5 file"
+#: how MATLAB begins its files, in front of what HDF5 writes
+_MATLAB = b"MATLAB"
 #: datasets of one file that are listed
 _MOST = 10_000
+#: structs of one array that are looked into
+MOST_STRUCTS = 64
+#: names of the attribute that holds a unit, in lower case
+UNIT_KEYS = ("units", "unit")
 #: attribute by which MATLAB marks one of its objects; its numbers lie elsewhere in the file
 _OBJECT = "MATLAB_object_decode"
 
@@ -24,6 +31,9 @@ def open_hdf5(path: Path, file: str) -> Log:
     """An HDF5 file, or a MAT file of version 7.3."""
     h5py = optional("h5py", file)
     columns: dict[str, tuple[str, int | str | None]] = {}
+    units: dict[str, str] = {}
+    with path.open("rb") as stream:
+        turned = stream.read(len(_MATLAB)) == _MATLAB
     objects: list[str] = []
     with refusing_damage(_KIND, file), h5py.File(path, "r") as content:
         names: list[str] = []
@@ -37,12 +47,20 @@ def open_hdf5(path: Path, file: str) -> Log:
             if name.startswith("#"):  # where MATLAB keeps its cells
                 continue
             item = content[name]
+            if item.dtype == h5py.ref_dtype:
+                columns |= _fields_of_structs(content, item, name)
+                continue
+            unit = _unit(item)
             if _OBJECT in item.attrs:
                 objects.append(name)
             elif item.dtype.names:
                 columns |= {f"{name}.{field}": (name, field) for field in item.dtype.names}
             else:
-                columns |= parts_of(name, item.shape) or {name: (name, None)}
+                # MATLAB writes a matrix column by column, so that it lies here on its side
+                shape = item.shape[::-1] if turned else item.shape
+                parts = parts_of(name, shape) or {name: (name, None)}
+                columns |= parts
+                units |= dict.fromkeys(parts, unit) if unit else {}
                 if len(item.shape) == 2 and 1 not in item.shape:
                     columns[name] = (name, -1)
 
@@ -61,11 +79,35 @@ def open_hdf5(path: Path, file: str) -> Log:
                 f"{file}: dataset {quote(name)} lies in another file, expected one file"
             )
         refuse_size(max(item.shape, default=0), file)
-        if column == -1:
-            return item[()]
         if isinstance(column, str):
             return item[column]
-        return part(item[()], column)
+        values = item[()].T if turned else item[()]
+        return values if column == -1 else part(values, column)
 
     notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
-    return Log(tuple(columns), read, notes=notes)
+    return Log(tuple(columns), read, units, notes)
+
+
+def _unit(item: Any) -> str | None:
+    """The unit that a dataset says as its attribute."""
+    for key, value in item.attrs.items():
+        if key.lower() in UNIT_KEYS:
+            text = value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+            if isinstance(text, str) and text.strip():
+                return unit_of_text(text) or text.strip()
+    return None
+
+
+def _fields_of_structs(
+    content: Any, item: Any, name: str
+) -> dict[str, tuple[str, int | str | None]]:
+    """Columns of a field of an array of structs: "axis(2)/q", kept elsewhere in the file."""
+    columns: dict[str, tuple[str, int | str | None]] = {}
+    group, _, field = name.rpartition("/")
+    for k, reference in enumerate(item[()].reshape(-1)[:MOST_STRUCTS], start=1):
+        target = content[reference] if reference else None
+        if target is None or not hasattr(target, "shape") or target.dtype.kind not in "fiu":
+            continue
+        if target.size > 1 and 1 in target.shape:
+            columns[f"{group}({k})/{field}" if group else f"{field}({k})"] = (target.name, None)
+    return columns

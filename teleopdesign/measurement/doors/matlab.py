@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import ExperimentError
 from ._log import Log, how_to_save, part, parts_of, refuse_size, refusing_damage
 from ._mat_elements import check_elements
-from .hdf5 import open_hdf5
+from .hdf5 import MOST_STRUCTS, open_hdf5
 
 #: how an HDF5 file begins, at its first byte or behind a head of so many bytes
 _HDF5, _HEAD = b"\x89HDF\r\n\x1a\n", 512
@@ -92,6 +92,13 @@ def _fields(name: str, value: Any, depth: int, units: dict[str, str]) -> dict[st
         contents: dict[str, Any] = {}
         for field in array.dtype.names:
             contents |= _fields(f"{name}.{field}", array.reshape(-1)[0][field], depth + 1, units)
+        return contents
+    if array.dtype.names and 1 < array.size <= MOST_STRUCTS and depth < _DEPTH:
+        contents = {}
+        for k, element in enumerate(array.reshape(-1), start=1):
+            one = np.empty(1, dtype=array.dtype)
+            one[0] = element
+            contents |= _fields(f"{name}({k})", one, depth, units)
         return contents
     if array.dtype.kind in "fiub" and array.size > 1:
         return {name: array}

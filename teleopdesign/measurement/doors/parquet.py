@@ -15,7 +15,11 @@ def open_parquet(path: Path, file: str) -> Log:
     """A parquet file; raises ExperimentError: none, or without pyarrow."""
     parquet = optional("pyarrow.parquet", file)
     with refusing_damage(_KIND, file):
-        names = tuple(parquet.read_schema(path).names)
+        schema = parquet.read_schema(path)
+        names = tuple(schema.names)
+        # dates and durations are read in seconds, whatever their names say: "time_ms"
+        timed = [n for n, kind in zip(names, map(str, schema.types), strict=True)
+                 if kind.startswith(("timestamp", "duration", "time32", "time64"))]  # fmt: skip
         refuse_size(parquet.read_metadata(path).num_rows, file)
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
@@ -23,4 +27,4 @@ def open_parquet(path: Path, file: str) -> Log:
             table = parquet.read_table(path, columns=list(wanted))
             return {name: table.column(name).to_numpy() for name in wanted}
 
-    return Log(names, read)
+    return Log(names, read, dict.fromkeys(timed, "s"))

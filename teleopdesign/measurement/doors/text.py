@@ -64,7 +64,10 @@ def open_text(path: Path, file: str) -> Log:
     if not dialect.named:
         notes.append("no header: columns are named by their number")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
-    return Log(dialect.header, read, units, tuple(notes), left_out=left_out)
+    units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
+    return Log(
+        dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks
+    )
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:

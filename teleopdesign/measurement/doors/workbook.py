@@ -5,6 +5,7 @@ units.
 from __future__ import annotations
 
 import datetime
+import math
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
-from ._dialect import is_unit_cell
+from ._header import names_and_units
 from ._log import MOST_BYTES, Log, number_names, optional, refuse_size, refusing_damage
 
 #: rows above the first row of numbers that may be titles, names and units
@@ -45,17 +46,18 @@ def open_workbook(path: Path, file: str) -> Log:
 
 def _is_data(row: Sequence[Any]) -> bool:
     filled = [c for c in row if c is not None]
-    kinds = int | float | datetime.datetime | datetime.time
+    kinds = int | float | datetime.datetime | datetime.time | datetime.timedelta
     return len(filled) > 1 and sum(isinstance(c, kinds) for c in filled) > 0.5 * len(filled)
 
 
 def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> Log:
-    above = [[_text(c) for c in row] for row in rows[:first] if any(c is not None for c in row)]
-    units: list[str] = []
-    if len(above) > 1 and all(map(is_unit_cell, above[-1])):
-        units = [c.strip("[]() ") for c in above.pop()]
-    header = above[-1] if above else []
     width = max(len(row) for row in rows[first : first + _TOP])
+    above = [
+        [_text(c) for c in (*row, *[None] * (width - len(row)))]
+        for row in rows[:first]
+        if any(c is not None for c in row)
+    ]
+    header, units = names_and_units(above)
     names = number_names(
         [header[k] if k < len(header) and header[k] else f"column {k + 1}" for k in range(width)]
     )
@@ -65,16 +67,30 @@ def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> L
         return {n: _column([row[names.index(n)] for row in data]) for n in wanted}
 
     said = {n: u for n, u in zip(names, units, strict=False) if u}
-    return Log(names, read, said, notes)
+    kinds = datetime.datetime | datetime.time | datetime.timedelta
+    said |= {n: "s" for n, c in zip(names, rows[first], strict=False) if isinstance(c, kinds)}
+    remarks = tuple(" ".join(filter(None, row)) for row in above)
+    return Log(names, read, said, notes, remarks=remarks)
 
 
 def _text(cell: Any) -> str:
     return "" if cell is None else str(cell).strip()
 
 
+def _seconds(cell: Any) -> float:
+    """A time of day or a duration in s; NaN for an empty cell."""
+    if isinstance(cell, datetime.timedelta):
+        return cell.total_seconds()
+    if isinstance(cell, datetime.time):
+        return 3600.0 * cell.hour + 60.0 * cell.minute + cell.second + 1e-6 * cell.microsecond
+    return math.nan
+
+
 def _column(cells: Sequence[Any]) -> Any:
     if any(isinstance(c, datetime.datetime) for c in cells[:1]):
         return np.array(cells, dtype="datetime64[ns]")
+    if any(isinstance(c, datetime.time | datetime.timedelta) for c in cells[:1]):
+        return np.array([_seconds(c) for c in cells])
     if any(isinstance(c, str) for c in cells):
         return np.array(cells, dtype=object)
     return np.array([np.nan if c is None else c for c in cells], dtype=object).astype(float)

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
 from ..doors._log import Log, join_names
+from ..wrapped_stamps import unwrap_stamps
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
@@ -53,9 +54,11 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     _check_units(choices, raw, file)
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
+    if time_name is not None:
+        raw[time_name], _ = unwrap_stamps(raw[time_name])
     time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     duration = duration_of(raw, time_name, unit, choices)
-    survey = Survey("", {}, duration, guesses, time, columns, unread=unread)
+    survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:

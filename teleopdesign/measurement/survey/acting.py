@@ -21,7 +21,7 @@ FOLLOWED = 0.01
 LATE = 4
 #: words of a current, in the languages that `column_names` reads
 CURRENT = (
-    "current", "curr", "strom", "courant", "corriente", "corrente", "i", "iq", "amps",
+    "current", "curr", "cur", "strom", "courant", "corriente", "corrente", "i", "iq", "amps",
     "電流", "电流", "전류", "ток",
 )  # fmt: skip
 
@@ -52,8 +52,20 @@ def _is_current(column: SurveyedColumn) -> bool:
     """Whether a column is the current of a motor, by its unit or by its name."""
     if likeness(column.name, "actuator_force") < SURE_NAME:
         return False
-    named = any(word in CURRENT for word in words_of(column.name))
-    return column.unit in ("A", "mA") or column.unit is None and named
+    return column.unit in ("A", "mA") or column.unit is None and names_current(column.name)
+
+
+def names_current(name: str) -> bool:
+    """Whether a name is that of a motor's current, whatever its unit."""
+    return any(
+        word == known
+        or not known.isascii()
+        and known in word  # no spaces between words
+        or len(known) > 4
+        and word.endswith(known)  # the last part of a compound: "Motorstrom"
+        for word in words_of(name)
+        for known in CURRENT
+    )
 
 
 def _unexplained_share(wanted: Array, measured: Array) -> float:

@@ -13,6 +13,7 @@ from ..doors._log import Log, join_names
 from ..numbers_in_cells import numbers_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
+from ..wrapped_stamps import seconds_since_first
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
@@ -108,9 +109,8 @@ def duration_of(
     """Seconds from the first to the last row of a log; `interpolate_columns` looks at a part."""
     if time_name is None:
         return (max(map(len, raw.values())) - 1) / (choices.sample_rate or 1000.0)
-    return float(np.nanmax(raw[time_name]) - np.nanmin(raw[time_name])) * si_factor(
-        unit, quantity="time"
-    )
+    stamps = raw[time_name] * si_factor(unit, quantity="time")
+    return float(np.nanmax(seconds_since_first(stamps)))
 
 
 def interpolate_columns(

@@ -42,6 +42,7 @@ class Survey:
     questions: what a person is asked: key -> (question, what is taken otherwise)
     time: (n,) s from the first row;  columns: by name, on it;  first: values of a first model
     explained: column that may be a force -> part of it that the motion explains (up to 1)
+    remarks: lines of text above the table
     unused: column that is in no channel -> why;  unread: column without numbers -> why
     """
 
@@ -55,6 +56,7 @@ class Survey:
     notes: list[str] = field(default_factory=list)
     explained: dict[str, float] = field(default_factory=dict)
     unused: dict[str, str] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
     unread: dict[str, str] = field(default_factory=dict)
 
 
@@ -90,6 +92,8 @@ def is_unit_of(unit: str | None, quantity: str) -> bool:
         return quantity == "position"
     if quantity == "force" and is_unit(unit) and unit in ("A", "mA", "V", "%"):
         return True
+    if quantity == "time":
+        return unit != "counts" and is_unit(unit) and measures(unit, "time")
     return any(measures(unit, quantity, axis) for axis in ("prismatic", "revolute"))
 
 

@@ -12,7 +12,8 @@ from ...quantity import is_unit, measures, si_factor, unit_of
 from ..column_names import is_wanted, likeness, unit_in_name
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force
-from .acting import current_that_acted
+from .acting import current_that_acted, names_current
+from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .content import (
     NONE,
     SURE_NAME,
@@ -29,14 +30,14 @@ from .content import (
     sample_time_of,
 )
 from .position import unwrap_column, wrap_of
+from .remarks import torque_constant_in
 
+#: part that the motion explains by chance; a column with less needs a force's name or unit
+CHANCE = 0.1
 #: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
 PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
-#: what a force gains that is a field of the position's struct or joint: more than names that are
-#: alike differ by ("current" 0.98, "effort" 0.9), less than a name that says what was commanded
-BESIDE = 0.2
 #: what a column without a telling name may leave of the squares that the motion does not explain,
 #: to be taken for the hand's force: with more, chance finds one among many columns. And how far its
 #: factor may lie off one: a sensor's calibration error of a quarter still passes
@@ -69,7 +70,9 @@ def describe_forces(
     }
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     scores = {
-        n: _force_score(c, physics[n]) + BESIDE * _stand_together(n, position)
+        n: _force_score(c, physics[n])
+        + BESIDE * stand_together(n, position)
+        - ANOTHER_AXIS * of_another_axis(n, position)
         for n, c in free.items()
     }
     force, measured = _force_that_drives(survey, free, physics, scores, choices, file)
@@ -79,9 +82,10 @@ def describe_forces(
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
     motion = x * _position_to_si(survey), h
-    hand = _hand(free, force, choices)
+    same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
+    hand = _hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
-        hand = _hand_by_motion(survey, free, force, motion)
+        hand = _hand_by_motion(survey, same_axis, force, motion)
     if hand is not None:
         survey.channels["interaction_force"] = _force_entry(
             survey, hand, "interaction_force", choices
@@ -120,18 +124,19 @@ def _force_that_drives(
         )
     elif likeness(force, "actuator_force") < SURE_NAME:
         share = physics[force].explained
+        named = likeness(force, "actuator_force") > 0 or is_unit_of(free[force].unit, "force")
+        if share < CHANCE and not named:
+            raise ExperimentError(
+                f"{file}: found no force: no column is one by its name or unit, and the motion "
+                f"explains {max(share, 0.0):.0%} of {force!r}; --force COLUMN takes one of "
+                f"{join_names(free)}"
+            )
         why = f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _stand_together(one: str, other: str) -> bool:
-    """Whether two columns are fields of one struct, or of one joint in a message."""
-    stems = {name.rpartition(".")[0] for name in (one, other)}
-    return len(stems) == 1 and "" not in stems
 
 
 def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
@@ -158,16 +163,25 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
     entry: dict[str, Any] = {"column": name}
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
         unit = choices.torque_constant[1].rpartition("/")[2]
+    if unit is None and names_current(name):
+        unit = "A"
+        survey.guesses[f"channels.{key}.unit"] = f"A: {name!r} is a current by its name"
     if unit in ("A", "mA", "V"):
         entry["unit"] = unit
         base = "V" if unit == "V" else "A"
         constant = choices.torque_constant
         if constant is None:
             constant = (1.0, f"{unit_of('force', axis)}/{base}")
-            survey.guesses[f"channels.{key}.torque_constant"] = (
+            why = (
                 f"1 {constant[1]} stands for the motor's constant: fill it in, forces and "
                 "parameters follow in proportion"
             )
+            if (stated := torque_constant_in(survey.remarks)) and measures(
+                stated[1].rpartition("/")[0], "force", axis
+            ):
+                constant = stated[:2]
+                why = f"{constant[0]:g} {constant[1]}: the log says {stated[2]!r}"
+            survey.guesses[f"channels.{key}.torque_constant"] = why
         entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
         return entry
     if unit is None or not measures(unit, "force", axis):

@@ -26,6 +26,7 @@ from .content import (
     rises,
     sample_time_of,
 )
+from .remarks import counts_per_turn_in
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
@@ -80,7 +81,7 @@ def find_position(
 ) -> tuple[str, str | None]:
     """The column of the position, and that of its velocity if there is one."""
     h = sample_time_of(survey)
-    moving = {n: c for n, c in survey.columns.items() if moves(c) and not rises(c.values)}
+    moving = {n: c for n, c in survey.columns.items() if moves(c) and _may_be_position(c)}
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
     derivative: dict[str, tuple[str, float]] = {}
     scores: dict[str, float] = {}
@@ -96,13 +97,17 @@ def find_position(
             if agree > max(DERIVATIVE, derivative.get(name, ("", 0.0))[1]):
                 derivative[name] = (other, agree)
         scores[name] = score + 0.4 * (name in derivative)
+    # what says that it is something else is no position, whatever is left
+    known = choices.units  # a unit that was chosen is refused by its name, if it is wrong
+    scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
     if choices.position is not None:
         best = choices.position
     elif scores:
         best = max(scores, key=lambda n: scores[n])
     else:
         raise ExperimentError(
-            f"{file}: found no column that moves among {join_names(survey.columns) or 'none'}"
+            f"{file}: found no position: no column that moves and is no force or velocity by "
+            f"unit or name, among {join_names(survey.columns) or 'none'}"
             f"{reasons(survey.unread)}"
         )
     if choices.position is None and likeness(best, "position") < SURE_NAME:
@@ -118,6 +123,24 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _is_another(column: SurveyedColumn) -> bool:
+    """Whether its unit, or without one its name, says that a column is a force or a velocity."""
+    if is_unit_of(column.unit, "position"):
+        return False
+    if column.unit is None and likeness(column.name, "position") == 0:
+        others = ("velocity", "actuator_force", "interaction_force")
+        return max(likeness(column.name, other) for other in others) >= SURE_NAME
+    return any(is_unit_of(column.unit, kind) for kind in ("velocity", "force"))
+
+
+def _may_be_position(column: SurveyedColumn) -> bool:
+    """Whether a column that moves is no second clock: a wheel's angle may only rise."""
+    if not rises(column.values):
+        return True
+    said = likeness(column.name, "position") >= SURE_NAME or is_unit_of(column.unit, "position")
+    return said and not is_unit_of(column.unit, "time")
 
 
 def _is_force(column: SurveyedColumn) -> bool:
@@ -173,9 +196,12 @@ def describe_position(
     if unit == "counts":
         per_turn = choices.counts_per_turn
         if per_turn is None:
-            per_turn = jump or 4096.0
+            per_turn, why = jump or 4096.0, "look at the encoder"
+            if (said_above := counts_per_turn_in(survey.remarks)) is not None:
+                per_turn, line = said_above
+                why = f"the log says {line!r}"
             survey.guesses["channels.position.counts_per_turn"] = (
-                f"{per_turn:g} counts a turn: look at the encoder"
+                f"{per_turn:g} counts a turn: {why}"
             )
         entry["counts_per_turn"] = per_turn
     else:

@@ -1,0 +1,71 @@
+"""Names and units of columns from the rows above a table: titles, groups, names, units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from ...quantity import is_unit
+from ..column_names import unit_of_text
+
+_BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")
+#: part of the cells of a row that are units from which the others are units that are not known
+MOSTLY = 0.5
+
+
+def bare_unit(cell: str) -> str:
+    """A cell of a row of units without its brackets, as the package writes units."""
+    bare = cell.strip("[](){}<> ")
+    return unit_of_text(bare) or bare
+
+
+def is_unit_cell(cell: str) -> bool:
+    """Whether the cell may stand in a row of units: a unit, in brackets or not, or nothing."""
+    bare = cell.strip("[](){}<> ")
+    return not bare or bare in ("-", "counts", "ticks") or is_unit(bare)
+
+
+def is_row_of_units(cells: Sequence[str], names: Sequence[str]) -> bool:
+    """Whether a row below `names` holds units: all in brackets, or most of them known units."""
+    filled = [cell for cell in cells if cell]
+    if not filled or not any(names):
+        return False
+    if all(map(is_unit_cell, filled)) or all(map(_BRACKETED.match, filled)):
+        return True
+    known = sum(unit_of_text(cell.strip("[](){}<> ")) is not None for cell in filled)
+    # letters such as "t", "a", "v" are names as well as units: names above them are no units
+    above = sum(unit_of_text(name) is not None for name in names)
+    return known > MOSTLY * len(filled) and above < known
+
+
+def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names and units from the rows of text above a table, as wide as the table.
+
+    A cell without a name takes that of the row above it, and columns of one name the title of
+    their group: "Motor Angle", "Bench Angle". A title stands above the first column of its group.
+    """
+    above = list(rows)
+    units: tuple[str, ...] = ()
+    if len(above) > 1 and is_row_of_units(above[-1], above[-2]):
+        units = tuple(bare_unit(cell) for cell in above.pop())
+    names = list(above.pop()) if above else []
+    while above and not all(names) and sum(map(bool, above[-1])) > 1:
+        row = above.pop()
+        names = [name or upper for name, upper in zip(names, row, strict=False)]
+    filled = [name for name in names if name]
+    if above and len(set(filled)) < len(filled) and sum(map(bool, above[-1])) > 1:
+        titles = _carried_on(above[-1])
+        twice = {name for name in filled if filled.count(name) > 1}
+        names = [
+            f"{title} {name}" if name in twice and title else name
+            for name, title in zip(names, titles, strict=True)
+        ]
+    return tuple(names), units
+
+
+def _carried_on(titles: Sequence[str]) -> list[str]:
+    """The title of each column's group: merged cells have theirs in the first alone."""
+    out: list[str] = []
+    for title in titles:
+        out.append(title or (out[-1] if out else ""))
+    return out

@@ -1,0 +1,123 @@
+"""JSON: one record a line, a list of records, or a list of numbers for each column.
+
+Keys within keys are columns "joint.pos"; the numbers of a list are "q(1)", "q(2)", or, where the
+record names its joints in a list `name`, "elbow.q".
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ._dialect import open_bytes
+from ._log import MOST_BYTES, Log, refuse_size
+
+#: records within records that are looked into, and numbers of one list that become columns
+DEPTH, MOST_FIELDS = 6, 200
+#: lines that are no records, and their part, up to which they are left out
+FEW_STRAYS, MOST_STRAYS = 10, 0.01
+
+
+def open_json(path: Path, file: str) -> Log:
+    """A file of JSON; raises ExperimentError: none, or no records in it."""
+    with open_bytes(path) as stream:
+        raw = stream.read(MOST_BYTES + 1)
+    if len(raw) > MOST_BYTES:
+        raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
+    text = raw.decode("utf-8-sig", errors="replace")
+    strays = 0
+    try:
+        try:
+            content = json.loads(text)
+        except ValueError:
+            content, strays = _records_of_lines(text, file)
+    except RecursionError:
+        raise ExperimentError(f"{file}: found JSON that is nested too deep") from None
+    columns = _columns(content if isinstance(content, list | dict) else [])
+    if not columns:
+        raise ExperimentError(
+            f"{file}: found JSON without records, expected one record a line, a list of records, "
+            'or a list of numbers for each column: {"t": [...], "q": [...]}'
+        )
+    refuse_size(max(map(len, columns.values())), file)
+    lines = "a line that is no record" if strays == 1 else f"{strays} lines that are no records"
+    notes = (f"{lines}: left out",) if strays else ()
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        return {name: np.array(columns[name], dtype=object) for name in wanted}
+
+    return Log(tuple(columns), read, notes=notes)
+
+
+def _records_of_lines(text: str, file: str) -> tuple[list[Any], int]:
+    """Records of a file with one a line, and how many other lines there are."""
+    records, strays = [], 0
+    lines = [line for line in text.splitlines() if line.strip()]
+    for row, line in enumerate(lines, start=1):
+        try:
+            record = json.loads(line.strip().rstrip(","))
+        except ValueError as problem:
+            strays += 1
+            if strays > max(FEW_STRAYS, MOST_STRAYS * row) or strays == len(lines):
+                raise ExperimentError(f"{file}: line {row}: no JSON: {problem}") from None
+            continue
+        records.append(record)
+    return records, strays
+
+
+def _columns(content: list[Any] | dict[str, Any]) -> dict[str, list[Any]]:
+    """Columns of records, None where one lacks a key; or the lists of a record of lists."""
+    if isinstance(content, dict):
+        within = [v for v in content.values() if isinstance(v, list) and v]
+        lists = _lists("", content, 0)
+        if lists:
+            return lists
+        content = max(within, key=len, default=[])
+    columns: dict[str, list[Any]] = {}
+    for row, record in enumerate(content):
+        for name, value in _fields("", record, 0).items():
+            column = columns.setdefault(name, [])
+            column += [None] * (row - len(column))
+            column.append(value)
+    for column in columns.values():
+        column += [None] * (len(content) - len(column))
+    return columns
+
+
+def _lists(name: str, value: Any, depth: int) -> dict[str, list[Any]]:
+    """Columns of a record of lists: {"t": [...], "joint": {"q": [...]}}."""
+    if isinstance(value, dict) and depth < DEPTH:
+        out: dict[str, list[Any]] = {}
+        for key, inner in value.items():
+            out |= _lists(f"{name}.{key}" if name else key, inner, depth + 1)
+        return out
+    plain = isinstance(value, list) and len(value) > 1
+    return {name: value} if plain and not any(isinstance(v, list | dict) for v in value) else {}
+
+
+def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:
+    """The numbers and texts of one record, by name."""
+    if isinstance(value, dict) and depth < DEPTH:
+        out: dict[str, Any] = {}
+        joints = value.get("name")
+        named = isinstance(joints, list) and all(isinstance(j, str) for j in joints)
+        for key, inner in value.items():
+            within = f"{name}.{key}" if name else key
+            if named and isinstance(inner, list) and len(inner) == len(joints or ()):
+                if key != "name":
+                    begin = f"{name}." if name else ""
+                    out |= {
+                        f"{begin}{j}.{key}": v for j, v in zip(joints or (), inner, strict=True)
+                    }
+                continue
+            out |= _fields(within, inner, depth + 1)
+        return out
+    if isinstance(value, list) and len(value) <= MOST_FIELDS and depth < DEPTH:
+        parts = [_fields(f"{name}({k})", v, depth + 1) for k, v in enumerate(value, start=1)]
+        return {key: v for part in parts for key, v in part.items()}
+    return {} if isinstance(value, list | dict) else {name or "value": value}

@@ -1,0 +1,37 @@
+"""Which columns of a log belong to one axis, by the parts and the numbers of their names."""
+
+from __future__ import annotations
+
+import re
+
+from ..column_names import bare_name
+
+#: what a force gains that is a field of the position's struct or joint: more than names that are
+#: alike differ by ("current" 0.98, "effort" 0.9), less than a name that says what was commanded
+BESIDE = 0.2
+#: what a force loses whose name counts another axis than the position's: as much as physics can
+#: add, for two axes that move alike explain each other's forces
+ANOTHER_AXIS = 1.0
+#: the field of a struct or joint, or a whole name without one; and the numbers of axes ("J2_pos")
+_STEM = re.compile(r"(?:^|[./])[^./]*$")
+_NUMBERS = re.compile(r"\d+")
+
+
+def stand_together(one: str, other: str) -> bool:
+    """Whether two columns are fields of one struct, or of one joint in a message."""
+    stems = {_STEM.sub("", name) for name in (one, other)}
+    if stems != {""}:
+        return len(stems) == 1
+    numbers = {_axis_numbers(name) for name in (one, other)}
+    return len(numbers) == 1 and () not in numbers
+
+
+def _axis_numbers(name: str) -> tuple[str, ...]:
+    """Numbers in a name, "J2_pos" -> 2: where two columns have some, they count axes."""
+    return tuple(_NUMBERS.findall(bare_name(name)))
+
+
+def of_another_axis(one: str, other: str) -> bool:
+    """Whether the names of two columns count different axes: "J1_current", "J2_angle"."""
+    numbers = {_axis_numbers(name) for name in (one, other)}
+    return len(numbers) == 2 and () not in numbers

@@ -1,0 +1,43 @@
+"""What the lines above a table say of constants: "8192 counts per turn", "kt = 0.1 Nm/A"."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from ...quantity import is_unit
+from ..column_names import unit_of_text
+
+_TURN = r"(?:turn|rev|revolution|umdrehung|tour|u\b)"
+_COUNTS = r"(?:counts?|cnts?|ticks?|increments?|inkremente|ink|inc|pulses|impulse|cpr)"
+#: a number before or behind the words
+_COUNTS_PER_TURN = (
+    re.compile(rf"(\d{{2,9}})\s*{_COUNTS}\s*(?:/|per|pro|par)\s*{_TURN}", re.I),
+    re.compile(rf"{_COUNTS}[ _]*(?:/|per|pro|par)[ _]*{_TURN}\w*\s*[=:]?\s*(\d{{2,9}})", re.I),
+    re.compile(r"\bcpr\s*[=:]?\s*(\d{2,9})|\b(\d{2,9})\s*cpr\b", re.I),
+)
+_TORQUE_CONSTANT = re.compile(
+    r"(?:\bk_?[tm]\b|torque[ _]constant|drehmomentkonstante|constante de couple)\D{0,12}?"
+    r"(\d{1,9}(?:[.,]\d{1,9})?(?:e[-+]?\d{1,3})?)\s*([A-Za-z][A-Za-z*· ]{0,10})/\s*(m?A)\b",
+    re.I,
+)
+
+
+def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:
+    """Counts of an encoder in one turn, and the line that says so."""
+    for line in remarks:
+        for pattern in _COUNTS_PER_TURN:
+            if (match := pattern.search(line[:500])) is not None:
+                return float(next(filter(None, match.groups()))), line[:100]
+    return None
+
+
+def torque_constant_in(remarks: Sequence[str]) -> tuple[float, str, str] | None:
+    """A motor's constant, its unit, and the line that says so."""
+    for line in remarks:
+        if (match := _TORQUE_CONSTANT.search(line[:500])) is None:
+            continue
+        unit = f"{unit_of_text(match[2]) or match[2].strip()}/{match[3]}"
+        if is_unit(unit):
+            return float(match[1].replace(",", ".")), unit, line[:100]
+    return None

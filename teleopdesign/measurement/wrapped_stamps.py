@@ -1,0 +1,79 @@
+"""Stamps that count on: over the wrap of a counter, over midnight, and where a clock was set back.
+
+A microcontroller counts microseconds in 32 bits and begins anew after 71 minutes; a time of day
+begins anew at midnight; a clock without a zone goes back an hour in autumn.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: what a counter of 16, 24 or 32 bits loses at its wrap
+COUNTERS = {2.0**bits: f"a counter of {bits} bits wraps" for bits in (16, 24, 32)}
+#: s that a clock loses: an hour in autumn, the dial of twelve hours, a day, a week of GPS
+CLOCKS = {
+    3600.0: "the clock goes back an hour",
+    43_200.0: "the time of day begins anew after twelve hours",
+    86_400.0: "the time of day begins anew at midnight",
+    604_800.0: "the week begins anew",
+}
+#: fractions of a second that stamps count in
+_SECONDS = (1.0, 1e3, 1e6, 1e9)
+#: usual steps up to which the step over a wrap may be long: a few rows may be lost there
+LONGEST_STEP = 20.0
+#: usual steps in the period of a wrap, at least: less is a column that counts rows of blocks
+FEWEST_STEPS = 500.0
+
+
+def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
+    """Stamps without the wraps of their counter or dial, and a note of each kind of wrap.
+
+    A step back is a wrap where the period that is added leaves a step as others are.
+    stamps: (n,) in any unit, NaN where there is none
+    """
+    rows = np.flatnonzero(np.isfinite(stamps))
+    steps = np.diff(stamps[rows])
+    forward = steps[steps > 0]
+    back = np.flatnonzero(steps < 0)
+    if not len(forward) or not len(back):
+        return stamps, ()
+    usual = float(np.median(forward))
+    periods = dict(COUNTERS)
+    periods |= {unit * length: why for length, why in CLOCKS.items() for unit in _SECONDS}
+    added = np.zeros(len(rows))
+    count: dict[str, int] = {}
+    for row in back.tolist():
+        for period, why in periods.items():
+            step = float(steps[row]) + period
+            if 0 < step <= LONGEST_STEP * usual and period > FEWEST_STEPS * usual:
+                added[row + 1 :] += period
+                count[why] = count.get(why, 0) + 1
+                break
+    if not count:
+        return stamps, ()
+    whole = stamps.copy()
+    whole[rows] += added
+    notes = [f"{why}{f' {n} times' if n > 1 else ''}" for why, n in count.items()]
+    return whole, tuple(f"{note}: time counts on" for note in notes)
+
+
+def seconds_since_first(stamps: Array) -> Array:
+    """Seconds in the log from its first row: a clock that was set back goes on where it was.
+
+    stamps: (n,) s, NaN where there is none; rows a little out of order keep their stamps
+    """
+    from .uneven_stamps import OUT_OF_ORDER
+
+    rows = np.flatnonzero(np.isfinite(stamps))
+    since = stamps - (stamps[rows[0]] if len(rows) else 0.0)
+    steps = np.diff(since[rows])
+    forward = steps[steps > 0]
+    if not len(forward):
+        return np.asarray(since)
+    usual = float(np.median(forward))
+    set_back = steps < -(OUT_OF_ORDER + 0.5) * usual
+    since[rows[1:]] += np.cumsum(np.where(set_back, usual - steps, 0.0))
+    return np.asarray(since)

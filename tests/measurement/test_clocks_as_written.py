@@ -1,0 +1,129 @@
+"""Stamps as loggers write them: zones, midnight, wraps of counters, days of a spreadsheet."""
+
+import datetime
+from zoneinfo import ZoneInfo
+
+import numpy as np
+import pandas
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.measurement.doors._cells import stamps_in_texts
+from teleopdesign.measurement.doors._dates import stamps_of
+from teleopdesign.measurement.from_arrays import log_of
+from teleopdesign.measurement.stamp_unit import unit_of_steps
+from teleopdesign.measurement.survey import Choices, spans_of, survey_log
+from teleopdesign.measurement.tables import open_log, read_columns
+from teleopdesign.measurement.wrapped_stamps import seconds_since_first, unwrap_stamps
+
+ROWS = 800
+T = 0.004 * np.arange(ROWS)
+Q = np.rad2deg(np.sin(2 * np.pi * 0.7 * T) + 0.2 * np.sin(2 * np.pi * 2.1 * T))
+U = 0.02 * np.gradient(np.gradient(Q, T), T) + 9.0 * np.sign(np.gradient(Q, T))
+#: five seconds before the hour that comes twice in autumn ends, in universal time
+AUTUMN = datetime.datetime(2026, 10, 25, 0, 59, 58, tzinfo=datetime.UTC)
+BERLIN = ZoneInfo("Europe/Berlin")
+
+
+def log_with(folder, stamps, head="Time"):
+    lines = [f'"{s}",{q:.4f},{u:.4f}' for s, q, u in zip(stamps, Q, U, strict=True)]
+    path = folder / "log.csv"
+    path.write_text("\n".join([f"{head},Angle (deg),Torque (Nm)", *lines]) + "\n", "utf-8")
+    return path
+
+
+def texts(form, begin=AUTUMN, zone=BERLIN):
+    instants = [(begin + datetime.timedelta(seconds=t)).astimezone(zone) for t in T.tolist()]
+    return [f"{instant:{form}}" for instant in instants]
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "%Y-%m-%d %H:%M:%S.%f%z", "%Y-%m-%dT%H:%M:%S.%f%z",
+        # without a zone the clock goes back an hour
+        "%Y-%m-%d %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S.%f", "%m/%d/%Y %I:%M:%S.%f %p",
+        "%d/%m/%Y %H:%M:%S,%f", "%Y/%m/%d %H:%M:%S.%f", "%d-%b-%Y %H:%M:%S.%f", "%H:%M:%S.%f",
+    ],
+)  # fmt: skip
+def test_an_hour_that_comes_twice_is_two_hours(tmp_path, form):
+    path = log_with(tmp_path, texts(form))
+    survey = survey_log(open_log(path, "log.csv"), "log.csv", Choices())
+    assert survey.duration == pytest.approx(T[-1], abs=1e-6)
+    stamps = read_columns(path, "log.csv", {"Time": "channels.time"}).values["Time"]
+    assert np.allclose(stamps - stamps[0], T, atol=1e-6)
+
+
+@pytest.mark.parametrize("form", ["%H:%M:%S.%f", "%I:%M:%S.%f", "%I:%M:%S.%f %p"])
+def test_a_time_of_day_counts_on_over_midnight_and_says_so(tmp_path, form):
+    begin = datetime.datetime(2026, 11, 20, 23, 59, 58, tzinfo=datetime.UTC)
+    path = log_with(tmp_path, texts(form, begin, datetime.UTC))
+    columns = read_columns(path, "log.csv", {"Time": "channels.time", "Angle (deg)": ""})
+    stamps = columns.values["Time"]
+    assert np.allclose(stamps - stamps[0], T, atol=1e-6)
+    # a dial of twelve hours says 11, then 12: it goes back an hour later
+    assert any("time counts on" in note for note in columns.notes) or form == "%I:%M:%S.%f"
+
+
+@given(
+    bits=st.sampled_from([16, 24, 32]),
+    step=st.integers(1, 100),
+    before=st.integers(1, ROWS - 1),
+    lost=st.integers(1, 9),
+)
+def test_a_counter_that_wraps_counts_on(bits, step, before, lost):
+    places = np.r_[np.arange(before), np.arange(before, ROWS) + lost]
+    count = 2.0**bits + (places - before) * step
+    whole, notes = unwrap_stamps(np.mod(count, 2.0**bits))
+    assert np.array_equal(np.diff(whole), np.diff(count))
+    assert len(notes) == 1 and f"{bits} bits" in notes[0]
+
+
+@given(at=st.integers(100, 700), to=st.floats(-100.0, 3.0))
+def test_a_clock_that_was_set_anew_is_no_wrap(at, to):
+    stamps = 100.0 + T
+    stamps[at:] += to - stamps[at]
+    whole, notes = unwrap_stamps(stamps)
+    assert whole is stamps and notes == ()
+    since = seconds_since_first(stamps)
+    assert np.allclose(np.diff(since), 0.004, atol=1e-9)
+
+
+def test_the_spans_of_a_clock_that_was_set_back_hold_rows_of_both_sides(tmp_path):
+    stamps = np.r_[5000.0 + T[:300], T[300:]]
+    path = log_with(tmp_path, [f"{s:.4f}" for s in stamps.tolist()])
+    survey = survey_log(open_log(path, "log.csv"), "log.csv", Choices())
+    assert survey.duration == pytest.approx(T[-1], abs=1e-6)
+    (_, cut), (_, end) = spans_of(survey.duration)
+    assert 0 < cut < T[-1] < end
+
+
+@pytest.mark.parametrize("name", ["time_ms", "Timestamp [ms]", "t (us)"])
+def test_dates_and_durations_are_seconds_whatever_the_name_says(tmp_path, name):
+    path = log_with(tmp_path, texts("%Y-%m-%d %H:%M:%S.%f%z"), head=name)
+    survey = survey_log(open_log(path, "log.csv"), "log.csv", Choices())
+    assert survey.channels["time"] == {"column": name, "unit": "s"}
+    frame = pandas.DataFrame({"q": Q}, index=pandas.to_timedelta(T, unit="s").rename(name))
+    assert log_of(frame).units[name] == "s"
+    frame.to_parquet(tmp_path / "log.parquet")
+    assert open_log(tmp_path / "log.parquet", "l").units == {name: "s"}
+
+
+def test_dates_with_an_empty_cell_are_dates():
+    cells = ["2026-11-20 21:03:04.5", "", None, "2026-11-20 21:03:05.0"]
+    assert np.array_equal(np.diff(stamps_in_texts(cells)[[0, 3]]), [0.5])
+    assert np.isnan(stamps_in_texts(cells)[1:3]).all()
+    assert stamps_in_texts(["2026-11-20 21:03:04.5", "left"]) is None
+    assert stamps_in_texts(["0.5", "21:03:04"]) is None
+
+
+@pytest.mark.parametrize("cell", ["2026-13-40 10:00:00", "31/02/2026 10:00:00", "20-Xyz-2026 1:00"])
+def test_days_that_no_calendar_has_are_no_dates(cell):
+    assert stamps_of([cell]) is None
+
+
+def test_days_of_a_spreadsheet_are_days():
+    assert unit_of_steps(46346.9 + T / 86400)[0] == "day"
+    assert unit_of_steps(0.25 + T / 86400)[0] == "day"
+    assert unit_of_steps(T)[0] == "s"

@@ -1,0 +1,114 @@
+"""What a survey takes for which quantity: several axes, wheels, constants above a table."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.commands.new import survey_text
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey.remarks import counts_per_turn_in, torque_constant_in
+
+ROWS = 1200
+T = 0.005 * np.arange(ROWS)
+
+
+def joint(phase):
+    """Angle (rad) and torque (N*m) of a joint with friction; joints of other phases move alike."""
+    q = np.sin(2 * np.pi * 0.7 * T + phase) + 0.2 * np.sin(2 * np.pi * 2.1 * T)
+    return q, 0.02 * np.gradient(np.gradient(q, T), T) + 0.3 * np.sign(np.gradient(q, T))
+
+
+Q, U = joint(0.0)
+
+
+def look(columns, remarks=(), **choices):
+    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, remarks=remarks)
+    return survey_log(log, "log", Choices(**choices))
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "J{}_pos_deg J{}_cur_A", "angle {} [deg];torque {} [Nm]", "q{} tau{}",
+        "r/axis({})/q r/axis({})/u",
+        "arm.joint{}.position arm.joint{}.effort",
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("axis", [1, 2])
+def test_a_force_of_another_axis_is_not_taken(names, axis):
+    """The second force is noisy: physics alone would take the first one for either axis."""
+    names = names.split(";") if ";" in names else names.split()
+    columns = {"t": T}
+    for k, noise in ((1, 0.0), (2, 1.0)):
+        q, u = joint(0.05 * k)
+        shaken = u + noise * np.random.default_rng(k).standard_normal(ROWS)
+        columns |= {names[0].format(k): np.rad2deg(q), names[1].format(k): shaken}
+    survey = look(columns, position=names[0].format(axis), axis="revolute")
+    assert survey.channels["actuator_force"]["column"] == names[1].format(axis)
+
+
+def test_the_angle_of_a_wheel_that_only_turns_forward_is_a_position():
+    q = 3.0 * T + 0.3 * np.sin(2 * np.pi * 0.7 * T)
+    survey = look({"t_s": T, "angle_deg": np.rad2deg(q), "current_A": U})
+    assert survey.channels["position"]["column"] == "angle_deg"
+    assert survey.channels["time"]["column"] == "t_s"
+
+
+@pytest.mark.parametrize("name", ["current_A", "Torque [Nm]", "speed [rad/s]", "F (N)"])
+def test_a_column_in_units_of_something_else_is_no_position(name):
+    with pytest.raises(ExperimentError, match="found no position"):
+        look({"t": T, name: U})
+
+
+def test_a_coordinate_beside_another_is_no_force():
+    columns = {"t": T, "X1": 100 * np.cos(Q), "Y1": np.random.default_rng(1).standard_normal(ROWS)}
+    with pytest.raises(ExperimentError, match="found no force: .*--force COLUMN takes one of Y1"):
+        look(columns)
+
+
+@pytest.mark.parametrize("name", ["current", "Motorstrom", "電流", "cur", "iq"])
+def test_a_current_by_its_name_is_in_amperes(name):
+    survey = look({"t": T, "angle_rad": Q, name: U})
+    assert survey.channels["actuator_force"]["unit"] == "A"
+    assert "channels.actuator_force.unit" in survey.guesses
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "encoder: 8192 counts per turn", "# 8192 cnt/rev", "counts_per_turn = 8192", "CPR: 8192",
+        "Geber;8192 Inkremente pro Umdrehung", "ticks per revolution: 8192", "8192 cpr",
+    ],
+)  # fmt: skip
+def test_counts_of_a_turn_are_read_above_the_table(line):
+    assert counts_per_turn_in(["run 12", line]) == (8192.0, line)
+    survey = look({"t": T, "enc": np.round(1000 * Q), "i": U}, (line,))
+    assert survey.channels["position"]["counts_per_turn"] == 8192
+    assert "the log says" in survey.guesses["channels.position.counts_per_turn"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "motor: kt = 0.105 Nm/A", "k_t: 0,105 N*m/A", "Torque constant (Nm) 0.105 Nm/A",
+        "Drehmomentkonstante = 105e-3 Nm/A",
+    ],
+)  # fmt: skip
+def test_a_torque_constant_is_read_above_the_table(line):
+    survey = look({"t": T, "angle_rad": Q, "i_A": U}, (line,))
+    assert survey.channels["actuator_force"]["torque_constant"]["value"] == 0.105
+    assert line in survey.guesses["channels.actuator_force.torque_constant"]
+
+
+@pytest.mark.parametrize("line", ["kt 3", "skt = 4 Nm/A", "constant of 5", "kt = 2 apples/A", ""])
+def test_other_lines_say_no_constant(line):
+    assert torque_constant_in([line]) is None and counts_per_turn_in([line]) is None
+
+
+def test_each_guess_says_what_to_type_where_it_is_wrong():
+    survey = look({"column 1": T, "column 2": Q, "cur": U})
+    text = survey_text(survey, "log.csv")
+    for option in ("--time COLUMN", "--position COLUMN", "--axis revolute",
+                   "--unit 'column 2=UNIT'", '--torque-constant "VALUE N/A"'):  # fmt: skip
+        assert f"    otherwise: {option}" in text

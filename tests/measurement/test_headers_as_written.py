@@ -1,0 +1,103 @@
+"""Rows above a table as benches write them: groups, units that are unknown, rows of two names."""
+
+import numpy as np
+import openpyxl
+import pytest
+
+from teleopdesign.measurement.column_names import bare_name, unit_in_name, unit_of_text
+from teleopdesign.measurement.doors._cells import is_number, number_of
+from teleopdesign.measurement.doors._header import names_and_units
+from teleopdesign.measurement.tables import open_log
+
+ROWS = [[k / 100, k % 7, -float(k), 30.5] for k in range(80)]
+
+
+def written(folder, ending, head):
+    """Rows of text above rows of numbers, in a text or a workbook."""
+    path = folder / f"log{ending}"
+    if ending == ".xlsx":
+        book = openpyxl.Workbook()
+        for row in [*head, *ROWS]:
+            book.active.append([cell or None if isinstance(cell, str) else cell for cell in row])
+        book.save(path)
+    else:
+        path.write_text("\n".join("\t".join(map(str, row)) for row in [*head, *ROWS]) + "\n")
+    return open_log(path, path.name)
+
+
+@pytest.mark.parametrize("ending", [".txt", ".xlsx"])
+@pytest.mark.parametrize("form", ["[{}]", "{}", "({})", "<{}>"])
+def test_a_row_of_units_may_hold_one_that_is_not_known(tmp_path, ending, form):
+    units = ["s", "degrees", "Amps", "°C"]
+    log = written(tmp_path, ending, [["Time", "Angle", "Current", "Temp"], map(form.format, units)])
+    assert log.names == ("Time", "Angle", "Current", "Temp")
+    assert log.units == {"Time": "s", "Angle": "deg", "Current": "A", "Temp": "°C"}
+
+
+@pytest.mark.parametrize("ending", [".txt", ".xlsx"])
+def test_columns_of_one_name_take_the_title_of_their_group(tmp_path, ending):
+    head = [
+        ["Bench 3, run 12", "", "", ""],
+        ["", "Motor", "", "Bench"],
+        ["Time", "Angle", "Current", "Angle"],
+        ["s", "deg", "A", "deg"],
+    ]
+    log = written(tmp_path, ending, head)
+    assert log.names == ("Time", "Motor Angle", "Current", "Bench Angle")
+    assert log.units["Bench Angle"] == "deg"
+
+
+@pytest.mark.parametrize(
+    ("rows", "names"),
+    [
+        # a motion capture: names of markers, below them those of coordinates
+        ([("Frame#", "Time", "Hand", ""), ("", "", "X1", "Y1")], ("Frame#", "Time", "X1", "Y1")),
+        # columns of two levels that a frame wrote, with the name of its index in a row below
+        (
+            [("joint", "j1", "j1", "j2"), ("signal", "q", "tau", "q"), ("t", "", "", "")],
+            ("t", "j1 q", "tau", "j2 q"),
+        ),
+        ([("Title", "", "", ""), ("t", "q", "", "u")], ("t", "q", "", "u")),
+        # letters that are units as well stay names
+        ([("Motor", "Bench", "Test", "3"), ("t", "q", "A", "V")], ("t", "q", "A", "V")),
+    ],
+)
+def test_rows_of_names(rows, names):
+    assert names_and_units(rows)[0] == names
+
+
+@pytest.mark.parametrize(
+    ("name", "bare", "unit"),
+    [
+        ("angle / °", "angle", "°"), ("speed / (°/s)", "speed", "°/s"), ("t / s", "t", "s"),
+        ("pos/vel", "pos/vel", None), ("run1/joint", "run1/joint", None),
+    ],
+)  # fmt: skip
+def test_a_unit_behind_a_slash(name, bare, unit):
+    assert bare_name(name) == bare and unit_in_name(name) == unit
+
+
+def test_units_in_chinese_and_french():
+    assert unit_of_text("度/秒") == "deg/s" and unit_of_text("tr/min") == "rpm"
+
+
+@pytest.mark.parametrize(
+    ("cell", "value"), [("1,000.5", 1000.5), ("-12,345", -12345.0), ("1,234,567.0", 1234567.0)]
+)
+def test_thousands_with_commas_between(cell, value):
+    assert is_number(cell, comma=False) and number_of(cell) == value
+
+
+@pytest.mark.parametrize("cell", ["1,00.5", "1,0000", "1,000,5", "a,000", "0,5"])
+def test_other_commas_are_no_thousands(cell):
+    assert not is_number(cell, comma=False) and number_of(cell) == cell
+
+
+def test_thousands_are_read_from_a_table(tmp_path):
+    path = tmp_path / "log.csv"
+    lines = [f'"{1e3 * r[0] + 900:,.1f}","{r[2] - 990:,.2f}"' for r in ROWS]
+    path.write_text("\n".join(['"Time (ms)","Angle (deg)"', *lines]) + "\n")
+    log = open_log(path, "log.csv")
+    wanted = {"Time (ms)": "", "Angle (deg)": ""}
+    assert np.allclose(log.read(wanted)["Time (ms)"], [1e3 * r[0] + 900 for r in ROWS])
+    assert np.allclose(log.read(wanted)["Angle (deg)"], [r[2] - 990 for r in ROWS])

@@ -1,0 +1,107 @@
+"""Files of nested parts: JSON, groups of HDF5, arrays of structs; endings that say nothing."""
+
+import json
+import shutil
+
+import h5py
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.numbers_in_cells import numbers_of
+from teleopdesign.measurement.tables import open_log, read_columns
+
+T = 0.01 * np.arange(90)
+Q = np.sin(T)
+
+
+def column(path, name):
+    return numbers_of(open_log(path, path.name).read({name: ""})[name], name, path.name)
+
+
+def record(t, q):
+    return {"t": t, "joint": {"name": ["elbow"], "q": [q]}, "F": [q, 1.0, 2.0], "ok": True}
+
+
+@pytest.mark.parametrize("form", ["lines", "list", "list in a record"])
+def test_records_of_json(tmp_path, form):
+    records = [record(t, q) for t, q in zip(T.tolist(), Q.tolist(), strict=True)]
+    text = "\n".join(map(json.dumps, records)) + '\n{"t": 0.9, "jo'
+    if form != "lines":
+        text = json.dumps(records if form == "list" else {"run": 3, "rows": records})
+    path = tmp_path / "log.jsonl"
+    path.write_text(text)
+    log = open_log(path, "log.jsonl")
+    assert log.names == ("t", "joint.elbow.q", "F(1)", "F(2)", "F(3)", "ok")
+    assert log.notes == (("a line that is no record: left out",) if form == "lines" else ())
+    assert np.array_equal(column(path, "joint.elbow.q"), Q)
+
+
+def test_lists_of_json_and_records_without_a_key(tmp_path):
+    path = tmp_path / "log.json"
+    path.write_text(json.dumps({"t": T.tolist(), "joint": {"q": Q.tolist()}, "by": "me"}))
+    assert np.array_equal(column(path, "joint.q"), Q)
+    path.write_text('[{"q": 1}, {"t": 1}, {"q": 3, "t": 2}]')
+    assert np.array_equal(column(path, "q"), [1, np.nan, 3], equal_nan=True)
+
+
+@pytest.mark.parametrize("text", ["[]", "3", '{"a": 1}', "[" * 100_000, "left\nright\n", "\0", ""])
+def test_json_without_records_is_one_line(tmp_path, text):
+    path = tmp_path / "log.json"
+    path.write_text(text)
+    with pytest.raises(ExperimentError, match=r"^log\.json: .*JSON"):
+        open_log(path, "log.json")
+
+
+def as_matlab(path):
+    """A file of HDF5 with the head that MATLAB writes."""
+    raw = path.read_bytes()
+    path.write_bytes(b"MATLAB 7.3 MAT-file".ljust(128) + raw[128:])
+
+
+def test_groups_of_hdf5_say_units_and_matlab_turns_matrices(tmp_path):
+    path = tmp_path / "log.mat"
+    with h5py.File(path, "w", userblock_size=512) as content:
+        angle = content.create_dataset("joint/angle", data=Q)
+        angle.attrs["Units"] = "degrees"
+        content["data"] = np.stack([T, Q])
+        fields = content.create_dataset("axis/q", (1, 2), dtype=h5py.ref_dtype)
+        for k in range(2):
+            fields[0, k] = content.create_dataset(f"#refs#/{k}", data=(k + 1) * Q[None, :]).ref
+    as_matlab(path)
+    log = open_log(path, "log.mat")
+    assert log.units == {"joint/angle": "deg"}
+    assert {"data(:,1)", "data(:,2)", "axis(1)/q", "axis(2)/q"} <= set(log.names)
+    assert np.array_equal(column(path, "data(:,2)"), Q)
+    assert np.array_equal(column(path, "axis(2)/q"), 2 * Q)
+    loop = h5py.File(path, "r+")
+    loop["axis/q"][0, 0] = loop["axis/q"].ref  # a reference to itself is no column
+    loop.close()
+    assert "axis(1)/q" not in open_log(path, "log.mat").names
+
+
+def test_an_array_of_structs_of_matlab_is_numbered(tmp_path):
+    axes = np.zeros((1, 2), dtype=[("name", object), ("meas", object)])
+    for k in range(2):
+        axes[0, k] = (f"axis{k}", {"q": (k + 1) * Q[:, None]})
+    savemat(tmp_path / "log.mat", {"exp": {"t": T, "axis": axes}})
+    path = tmp_path / "log.mat"
+    assert open_log(path, "log.mat").names == ("exp.t", "exp.axis(1).meas.q", "exp.axis(2).meas.q")
+    assert np.array_equal(column(path, "exp.axis(2).meas.q"), 2 * Q)
+
+
+@pytest.mark.parametrize("ending", ["", ".data", ".out"])
+def test_a_file_whose_ending_says_nothing_is_known_by_its_beginning(tmp_path, ending):
+    text = tmp_path / "log.csv"
+    text.write_text("t,q\n" + "".join(f"{t},{q}\n" for t, q in zip(T, Q, strict=True)))
+    with h5py.File(tmp_path / "log.h5", "w") as content:
+        content["q"] = Q
+    lines = tmp_path / "log.json"
+    lines.write_text("".join(json.dumps({"q": q}) + "\n" for q in Q.tolist()))
+    for source in (text, tmp_path / "log.h5", lines):
+        named = shutil.copy(source, tmp_path / f"run{ending}")
+        assert np.array_equal(read_columns(named, "run", {"q": ""}).values["q"], Q)
+    (tmp_path / f"raw{ending}").write_bytes(bytes(range(256)))
+    with pytest.raises(ExperimentError, match="found a file of kind"):
+        open_log(tmp_path / f"raw{ending}", "raw")
