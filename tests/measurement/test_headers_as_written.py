@@ -82,13 +82,15 @@ def test_units_in_chinese_and_french():
 
 
 @pytest.mark.parametrize(
-    ("cell", "value"), [("1,000.5", 1000.5), ("-12,345", -12345.0), ("1,234,567.0", 1234567.0)]
+    ("cell", "value"), [("1,000.5", 1000.5), ("-12,345.", -12345.0), ("1,234,567", 1234567.0)]
 )
 def test_thousands_with_commas_between(cell, value):
     assert is_number(cell, comma=False) and number_of(cell) == value
 
 
-@pytest.mark.parametrize("cell", ["1,00.5", "1,0000", "1,000,5", "a,000", "0,5"])
+@pytest.mark.parametrize(
+    "cell", ["1,00.5", "1,0000", "1,000,5", "a,000", "0,5", "1,000", "0,123", "0,123.4"]
+)
 def test_other_commas_are_no_thousands(cell):
     assert not is_number(cell, comma=False) and number_of(cell) == cell
 

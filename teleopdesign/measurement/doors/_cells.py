@@ -16,8 +16,9 @@ from ._log import Array
 _NUMBER = re.compile(
     r"[-+]?(\d++(?:\.\d*+)?|\.\d++)([ed][-+]?\d++)?$|[-+]?(nan|inf|infinity)$", re.I
 )
-#: thousands with commas between, as spreadsheets print them: "1,000.0"
-_THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})++(?:\.\d*+)?$")
+#: thousands with commas between, as spreadsheets print them: "1,000.0". One comma alone may be a
+#: decimal comma, "1,000", and is none of them
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:(?:,\d{3})++\.\d*+|(?:,\d{3}){2,})$")
 #: what loggers and tables write where there is no reading, in lower case
 NO_READING = frozenset(
     "n/a na n.a. #n/a #na null none nil - -- --- ? * . missing invalid "
