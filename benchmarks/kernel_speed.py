@@ -35,7 +35,7 @@ from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.kernel import execute
-from teleopdesign.realise.side_by_side import LANES, Reduction, execute_many
+from teleopdesign.realise.side_by_side import LANES, GridRun, Reduction, execute_many
 from teleopdesign.simulate import prepare
 
 MASS, LEVEL, STIFFNESS, DAMPING = DEVICE = 0.15, 0.5, 1e5, 0.1
@@ -120,7 +120,9 @@ def engines(folder: Path) -> dict[str, tuple[int, Callable[[], np.ndarray]]]:
         table = np.tile(one, (LANES, 1))
         reductions = [Reduction("rms", column, column)]
         kept = {"kept": [column], "reductions": reductions, "begin": 0}
-        return execute_many(setup.program, table, timing, **arguments, **kept).kept[0, :, 0]
+        run = GridRun(table, timing, arguments["inputs"], arguments["sampled"])
+        start = arguments["start"]
+        return execute_many(setup.program, [run], start=start, **kept)[0].kept[0, :, 0]
 
     def scipy() -> np.ndarray:
         options = {"t_eval": grid, "rtol": 1e-6, "atol": 1e-9}

@@ -95,9 +95,13 @@ def _function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
 
 
 def _reader(name: str, many: int) -> str:
-    """Source of a function that returns a column of a table as numbers: see `integrator.py`."""
-    numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
-    return f"@jitted\ndef {name}(table, column):\n    return ({', '.join(numbers)},)\n\n\n"
+    """Source of a function that returns a column of a table as numbers: see `integrator.py`.
+
+    Behind the last column the table stays as it is there: one column is what is held throughout.
+    """
+    numbers = [*(f"table[{i}, at]" for i in range(many)), "0.0"]  # there may be no input
+    at = "    at = min(column, table.shape[1] - 1)\n" if many else ""
+    return f"@jitted\ndef {name}(table, column):\n{at}    return ({', '.join(numbers)},)\n\n\n"
 
 
 @dataclass(frozen=True)

@@ -325,6 +325,18 @@ def notice_spoiled(memory, lane):
 
 
 @jitted
+def is_unresolved(limit, memory):
+    """Whether a bristle of every lane is resolved so badly that no step of the ladder would do."""
+    for lane in range(LANES):
+        worst = 0.0
+        for i in range(MANY_BRISTLES):
+            worst = max(worst, memory[WORST + i * LANES + lane])
+        if not worst > limit:
+            return False
+    return True
+
+
+@jitted
 def keep(row, width, kept, out, kinds, columns, others, results, memory):
     """Rows of `kept` into the result, and the reductions brought up to this row.
 
@@ -400,9 +412,12 @@ def run(
     samples, inner, h, period, lag, late_steps, encoder_step, smoothing,
     held, held_slots, before, after, late_slots, late_samples, past, past_slots,
     every_step, inputs, sampled,
-    memory, kept, out, begin, kinds, columns, others, results,
+    memory, kept, out, limit, begin, kinds, columns, others, results,
 ):  # fmt: skip
-    """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
+    """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays.
+
+    limit: the run ends early where the measure of the reload is above it in every lane
+    """
     nodes, row = samples * inner, np.int64(0)  # no literal, see `module_source`
     for j in range(nodes + 1):
         time, now, inputs_0 = j * h, j % inner == 0, inputs_at(inputs, 2 * j)
@@ -432,6 +447,8 @@ def run(
                 notice_spoiled(memory, lane)
             keep(row, width, kept, out, kinds, columns, others, results, memory)
             row += 1
+            if is_unresolved(limit, memory):
+                return
         if j < nodes:
             inputs_1, inputs_2 = inputs_at(inputs, 2 * j + 1), inputs_at(inputs, 2 * j + 2)
             for lane in range(LANES):

@@ -87,11 +87,13 @@ def execute(
     sampled: np.ndarray,
     start: Mapping[str, float],
     every_step: bool,
+    limit: float = math.inf,
 ) -> tuple[np.ndarray, float]:
     """Run the loop.
 
     inputs: (inputs, 2 steps + 1), at every half step;  sampled: (sampled inputs, samples + 1)
     start: state -> value, 0 by default
+    limit: measure of the reload above which the run ends, its other rows zero
     returns: rows of the columns of the layout, and the measure of the reload (see module)
     """
     layout, rows = made.layout, (timing.steps if every_step else timing.samples) + 1
@@ -109,6 +111,7 @@ def execute(
             memory,
             kept,
             out.reshape(-1),
+            limit,
             rows,
             no_rows,
             no_rows,
@@ -205,6 +208,14 @@ def fastest_rates(jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def refine_factor(measure: float, bound: float, power: float) -> int:
     """By how much to divide a step whose measure, of that power in the step, is above the bound."""
     return math.ceil(math.pow(measure / bound, 1 / power) * 1.0001)
+
+
+def worst_reload(inner: int, least: int) -> float:
+    """Measure of the reload above which no step that `FINER` allows would do.
+
+    inner: steps a sample of the run;  least: of the grid that was asked for
+    """
+    return RELOAD * (FINER[-1] * least / inner) ** 2
 
 
 def round_up_steps(needed: int, least: int) -> int | None:

@@ -7,10 +7,12 @@ by rounding: exp is another one (`lane_exp.py`), and a product is rounded with t
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -43,6 +45,20 @@ class Reduction:
     kind: str
     column: int
     other: int = 0
+
+
+@dataclass(frozen=True)
+class GridRun:
+    """Cases that run on one grid.
+
+    parameters: (cases, parameters of the layout);  inputs, sampled, limit: as `kernel.execute`
+    """
+
+    parameters: np.ndarray
+    timing: Timing
+    inputs: np.ndarray
+    sampled: np.ndarray
+    limit: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -87,7 +103,7 @@ def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, n
         return np.zeros(len(parameters)), np.zeros(len(parameters), dtype=int)
     blocks = [
         fastest_rates(
-            slopes_at_rest(made, loop, _arrange_in_lanes(parameters[first : first + LANES]))
+            slopes_at_rest(made, loop, _arrange_in_lanes(parameters[first : first + LANES], LANES))
         )
         for first in range(0, len(parameters), LANES)
     ]
@@ -97,87 +113,112 @@ def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, n
 
 def execute_many(
     made: Program,
-    parameters: np.ndarray,
-    timing: Timing,
+    runs: Sequence[GridRun],
     *,
-    inputs: np.ndarray,
-    sampled: np.ndarray,
     start: Mapping[str, float],
     kept: Sequence[int],
     reductions: Sequence[Reduction],
     begin: int,
-) -> LaneResults:
-    """Run all cases on one grid.
+) -> list[LaneResults]:
+    """Run cases, each on its grid, all blocks of all grids shared by the cores.
 
-    parameters: (cases, parameters of the layout);  inputs, sampled: as `kernel.execute`, for all
-    kept: columns whose rows are asked for;  begin: first row that is reduced
+    start: as `kernel.execute`, for all;  kept: columns whose rows are asked for
+    begin: first row that is reduced
     """
-    loop, cases, rows = lanes_of(made), len(parameters), timing.samples + 1
-    columns = made.functions["COLUMNS"]
-    reduced = _reduction_arrays(columns, reductions)
-    starts = np.repeat([KINDS[r.kind][1] for r in reductions], LANES).astype(float)
-    rows_kept = LANES * (columns + np.array(kept, dtype=np.int64))
-    worst_rows = made.functions["WORST"] + np.arange(len(made.layout.exponential))
-    outcome = LaneResults(
-        np.empty((cases, rows, len(kept))),
-        np.empty((cases, len(reductions))),
+    wanted = _Wanted(start, kept, reductions, begin)
+    results = [_empty_results(run, wanted) for run in runs]
+    blocks = [
+        (run.timing.steps, partial(_run_block, made, run, wanted, result, first))
+        for run, result in zip(runs, results, strict=True)
+        for first in range(0, len(run.parameters), LANES)
+    ]
+    # the longest first: the cores then end at about the same time
+    _spread_over_threads([block for _, block in sorted(blocks, key=lambda b: -b[0])])
+    for run, result in zip(runs, results, strict=True):
+        rows = run.timing.samples + 1 - begin
+        for i, reduction in enumerate(reductions):
+            sums = result.reduced[:, i]
+            result.reduced[:, i] = _scale(reduction.kind, sums, rows, run.timing)
+    return results
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """Where all runs start, and what is asked of them: arguments of `execute_many`."""
+
+    start: Mapping[str, float]
+    kept: Sequence[int]
+    reductions: Sequence[Reduction]
+    begin: int
+
+
+def _empty_results(run: GridRun, wanted: _Wanted) -> LaneResults:
+    cases, rows = len(run.parameters), run.timing.samples + 1
+    return LaneResults(
+        np.empty((cases, rows, len(wanted.kept))),
+        np.empty((cases, len(wanted.reductions))),
         np.empty(cases),
         np.empty(cases, dtype=bool),
     )
 
-    def block(first: int) -> None:
-        here = slice(first, min(first + LANES, cases))
-        used = here.stop - first
-        memory, results = (
-            first_memory(made, LANES, _arrange_in_lanes(parameters[here]), start),
-            starts.copy(),
-        )
-        out = np.empty(rows * len(kept) * LANES)
-        loop.run(
-            *grid(made, timing, LANES),
-            False,
-            inputs,
-            sampled,
-            memory,
-            rows_kept,
-            out,
-            begin,
-            *reduced,
-            results,
-        )
-        table = memory.reshape(-1, LANES)[:, :used]
-        outcome.kept[here] = np.moveaxis(out.reshape(rows, len(kept), LANES), -1, 0)[:used]
-        outcome.reduced[here] = results.reshape(-1, LANES)[:, :used].T
-        outcome.worst[here] = table[worst_rows].max(axis=0, initial=0.0)
-        outcome.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
 
-    _spread_over_threads(block, range(0, cases, LANES))
-    for i, reduction in enumerate(reductions):
-        outcome.reduced[:, i] = _scale(reduction.kind, outcome.reduced[:, i], rows - begin, timing)
-    return outcome
+def _run_block(
+    made: Program, run: GridRun, wanted: _Wanted, result: LaneResults, first: int
+) -> None:
+    """Run the block that begins with that case, and write what its cases return."""
+    here = slice(first, min(first + LANES, len(run.parameters)))
+    columns, timing, used = made.functions["COLUMNS"], run.timing, here.stop - first
+    rows, kept, loop = timing.samples + 1, wanted.kept, lanes_of(made)
+    lanes = loop.lanes
+    parameters = _arrange_in_lanes(run.parameters[here], lanes)
+    memory = first_memory(made, lanes, parameters, wanted.start)
+    sums = np.repeat([KINDS[r.kind][1] for r in wanted.reductions], lanes).astype(float)
+    out = np.empty(rows * len(kept) * lanes)
+    loop.run(
+        *grid(made, timing, lanes),
+        False,
+        run.inputs,
+        run.sampled,
+        memory,
+        lanes * (columns + np.array(kept, dtype=np.int64)),
+        out,
+        run.limit,
+        wanted.begin,
+        *_reduction_arrays(columns, wanted.reductions, lanes),
+        sums,
+    )
+    table = memory.reshape(-1, lanes)[:, :used]
+    worst_rows = made.functions["WORST"] + np.arange(len(made.layout.exponential))
+    result.kept[here] = np.moveaxis(out.reshape(rows, len(kept), lanes), -1, 0)[:used]
+    result.reduced[here] = sums.reshape(-1, lanes)[:, :used].T
+    result.worst[here] = table[worst_rows].max(axis=0, initial=0.0)
+    result.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
 
 
-def _spread_over_threads(block: Callable[[int], None], firsts: Sequence[int]) -> None:
-    if len(firsts) == 1 or workers() == 1:
-        for first in firsts:
-            block(first)
+def _spread_over_threads(blocks: Sequence[Callable[[], None]]) -> None:
+    if len(blocks) == 1 or workers() == 1:
+        for block in blocks:
+            block()
         return
     with ThreadPoolExecutor(workers()) as threads:
-        list(threads.map(block, firsts))
+        for running in [threads.submit(block) for block in blocks]:
+            running.result()
 
 
-def _reduction_arrays(first: int, reductions: Sequence[Reduction]) -> tuple[np.ndarray, ...]:
+def _reduction_arrays(
+    first: int, reductions: Sequence[Reduction], lanes: int
+) -> tuple[np.ndarray, ...]:
     """Kinds, columns and other columns of the reductions, as the loop takes them."""
     kinds = [KINDS[r.kind][0] for r in reductions]
-    columns = [LANES * (first + r.column) for r in reductions]
-    others = [LANES * (first + r.other) for r in reductions]
+    columns = [lanes * (first + r.column) for r in reductions]
+    others = [lanes * (first + r.other) for r in reductions]
     return tuple(np.array(x, dtype=np.int64) for x in (kinds, columns, others))
 
 
-def _arrange_in_lanes(parameters: np.ndarray) -> np.ndarray:
+def _arrange_in_lanes(parameters: np.ndarray, lanes: int) -> np.ndarray:
     """Parameters of at most a block of cases, row by row; empty lanes repeat the last case."""
-    lanes = np.minimum(np.arange(LANES), len(parameters) - 1)
-    return np.ascontiguousarray(parameters[lanes].T).reshape(-1)
+    cases = np.minimum(np.arange(lanes), len(parameters) - 1)
+    return np.ascontiguousarray(parameters[cases].T).reshape(-1)
 
 
 def _scale(kind: str, sums: np.ndarray, rows: int, timing: Timing) -> np.ndarray:

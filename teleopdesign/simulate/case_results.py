@@ -15,6 +15,8 @@ from .units import signal_units
 if TYPE_CHECKING:
     import xarray
 
+    from ..realise.side_by_side import LaneResults
+
 #: what `reduce` knows, with the words of the result
 REDUCTIONS = {
     "final": "last value",
@@ -55,6 +57,23 @@ class CaseResults:
             )
         self.time = period * np.arange(rows)
         self.rows = {name: np.full((cases, rows), np.nan) for name in names}
+
+    def take(
+        self,
+        cases: np.ndarray,
+        step: float,
+        outcome: LaneResults,
+        done: np.ndarray,
+        kept: Sequence[str],
+        reduced: Sequence[str],
+    ) -> None:
+        """Numbers of cases that are done, those of the outcome where `done` is true;  step: s."""
+        self.steps[cases] = step
+        for j, name in enumerate(kept):
+            self.rows[name][cases] = outcome.kept[done, :, j]
+        for j, name in enumerate(reduced):
+            numbers = self.numbers.setdefault(name, np.full(len(self.open), np.nan))
+            numbers[cases] = outcome.reduced[done, j]
 
     def labelled(
         self,

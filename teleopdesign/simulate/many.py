@@ -17,11 +17,13 @@ from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare, simulated_form
 from .trajectory import Trajectory
+from .wave import GridKey, Wave
 
 if TYPE_CHECKING:
     import xarray
 
-    from ..realise.side_by_side import Reduction
+    from ..realise.kernel import Timing
+    from ..realise.side_by_side import LaneResults, Reduction
 
 
 def simulate_many(
@@ -130,82 +132,88 @@ class _Study:
         many = len(layout.parameters)
         rates, states = rates_of_cases(setup.program, numbers[:, :many])
         delays = _delays(setup, late, numbers[:, many:])
-        todo: dict[tuple[int, tuple[float, ...]], list[int]] = {}
+        todo: dict[GridKey, list[int]] = {}
         for k, case in enumerate(group.cases):
             if not result.open[case]:
                 continue
             state = layout.states[states[k]] if layout.states else ""
             try:
-                inner = setup.first_inner(float(rates[k]), state, self.long_step, delays[k])
-                setup.timing(inner, delays[k])
+                inner = setup.ladder(self.long_step, delays[k]).first(float(rates[k]), state)
+                setup.check_size(setup.timing(inner, delays[k]))
             except ModelError as error:
                 result.refuse({int(case): str(error)})
                 continue
             todo.setdefault((inner, delays[k]), []).append(k)
-        while todo:
-            # the longest step first: what has to be refined may join cases that begin finer
-            key = min(todo)
-            unresolved = self._run_grid(
+        waves = [Wave(todo, is_first=True)] if todo else []
+        while waves:
+            now, later = waves.pop().split(setup)
+            finer = self._run_wave(
                 setup,
-                group,
-                key,
-                todo.pop(key),
+                now,
+                group.cases,
                 numbers=numbers[:, :many],
                 kept=kept,
                 reductions=reductions,
                 result=result,
             )
-            for k, finer in unresolved:
-                todo.setdefault((finer, key[1]), []).append(k)
+            waves += [wave for wave in (later, Wave(finer, is_first=False)) if wave.todo]
 
-    def _run_grid(
+    def _run_wave(
         self,
         setup: Setup,
-        group: Group,
-        key: tuple[int, tuple[float, ...]],
-        members: list[int],
+        wave: Wave,
+        cases: np.ndarray,
         *,
         numbers: np.ndarray,
         kept: dict[str, int],
         reductions: dict[str, Reduction],
         result: CaseResults,
-    ) -> list[tuple[int, int]]:
-        """Run cases on one grid; returns those that need a finer one, with its steps a sample."""
+    ) -> dict[GridKey, list[int]]:
+        """Run the cases of a wave; returns those that need a finer grid, by that."""
         from ..realise.side_by_side import execute_many
 
-        timing = setup.timing(*key)
-        setup.check_size(timing)
-        begin = min(round(self.after / timing.period), timing.samples)
+        runs = wave.runs(setup, numbers)
+        samples, period = runs[0].timing.samples, setup.sampling.period
         outcomes = execute_many(
             setup.program,
-            numbers[members],
-            timing,
+            runs,
+            start=setup.initial,
             kept=list(kept.values()),
             reductions=list(reductions.values()),
-            begin=begin,
-            **setup.arguments(timing),
+            begin=min(round(self.after / period), samples),
         )
-        finer: list[tuple[int, int]] = []
-        done = np.zeros(len(members), dtype=bool)
-        for i, k in enumerate(members):
-            case = int(group.cases[k])
+        finer: dict[GridKey, list[int]] = {}
+        for (grid, members), run, outcome in zip(wave.todo.items(), runs, outcomes, strict=True):
+            here = cases[np.array(members)]
+            next_steps = self._next_steps(setup, run.timing, grid, here, outcome, result)
+            for i, inner in next_steps.items():
+                finer.setdefault((inner, grid[1]), []).append(members[i])
+            done = result.open[here]
+            done[list(next_steps)] = False
+            result.take(here[done], run.timing.step, outcome, done, (*kept,), (*reductions,))
+        return finer
+
+    def _next_steps(
+        self,
+        setup: Setup,
+        timing: Timing,
+        grid: GridKey,
+        cases: np.ndarray,
+        outcome: LaneResults,
+        result: CaseResults,
+    ) -> dict[int, int]:
+        """Steps a sample of each run's case that needs more of them; refuses what fails."""
+        finer: dict[int, int] = {}
+        ladder = setup.ladder(self.long_step, grid[1])
+        for i, case in enumerate(map(int, cases)):
             try:
-                worst, is_finite = float(outcomes.worst[i]), bool(outcomes.is_finite[i])
-                inner = setup.next_inner(timing, worst, is_finite, self.long_step, key[1])
+                inner = ladder.next(timing, float(outcome.worst[i]), bool(outcome.is_finite[i]))
+                setup.check_size(setup.timing(inner, grid[1]))
             except ModelError as error:
                 result.refuse({case: str(error)})
                 continue
-            if inner == timing.inner:
-                done[i] = True
-            else:
-                finer.append((k, inner))
-        where = group.cases[np.array(members)[done]]
-        result.steps[where] = timing.step
-        for j, name in enumerate(kept):
-            result.rows[name][where] = outcomes.kept[done, :, j]
-        for j, name in enumerate(reductions):
-            result.numbers.setdefault(name, np.full(len(result.open), np.nan))
-            result.numbers[name][where] = outcomes.reduced[done, j]
+            if inner != timing.inner:
+                finer[i] = inner
         return finer
 
     def _form(self, diagram: Diagram) -> Diagram:

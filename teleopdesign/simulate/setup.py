@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -10,11 +11,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..diagrams import Diagram, with_shared_states
-from ..errors import GrowsWithoutBound, ModelError, did_you_mean
+from ..errors import ModelError, did_you_mean
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer
 from .on_grid import Input, delay_in_steps, input_table, samples_of, whole_steps
 from .sampling import SAMPLED, Sampling
+from .step_ladder import StepLadder
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -163,6 +165,12 @@ class Setup:
                 return inner
         return least
 
+    def ladder(
+        self, long_step: Literal["refine", "refuse"], delays: Sequence[float] | None = None
+    ) -> StepLadder:
+        """Which steps a run may take;  delays: default `delays`, s."""
+        return StepLadder(self.step, self.sampling.period, self.inner(delays), long_step)
+
     def timing(self, inner: int, delays: Sequence[float] | None = None) -> Timing:
         """The grid with that many inner steps a sample;  delays: default `delays`, s."""
         from ..realise.kernel import Timing, velocity_smoothing
@@ -187,15 +195,28 @@ class Setup:
             tuple(delay_in_samples(d, s.period, what="simulate") for d in delays[analog:]),
         )
 
-    def arguments(self, timing: Timing) -> dict[str, Any]:
-        """Inputs on the grid of that timing, as the kernel takes them."""
-        layout, n = self.program.layout, 2 * timing.steps + 1
-        half = 0.5 * timing.step * np.arange(n)
+    @cached_property
+    def _signals(self) -> dict[str, Input]:
+        """Inputs and prescribed motions by their signals."""
         signals: dict[str, Input] = dict(self.inputs)
         for name, motion in self.motion.items():
             signals |= zip(
                 (name, f"{name}_velocity", f"{name}_acceleration"), motion.all, strict=True
             )
+        return signals
+
+    @cached_property
+    def _varying(self) -> bool:
+        """Whether an input of the loop varies over time."""
+        listed = (self._signals.get(name, 0.0) for name in self.program.layout.inputs)
+        return any(callable(x) or np.ndim(x) > 0 for x in listed)
+
+    def arguments(self, timing: Timing) -> dict[str, Any]:
+        """Inputs on the grid of that timing, as the kernel takes them."""
+        layout, n = self.program.layout, 2 * timing.steps + 1
+        # a fine grid has 10^7 rows: one column is what is held throughout
+        half = 0.5 * timing.step * np.arange(n if self._varying else 1)
+        signals = self._signals
         samples = timing.period * np.arange(timing.samples + 1)
         return {
             "inputs": input_table(layout.inputs, signals, half),
@@ -203,8 +224,13 @@ class Setup:
             "start": self.initial,
         }
 
-    def run(self, timing: Timing, *, every_step: bool = False) -> tuple[np.ndarray, float]:
-        """Rows of the program's columns and the measure of how well bristles are resolved."""
+    def run(
+        self, timing: Timing, *, every_step: bool = False, limit: float = math.inf
+    ) -> tuple[np.ndarray, float]:
+        """Rows of the program's columns and the measure of how well bristles are resolved.
+
+        limit: a run whose measure is above it may end there, see `StepLadder`
+        """
         from ..realise.kernel import execute
 
         self.check_size(timing, every_step=every_step)
@@ -213,11 +239,19 @@ class Setup:
             self.diagram.values,
             timing,
             every_step=every_step,
+            limit=limit,
             **self.arguments(timing),
         )
 
+    def table_size(self, timing: Timing) -> int:
+        """How many numbers the table of inputs of one run holds."""
+        return 2 * timing.steps * len(self.program.layout.inputs) if self._varying else 0
+
     def check_size(self, timing: Timing, *, every_step: bool = False) -> None:
-        """ModelError where the tables of one run hold more than `MOST_NUMBERS`."""
+        """ModelError where tables of one run could hold more than `MOST_NUMBERS`.
+
+        Inputs count where they are held too: a run of so many steps would not end.
+        """
         layout = self.program.layout
         numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)
         if numbers > MOST_NUMBERS:
@@ -232,76 +266,13 @@ class Setup:
         """Run with a step that resolves oscillations and bristles, or refuse a longer one."""
         from ..realise.kernel import fastest_rate
 
-        inner = self.first_inner(*fastest_rate(self.program, self.diagram.values), long_step)
+        ladder = self.ladder(long_step)
+        inner = ladder.first(*fastest_rate(self.program, self.diagram.values))
+        limit = math.inf
         while True:
             timing = self.timing(inner)
-            rows, worst = self.run(timing, every_step=every_step)
-            finer = self.next_inner(timing, worst, bool(np.isfinite(rows).all()), long_step)
+            rows, worst = self.run(timing, every_step=every_step, limit=limit)
+            finer = ladder.next(timing, worst, bool(np.isfinite(rows).all()))
             if finer == inner:
                 return rows, timing
-            inner = finer
-
-    def first_inner(
-        self,
-        rate: float,
-        state: str,
-        long_step: Literal["refine", "refuse"] = "refine",
-        delays: Sequence[float] | None = None,
-    ) -> int:
-        """Steps a sample that resolve this rate, 1/s, in which the state takes part most.
-
-        delays: default `delays`, s
-        raises ModelError: the step is refused, or none would do
-        """
-        from ..realise.kernel import FASTEST, JUMP, long_step_error, refine_factor
-
-        if rate > JUMP:
-            raise ModelError(
-                f"simulate: a force on {state} jumps with the sign of a velocity: no step resolves "
-                "that in continuous time; sample the controller, or take a law that is rounded off"
-            )
-        inner = self.inner(delays)
-        step = self.sampling.period / inner
-        if rate * step > FASTEST:
-            if long_step == "refuse":
-                why = f"is {2 * np.pi / (rate * step):.2g} steps per period of {state}"
-                raise long_step_error(step, FASTEST / rate, why)
-            return self._refined(inner * refine_factor(rate * step, FASTEST, 1), inner)
-        return inner
-
-    def next_inner(
-        self,
-        timing: Timing,
-        worst: float,
-        is_finite: bool,
-        long_step: Literal["refine", "refuse"] = "refine",
-        delays: Sequence[float] | None = None,
-    ) -> int:
-        """Steps a sample for the next run; as they were, where this run resolved its bristles.
-
-        worst: measure of their reload, see `realise.kernel`;  delays: default `delays`, s
-        raises ModelError: signals are not finite, the step is refused, or none would do
-        """
-        from ..realise.kernel import RELOAD, long_step_error, refine_factor
-
-        if not is_finite:
-            raise GrowsWithoutBound(
-                f"simulate: signals grow beyond all bounds at a step of {timing.step:g} s: the "
-                "loop is unstable or a parameter makes no sense"
-            )
-        if worst <= RELOAD:
-            return timing.inner
-        factor = refine_factor(worst, RELOAD, 2)
-        if long_step == "refuse":
-            why = f"is {np.sqrt(2 / worst):.2g} steps for the bristle's reload after a reversal"
-            raise long_step_error(timing.step, timing.step / factor, why)
-        return self._refined(timing.inner * factor, self.inner(delays))
-
-    def _refined(self, needed: int, least: int) -> int:
-        """Steps a sample, as many as needed or more; ModelError where those are too many."""
-        from ..realise.kernel import long_step_error, round_up_steps
-
-        inner = round_up_steps(needed, least)
-        if inner is None:
-            raise long_step_error(self.step, self.sampling.period / needed, "is far too long")
-        return inner
+            inner, limit = finer, ladder.limit(finer)

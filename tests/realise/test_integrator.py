@@ -49,7 +49,7 @@ def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductio
         np.zeros(lag // inner + 2), lag // inner + 2, np.zeros(0), np.zeros(0), 1,
         np.zeros(0), np.zeros(0), 2, False,
         np.array([force(half), 0.0 * half]), np.full((1, samples + 1), command),
-        memory, kept, out, 0, kinds, mass.COLUMNS + columns, mass.COLUMNS + others, results,
+        memory, kept, out, np.inf, 0, kinds, mass.COLUMNS + columns, mass.COLUMNS + others, results,
     )  # fmt: skip
     return out.reshape(samples + 1, -1).T, results
 

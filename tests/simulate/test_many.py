@@ -12,7 +12,8 @@ import teleopdesign as td
 from teleopdesign.diagrams import haptic_interface, teleoperator
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.kernel import FINER
-from teleopdesign.simulate import Sampling, simulate, simulate_many
+from teleopdesign.simulate import Sampling, prepare, simulate, simulate_many
+from teleopdesign.simulate.step_ladder import StepLadder
 
 #: two loops that differ by rounding in one exp: 1e-9 of the largest value, as golden/ allows
 ROUNDING = 1e-9
@@ -144,6 +145,27 @@ def test_cases_that_need_about_the_same_finer_step_share_a_grid():
         at = {"Z_m.presliding.stiffness": float(stiffness[case])}
         one = simulate(coupled().with_values(at), **{**RUN, "duration": 0.01})
         assert one.data.attrs["step_s"] == steps[case]
+
+
+def test_a_run_ends_early_where_no_step_of_the_ladder_would_do_and_only_then():
+    """Up to its end it is the same run; the measure that ended it says that it is refused."""
+    setup = prepare(coupled(), duration=0.1, inputs={"F_u": push})
+    timing = setup.timing(setup.inner())
+    rows, worst = setup.run(timing)
+    assert 0 < worst < setup.ladder("refine").limit(timing.inner)
+    assert np.array_equal(setup.run(timing, limit=worst)[0], rows)
+    ended, measure = setup.run(timing, limit=0.5 * worst)
+    last = int(np.flatnonzero(ended.any(axis=1))[-1])
+    assert np.array_equal(ended[: last + 1], rows[: last + 1]) and not ended[last + 1 :].any()
+    assert 0.5 * worst < measure <= worst and last < timing.samples
+    with pytest.raises(ModelError, match="far too long: even one of"):
+        StepLadder(1e-4, 1e-3, 10).next(timing, 1.001 * StepLadder(1e-4, 1e-3, 10).limit(10), True)
+
+
+def test_inputs_that_are_held_are_those_of_a_table_of_them():
+    constant = simulate(coupled(), duration=0.05, inputs={"F_u": 1.5})
+    table = simulate(coupled(), duration=0.05, inputs={"F_u": lambda t: 1.5 + 0.0 * t})
+    assert constant.data.equals(table.data) and np.ptp(constant["X_e"].values) > 0
 
 
 @pytest.mark.slow

@@ -279,6 +279,7 @@ def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) 
             memory,
             nowhere,
             nothing,
+            np.inf,
             timing.samples + 1,
             nowhere,
             nowhere,

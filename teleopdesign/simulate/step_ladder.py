@@ -1,0 +1,88 @@
+"""How many steps a sample a run takes, and the next one where that does not resolve its signals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from ..errors import GrowsWithoutBound, ModelError
+
+if TYPE_CHECKING:
+    from ..realise.kernel import Timing
+
+
+@dataclass(frozen=True)
+class StepLadder:
+    """The step that was asked for, and those by which `realise.kernel.FINER` divides it.
+
+    step, period: the step that was asked for and that of samples, s
+    least: steps a sample, of that step
+    """
+
+    step: float
+    period: float
+    least: int
+    long_step: Literal["refine", "refuse"] = "refine"
+
+    def first(self, rate: float, state: str) -> int:
+        """Steps a sample that resolve this rate, 1/s, in which the state takes part most.
+
+        raises ModelError: the step is refused, or none would do
+        """
+        from ..realise.kernel import FASTEST, JUMP, long_step_error, refine_factor, round_up_steps
+
+        if rate > JUMP:
+            raise ModelError(
+                f"simulate: a force on {state} jumps with the sign of a velocity: no step resolves "
+                "that in continuous time; sample the controller, or take a law that is rounded off"
+            )
+        step = self.period / self.least
+        if rate * step <= FASTEST:
+            return self.least
+        if self.long_step == "refuse":
+            why = f"is {2 * np.pi / (rate * step):.2g} steps per period of {state}"
+            raise long_step_error(step, FASTEST / rate, why)
+        needed = self.least * refine_factor(rate * step, FASTEST, 1)
+        if (inner := round_up_steps(needed, self.least)) is None:
+            raise long_step_error(self.step, self.period / needed, "is far too long")
+        return inner
+
+    def next(self, timing: Timing, worst: float, is_finite: bool) -> int:
+        """Steps a sample for the next run; as they were, where this run resolved its bristles.
+
+        worst: measure of their reload, see `realise.kernel`
+        raises ModelError: signals are not finite, the step is refused, or none would do
+        """
+        from ..realise.kernel import FINER, RELOAD, long_step_error, refine_factor, round_up_steps
+
+        if not is_finite:
+            raise GrowsWithoutBound(
+                f"simulate: signals grow beyond all bounds at a step of {timing.step:g} s: the "
+                "loop is unstable or a parameter makes no sense"
+            )
+        if worst <= RELOAD:
+            return timing.inner
+        factor = refine_factor(worst, RELOAD, 2)
+        if self.long_step == "refuse":
+            why = f"is {np.sqrt(2 / worst):.2g} steps for the bristle's reload after a reversal"
+            raise long_step_error(timing.step, timing.step / factor, why)
+        if (inner := round_up_steps(timing.inner * factor, self.least)) is None:
+            # a run that ended at its limit does not know by how much: none is named that would do
+            raise ModelError(
+                f"simulate: step {self.step * 1e3:.4g} ms is far too long: even one of "
+                f"{self.period / (self.least * FINER[-1]) * 1e3:.3g} ms does not resolve the "
+                "bristle's reload after a reversal"
+            )
+        return inner
+
+    def limit(self, inner: int) -> float:
+        """Measure of the reload above which no step would do: a run may end there.
+
+        Only a run that another one asked for, which was finite: a first one is run to its end, so
+        that signals which grow beyond all bounds are called so.
+        """
+        from ..realise.kernel import worst_reload
+
+        return worst_reload(inner, self.least)
