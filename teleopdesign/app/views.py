@@ -76,7 +76,7 @@ def log_parts(
     except TeleopDesignError as error:
         return [form, *sliders, mo.callout(str(error), kind="warn")]
     return [
-        mo.md("What is left empty is found. Choose what was found wrongly:"),
+        mo.md("Empty fields: columns are chosen by names and physics. Choose where that is wrong:"),
         place_side_by_side(*form.elements.values()),
         mo.md(understood.table()),
         mo.md("What is fitted, and what is checked:"),
