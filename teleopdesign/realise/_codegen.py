@@ -99,9 +99,9 @@ def _reader(name: str, many: int) -> str:
 
     Behind the last column the table stays as it is there: one column is what is held throughout.
     """
-    numbers = [*(f"table[{i}, at]" for i in range(many)), "0.0"]  # there may be no input
-    at = "    at = min(column, table.shape[1] - 1)\n" if many else ""
-    return f"@jitted\ndef {name}(table, column):\n{at}    return ({', '.join(numbers)},)\n\n\n"
+    numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
+    held = "    column = min(column, table.shape[1] - 1)\n" if many else ""
+    return f"@jitted\ndef {name}(table, column):\n{held}    return ({', '.join(numbers)},)\n\n\n"
 
 
 @dataclass(frozen=True)

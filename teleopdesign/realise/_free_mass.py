@@ -141,19 +141,19 @@ OBSERVER = 0
 
 @jitted
 def inputs_at(table, column):
-    at = min(column, table.shape[1] - 1)
+    column = min(column, table.shape[1] - 1)
     return (
-        table[0, at],
-        table[1, at],
+        table[0, column],
+        table[1, column],
         0.0,
     )
 
 
 @jitted
 def sampled_inputs_at(table, column):
-    at = min(column, table.shape[1] - 1)
+    column = min(column, table.shape[1] - 1)
     return (
-        table[0, at],
+        table[0, column],
         0.0,
     )
 
