@@ -41,6 +41,11 @@ def _removed_share(before: float, after: float, floor: float) -> float:
     return (before**2 - after**2) / max(before**2 - floor**2, 1e-300)
 
 
+def lowers_check_squares(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether `other` leaves fewer squares on the check records, by enough to matter."""
+    return check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
+
+
 def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
     """Why an addition to `base` does not count (a key of `REFUSALS`); "" where it may count.
 
@@ -51,7 +56,7 @@ def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
         return "blind"
     if other.at_command.weak and not base.at_command.weak:
         return "weak"
-    less = check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
+    less = lowers_check_squares(base, other, criteria=criteria)
     return "hides" if less and not gain_at_command(base, other) > criteria.relevant else ""
 
 
@@ -127,12 +132,8 @@ def helps_but_is_barred(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> str:
     """Which check bars a candidate that lowers the check error by enough to matter; "" if none."""
-    least = 1.0 - criteria.relevant
-    helps = (
-        check_squares(ranked.fit) < least * check_squares(base)
-        or ranked.fit.check_error**2 < least * base.check_error**2
-    )
-    if not helps:
+    less = ranked.fit.check_error**2 < (1.0 - criteria.relevant) * base.check_error**2
+    if not (less or lowers_check_squares(base, ranked.fit, criteria=criteria)):
         return ""
     return objection(base, ranked, floor, criteria=criteria)
 

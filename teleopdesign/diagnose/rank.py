@@ -10,7 +10,7 @@ from ..errors import ModelError
 from ..model import Model
 from .candidates import Candidate, bodies_with_measured_force, candidates
 from .criteria import CRITERIA, Criteria
-from .decision import find_superfluous_effect, refusal
+from .decision import find_superfluous_effect, lowers_check_squares, refusal
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
@@ -189,7 +189,7 @@ def make_ranked(
     widths: asked of a candidate that gains enough to matter; None: none is asked
     """
     implausible = _implausible(base, candidate, fit, prepared)
-    gains = check_squares(fit) < (1.0 - criteria.relevant) * check_squares(base)
+    gains = lowers_check_squares(base, fit, criteria=criteria)
     if widths is not None and gains and not implausible:
         implausible = widths.explain(fit, candidate)
     return Ranked(
@@ -224,7 +224,7 @@ def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -
     candidate, fit = fitted
     prepared, criteria = widths.prepared, widths.criteria
     beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria, widths=widths)
-    gains = check_squares(fit) < (1.0 - criteria.relevant) * check_squares(base)
+    gains = lowers_check_squares(base, fit, criteria=criteria)
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
     superfluous = find_superfluous_effect(base, fit, candidate, criteria=criteria)
