@@ -112,6 +112,9 @@ print(*[one.topic for one in settle(Question(identify_device(body)), simulated=F
 """
 
 
+pytestmark = pytest.mark.slow  # each starts a process with a package of its own
+
+
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
     """A folder that holds a copy of the package."""

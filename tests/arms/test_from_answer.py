@@ -91,6 +91,7 @@ def test_the_diagnosis_reads_back_as_it_was(folder, answer):
     assert "+ spring at joint2" in shown and "joint1: " in shown
 
 
+@pytest.mark.slow
 def test_the_page_has_a_part_for_each_joint(answer, tmp_path):
     path = tmp_path / "page.html"
     assert main(["report", str(answer), "--output", str(path)]) == 0

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from diagnose.own_cases import FEW
 from effects.along import axis_of
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from measurement.rod_example import PAIR, rows
 
@@ -275,8 +275,6 @@ ANYTHING = st.recursive(
 )  # fmt: skip
 
 
-# 150 answers in under a second: most places of the format are hit; `make fuzz` draws thousands
-@settings(max_examples=150)
 @given(data=st.data())
 def test_a_spoilt_answer_is_read_or_refused_in_one_line(
     data, content, experiment, tmp_path_factory

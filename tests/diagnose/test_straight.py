@@ -35,9 +35,8 @@ def test_bends_and_lines_are_told_by_their_laws():
     assert {n for n, e in EFFECTS.items() if is_bent(e)} == {"gravity", "hardening_spring"}
 
 
-@pytest.mark.parametrize(
-    ("stiffness", "neutral"), [(0.6, 0.35), pytest.param(1.4, -0.5, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("stiffness", "neutral"), [(0.6, 0.35), (1.4, -0.5)])
 def test_a_spring_about_its_own_place_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
     diagnosis = diagnosed(tmp_path / "line", lambda x: stiffness * (x - neutral))
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}

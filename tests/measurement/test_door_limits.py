@@ -155,6 +155,7 @@ def test_a_cell_that_is_no_number_is_named_by_its_row_in_the_whole_table(tmp_pat
         columns_of(path)
 
 
+@pytest.mark.slow
 def test_cells_one_by_one_take_no_ten_times_the_memory_of_their_numbers(tmp_path, monkeypatch):
     path = tmp_path / "r.csv"
     rows, width = 20_000, 3

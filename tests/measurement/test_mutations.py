@@ -40,7 +40,7 @@ def mutations(draw, text):
 
 
 @given(data=st.data())
-@settings(max_examples=200)
+@settings(max_examples=100)
 def test_any_change_of_the_toml_is_read_or_refused_in_one_line(template, data):
     original = (template / "experiment.toml").read_text()
     text = data.draw(mutations(original))
@@ -55,7 +55,7 @@ def test_any_change_of_the_toml_is_read_or_refused_in_one_line(template, data):
 
 
 @given(data=st.data())
-@settings(max_examples=100)
+@settings(max_examples=50)
 def test_any_change_of_a_table_is_read_or_refused_in_one_line(template, data):
     original = (template / "fit.csv").read_text()
     text = data.draw(mutations(original))

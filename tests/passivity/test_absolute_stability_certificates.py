@@ -82,7 +82,8 @@ def test_what_is_no_matrix_of_rational_functions_of_s_is_refused(content):
         check(content)
 
 
-@pytest.mark.parametrize("number", [30, pytest.param(400, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [400])
 def test_what_is_accepted_of_mutated_matrices_survives_an_attack(number):
     """A number, sign or place of a random Z is changed; what is accepted has no bad termination."""
     rng = np.random.default_rng(7)

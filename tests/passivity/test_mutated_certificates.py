@@ -65,7 +65,7 @@ def survey_mutations(genuine, number, seed):
 
 
 def test_what_is_accepted_of_mutated_certificates_survives_an_attack(genuine):
-    assert survey_mutations(genuine, 75, 1) < 75
+    assert survey_mutations(genuine, 40, 1) < 40
 
 
 @pytest.mark.slow

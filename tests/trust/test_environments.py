@@ -130,7 +130,7 @@ UNWRITABLE = {
 @posix
 @pytest.mark.parametrize(
     "place",
-    [p if p in ("no cache folder", "nothing") else pytest.param(p, marks=pytest.mark.slow)
+    [p if p == "nothing" else pytest.param(p, marks=pytest.mark.slow)
      for p in UNWRITABLE],
 )  # fmt: skip
 def test_laws_are_compiled_wherever_nothing_can_be_written(place, run_kernel, tmp_path):

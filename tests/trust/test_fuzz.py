@@ -25,7 +25,10 @@ def test_the_file_that_is_spoilt_is_good(reader, tmp_path):
     read(good, tmp_path)
 
 
-@pytest.mark.parametrize("reader", READERS)
+# a data set is read on trial by another process, each time
+@pytest.mark.parametrize(
+    "reader", [pytest.param(r, marks=pytest.mark.slow if r == "nc" else ()) for r in READERS]
+)
 def test_a_spoilt_file_is_read_or_refused_in_one_line(reader):
     @settings(
         max_examples=EXAMPLES,
