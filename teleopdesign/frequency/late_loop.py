@@ -54,6 +54,10 @@ class LateRatio:
         first, *others = (abs(_coefficient(p, degree)) for p in self.below.values())
         return sum(abs(_coefficient(p, degree)) for p in self.above.values()) < first - sum(others)
 
+    def passes(self) -> bool:
+        """Whether its size does not go to 0 at high frequency."""
+        return _degree(self.above) >= _degree(self.below)
+
     def corners(self) -> np.ndarray:
         """Sizes of all roots of its polynomials, with points across narrow resonances, rad/s."""
         polynomials = (p for terms in (self.above, self.below, self.closed) for p in terms.values())

@@ -112,6 +112,18 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
         left out of it; its gain is above 1 where its samples no longer tell a frequency from
         others, or at the highest frequency that was measured
     """
+    phase, w, fades = unity_crossings(loop)
+    return _smallest_delay(phase, w) if fades else 0.0
+
+
+def unity_crossings(
+    loop: LoopGain | control.TransferFunction,
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Of a stable loop: where its gain is 1, and whether it stays below 1 at high frequency.
+
+    phase ahead of -180 degrees and frequency (rad/s), shape (crossings,)
+    raises ModelError: as for `delay_margin`
+    """
     if isinstance(loop, LoopGain):
         if gone := [name for name in loop.left_out if "." not in name]:
             raise ModelError(
@@ -119,24 +131,22 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
                 f'judge the rest with `diagram.without("{gone[0]}")`, or simulate'
             )
         if loop.expression.atoms(AppliedUndef):
-            return _smallest_delay(*measured_crossings(loop.expression, growing=loop.growing))
+            return *measured_crossings(loop.expression, growing=loop.growing), True
         if loop.held:
             if _grows_by_pade(loop):
                 raise _unstable()
-            return _smallest_delay(*_crossings(loop, np.zeros(0)))
+            return *_crossings(loop, np.zeros(0)), True
         ratio = late_ratio(loop.expression)
     else:
         ratio = _ratio_of(loop)
     if count_growing(ratio.closed):
         raise _unstable()
-    if not ratio.fades():
-        return 0.0
     if isinstance(loop, LoopGain) and loop.has_delay:
-        return _smallest_delay(*_crossings(loop, ratio.corners()))
+        return *_crossings(loop, ratio.corners()), ratio.fades()
     (above,), (below,) = ratio.above.values(), ratio.below.values()
     w = crossings(above, below)
     gain = np.polyval(above, 1j * w) / np.polyval(below, 1j * w)
-    return _smallest_delay(np.degrees(np.angle(gain)) + 180, w)
+    return np.degrees(np.angle(gain)) + 180, w, ratio.fades()
 
 
 def _unstable() -> UnstableLoop:

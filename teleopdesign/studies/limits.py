@@ -18,7 +18,7 @@ from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, UnstableLoop
-from ..frequency import delay_margin, loop_gain
+from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.family import family_of
 from ..passivity.intervals.linear import CLAIMS, margin_over
@@ -29,8 +29,6 @@ from .chosen_measures import Measure, measures_of
 
 #: margins of the loop of a controller, and their units
 LOOP_MARGINS = {"delay margin": "s", "gain margin": "1", "phase margin": "deg"}
-#: order of the Pade approximation of dead times in gain and phase margins
-_PADE = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,23 +100,15 @@ def limit_of(content: Any) -> TuningLimit:
 
 def loop_margin(diagram: Diagram, name: str, controller: str) -> float:
     """Margin of a controller's loop; -inf where it is unstable, inf where nothing limits it."""
-    import control
-
-    loop = loop_gain(diagram, controller=controller)
+    margin = {
+        "delay margin": delay_margin,
+        "phase margin": phase_margin,
+        "gain margin": gain_margin,
+    }[name]
     try:
-        late = delay_margin(loop)
+        return margin(loop_gain(diagram, controller=controller))
     except UnstableLoop:
         return -np.inf
-    if name == "delay margin":
-        return late
-    system = loop.transfer_function(delay_order=_PADE)
-    gains, phases, *_ = control.stability_margins(system, returnall=True)
-    if name == "phase margin":
-        turned = np.abs((np.asarray(phases) + 180) % 360 - 180)
-        return float(turned.min()) if len(turned) else np.inf
-    factors = np.asarray(gains)
-    factors = np.maximum(factors, 1 / factors)
-    return float(factors.min()) if len(factors) else np.inf
 
 
 def margin_function(

@@ -13,7 +13,7 @@ from passivity.attacks.budget import attacked
 from passivity.attacks.late_modes import GRIDS, NEAR, rightmost
 
 from teleopdesign.errors import UnstableLoop
-from teleopdesign.frequency import LoopGain, delay_margin
+from teleopdesign.frequency import LoopGain, delay_margin, gain_margin
 from teleopdesign.realise.lti import S
 
 
@@ -90,6 +90,32 @@ def test_a_late_loop_grows_from_its_delay_margin_on_and_not_before(seed, number)
             assert (loop.modes(time) < NEAR).any(), (vars(loop), margin, time)
         if np.isfinite(margin):
             assert (loop.modes(1.01 * margin) > -NEAR).any(), (vars(loop), margin)
+        counts["no limit" if np.isinf(margin) else "limit"] += 1
+    print(dict(counts))
+    assert counts["limit"] >= number / 10
+
+
+@attacked(6, 60)
+def test_a_late_loop_grows_at_its_gain_margin_and_not_before(seed, number):
+    rng, counts = np.random.default_rng(seed), Counter()
+    while sum(counts.values()) < number:
+        loop = LateLoop(rng)
+        if loop.inner or loop.plain:
+            continue
+        try:
+            margin = gain_margin(loop.gain())
+        except UnstableLoop:
+            counts["unstable"] += 1
+            continue
+        parts, near = loop.parts, []
+        for share in (-1.01, -0.9, -0.5, 0.5, 0.9, 1.01):
+            factor = (margin if np.isfinite(margin) else 1e6) ** share
+            loop.parts = [([factor * c for c in above], below) for above, below in parts]
+            if abs(share) < 1 or np.isinf(margin):
+                assert (loop.modes(0.0) < NEAR).any(), (vars(loop), margin, share)
+            else:
+                near.append((loop.modes(0.0) > -NEAR).any())
+        assert np.isinf(margin) or any(near) or margin < 1.02, (vars(loop), margin)
         counts["no limit" if np.isinf(margin) else "limit"] += 1
     print(dict(counts))
     assert counts["limit"] >= number / 10
