@@ -50,7 +50,7 @@ def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:
         if effect.states[name].start == "position":
             moved[symbol] = symbol + offset
     laws = (effect.expression(), *effect.rates().values())
-    return all(_is_same(law, law.subs(moved, simultaneous=True)) for law in laws)
+    return all(_is_same(law, law.xreplace(moved)) for law in laws)
 
 
 def _is_same(one: sp.Expr, other: sp.Expr) -> bool:
@@ -63,7 +63,7 @@ def _is_same(one: sp.Expr, other: sp.Expr) -> bool:
             s: (first if s in SIGNALS.values() else abs(first)) + step * (k + 1) ** 2 / 97
             for k, s in enumerate(symbols)
         }
-        a, b = (sp.N(law.subs(values), 30) for law in (one, other))
+        a, b = (sp.N(law.xreplace(values), 30) for law in (one, other))
         if a != b and not (
             (a - b).is_number and abs(sp.N(a - b, 30)) <= _SAME * (1 + abs(sp.N(a, 30)))
         ):
