@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from ..measurement.motion import Motion
 from .adequacy import moment_above_noise
 from .candidates import Candidate
 from .corrected_fit import correct_fit
-from .decision import verdict
+from .criteria import CRITERIA, Criteria
+from .decision import refusal, verdict
 from .diagnosis import Diagnosis, SetAside
 from .error import force_error
 from .error_at_command import refer_to_command
@@ -25,6 +27,7 @@ from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .prepare import Prepared
 from .probability import probable
+from .ranking import REFUSALS
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
 from .untold import untold
@@ -45,11 +48,19 @@ def conclude(
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
     estimated = state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
+    set_aside = state.set_aside
     moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
     if prepared is not search.whole:
         search.progress("errors on the whole records")
         rungs = tuple(replace(r, fit=_evaluate_on_all(r.fit, search.whole)) for r in rungs)
-        if len(steady := without_rise(rungs)) < len(rungs):
+        steady = without_rise(rungs)
+        hidden = find_hidden_rung(steady, criteria=criteria)
+        if hidden is not None:
+            rung, why = hidden
+            assert rung.added is not None
+            set_aside = (*set_aside, SetAside(rung.added, rung.fit.check_error, why))
+            steady = steady[: steady.index(rung)]
+        if len(steady) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
     model = rungs[-1].fit.model
     search.progress("what could be learned")
@@ -67,7 +78,7 @@ def conclude(
         near_reversals=error_near_reversals(model, search.whole),
         left_out=search.plan.omissions(),
         untold=untold(rungs, search.whole),
-        set_aside=state.set_aside,
+        set_aside=set_aside,
     )
     named = probable(diagnosis, criteria=criteria)
     diagnosis = replace(diagnosis, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
@@ -106,6 +117,21 @@ def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung,
     return None
 
 
+def find_hidden_rung(
+    rungs: Sequence[Rung], *, criteria: Criteria = CRITERIA
+) -> tuple[Rung, str] | None:
+    """The first rung that leaves the command too little influence to be believed; and why.
+
+    It was asked when the rung was ranked, too. A share near its limit changes with the last fit,
+    and from the windows that were searched to the whole records.
+    """
+    for before, rung in pairwise(rungs):
+        why = refusal(before.fit, rung.fit, criteria=criteria)
+        if why in ("blind", "weak"):
+            return rung, REFUSALS[why]
+    return None
+
+
 def remove_doubtful_rung(
     search: LadderSearch, state: LadderState, rungs: Sequence[Rung]
 ) -> LadderState | None:
@@ -114,6 +140,7 @@ def remove_doubtful_rung(
     rungs: of the state, with the errors that the answer would state
     """
     doubted = find_doubtful_rung(rungs, search.prepared)
+    doubted = doubted or find_hidden_rung(rungs, criteria=search.criteria)
     if doubted is None:
         return None
     rung, why = doubted

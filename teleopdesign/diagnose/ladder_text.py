@@ -234,8 +234,9 @@ def _nearest(diagnosis: Diagnosis) -> str:
     least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
     for candidate, fit in others[:1]:
         if fit.check_error**2 < least:
+            why = next((a.reason for a in diagnosis.set_aside if a.candidate == candidate), "")
             return (
-                f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: these "
-                "records do not tell that from chance."
+                f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: "
+                f"{why or 'these records do not tell that from chance'}."
             )
     return ""

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.diagnosis import OpenQuestion
+from teleopdesign.diagnose.diagnosis import OpenQuestion, SetAside
 from teleopdesign.diagnose.ladder_text import ladder_text, sentence
 
 
@@ -21,6 +21,15 @@ def test_an_undecided_verdict_says_which_candidate_comes_nearest(unsupported):
     best = unsupported.last.ranked[0]
     error = 100 * best.fit.check_error
     assert f"{best.candidate} comes nearest and would leave {error:.3g} %" in sentence(unsupported)
+
+
+def test_the_nearest_that_was_set_aside_says_why(unsupported):
+    best = unsupported.last.ranked[0]
+    assert sentence(unsupported).endswith("these records do not tell that from chance.")
+    aside = SetAside(best.candidate, 0.01, "the command has no influence")
+    assert sentence(replace(unsupported, set_aside=(aside,))).endswith(
+        f"{100 * best.fit.check_error:.3g} %: the command has no influence."
+    )
 
 
 def test_the_nearest_is_the_same_where_the_answer_was_read_from_a_file(unsupported):

@@ -11,7 +11,8 @@ from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import restore_diagnosis
 from teleopdesign.diagnose.answers.saved import load_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.conclusion import find_doubtful_rung
+from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
+from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.diagnosis import SetAside, Untold
 from teleopdesign.diagnose.identifiability import doubt, is_identifiable
 from teleopdesign.diagnose.ladder_text import ladder_text
@@ -61,6 +62,30 @@ def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagno
     unsure = (*rungs[:-1], replace(rungs[-1], fit=with_errors(fit, 1.5)))
     rung, why = find_doubtful_rung(unsure, prepared_case)
     assert rung.added == added and "not told from absence" in why
+
+
+def with_command_error(rung, **changed):
+    return replace(rung, fit=replace(rung.fit, at_command=replace(rung.fit.at_command, **changed)))
+
+
+def test_a_rung_that_the_last_fit_leaves_blind_or_weak_is_not_kept(diagnosis):
+    """A limit that moves by a little may hide more of the motion than when it was ranked."""
+    *before, last = diagnosis.rungs
+    assert find_hidden_rung(diagnosis.rungs) is None
+    assert (
+        find_hidden_rung((*before, with_command_error(last, blind=CRITERIA.blind - 1e-6))) is None
+    )
+    hidden = with_command_error(last, blind=CRITERIA.blind + 1e-6)
+    assert find_hidden_rung((*before, hidden)) == (
+        hidden, "the command has no influence in more than a quarter of the motion"
+    )  # fmt: skip
+    weak = with_command_error(last, weak=True)
+    assert find_hidden_rung((*before, weak))[0] is weak
+    # what the user's model hides already is no charge against what is added to it
+    assert (
+        find_hidden_rung((*(with_command_error(r, blind=0.3, weak=True) for r in before), weak))
+        is None
+    )
 
 
 def in_a_valley(fit, little):
