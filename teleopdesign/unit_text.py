@@ -34,6 +34,9 @@ _PREFIXED = {
     "K": ParsedUnit(1.0, (0, 0, 0, 0, 1, 0)),
     "rad": ParsedUnit(1.0, (0, 0, 0, 0, 0, 1)),
 }
+#: prefixes that a symbol goes with, where not all are in use: others are letters of other words.
+#: "Grad" is the German degree and no gigaradian, "Mm" and "MA" are slips of the shift key
+_IN_USE = {"rad": "nuµμmk", "m": "nuµμmcdk", "s": "nuµμmcdk", "A": "nuµμmk", "V": "nuµμmk"}
 #: every symbol that a unit may hold, those with prefixes included
 SYMBOLS = {
     "1": ParsedUnit(1.0, (0, 0, 0, 0, 0, 0)),
@@ -53,7 +56,8 @@ SYMBOLS |= {
     prefix + name: ParsedUnit(factor * unit.scale, unit.powers)
     for name, unit in _PREFIXED.items()
     for prefix, factor in _PREFIXES.items()
-    if prefix + name not in SYMBOLS  # "min" and the like are no prefixed unit
+    if prefix in _IN_USE.get(name, _PREFIXES)
+    and prefix + name not in SYMBOLS  # "min" and the like are no prefixed unit
 }
 
 _TOKEN = re.compile(r"\s*(\*\*|[*·/^()²³]|[A-Za-zµμ°%]+|[-+]?\d+)")

@@ -25,7 +25,10 @@ ALIASES = {
     "м/с": "m/s", "мм/с": "mm/s", "弧度": "rad", "弧度/秒": "rad/s", "毫秒": "ms", "微秒": "us",
     "安": "A", "牛": "N", "牛米": "Nm", "牛·米": "Nm", "毫米": "mm", "米": "m", "毫米/秒": "mm/s",
     "米/秒": "m/s", "ミリ秒": "ms", "ラジアン": "rad", "도": "deg", "days": "day",
-    "tage": "day", "jours": "day",
+    "tage": "day", "jours": "day", "grad/s": "deg/s", "grad/sec": "deg/s", "degree/s": "deg/s",
+    "degrees/s": "deg/s", "newtonmeter": "Nm", "sekunde": "s", "millisekunden": "ms",
+    "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm",
+    "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
 }  # fmt: skip
 _BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])([^()\[\]{}]++)[)\]}]\s*+$")
 #: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
@@ -122,8 +125,12 @@ def unit_of_text(text: str) -> str | None:
     text = text.strip()
     if text.lower() in ALIASES and not is_unit(text):
         return ALIASES[text.lower()]
-    if text == "nm":  # a nanometre in the units of physics, a torque in a log
-        return "Nm"
+    if text in (
+        "nm",
+        "1/min",
+        "min^-1",
+    ):  # a nanometre and a sixtieth of a hertz elsewhere, not in a log
+        return ALIASES[text]
     if text in COUNTS:
         return "counts"
     return text if is_unit(text) and not text.isdigit() else None

@@ -4,10 +4,12 @@ import numpy as np
 import openpyxl
 import pytest
 
-from teleopdesign.measurement.column_names import bare_name, unit_in_name, unit_of_text
+from teleopdesign.measurement.column_names import ALIASES, bare_name, unit_in_name, unit_of_text
 from teleopdesign.measurement.doors._cells import is_number, number_of
 from teleopdesign.measurement.doors._header import names_and_units
 from teleopdesign.measurement.tables import open_log
+from teleopdesign.quantity import is_unit
+from teleopdesign.unit_text import parse_unit
 
 ROWS = [[k / 100, k % 7, -float(k), 30.5] for k in range(80)]
 
@@ -103,3 +105,27 @@ def test_thousands_are_read_from_a_table(tmp_path):
     wanted = {"Time (ms)": "", "Angle (deg)": ""}
     assert np.allclose(log.read(wanted)["Time (ms)"], [1e3 * r[0] + 900 for r in ROWS])
     assert np.allclose(log.read(wanted)["Angle (deg)"], [r[2] - 990 for r in ROWS])
+
+
+@pytest.mark.parametrize("alias", sorted(ALIASES))
+def test_no_spelling_of_a_loggers_word_is_a_unit_of_another_size(alias):
+    """ "Grad" was a gigaradian, "1/min" a sixtieth of a radian a second, "MA" a megaampere."""
+    meant = ALIASES[alias]
+    for text in {alias, alias.upper(), alias.capitalize(), alias.title()} - {"NM"}:
+        unit = unit_of_text(text)
+        assert unit == meant or parse_unit(unit) == parse_unit(meant), text
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "unit"),
+    [("Winkel [Grad]", "position", "deg"), ("Winkel (Grad)", "position", "deg"),
+     ("Geschwindigkeit [Grad/s]", "velocity", "deg/s"), ("n [1/min]", "velocity", "rpm"),
+     ("Umdrehungen (Umdr)", "position", "turns"), ("Drehmoment [Newtonmeter]", "force", "Nm")],
+)  # fmt: skip
+def test_german_units_are_those_of_a_german(name, quantity, unit):
+    assert unit_in_name(name, quantity, "revolute") == unit
+
+
+@pytest.mark.parametrize("text", ["Grad", "Mrad", "Mm", "Gs", "MA", "crad"])
+def test_a_prefix_that_nobody_uses_is_a_letter_of_another_word(text):
+    assert not is_unit(text)
