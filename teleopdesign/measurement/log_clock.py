@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..errors import ExperimentError, quote
 from .channel import Channel
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock, counted_time, segments_of
-from .repeated_rows import repeated_rows
+from .repeated_rows import repeated_rows, rows_between_readings
 from .tables import LogColumns
 from .time_grid import DATE, EVEN, clock_of, stamps_are_true
 
@@ -50,7 +50,6 @@ def clock_of_log(
     """
     on_this_clock = {c for c in columns.values if c not in columns.stamps}
     filled = _filled_rows(columns, channels, on_this_clock, name)
-    empty = len(filled) - int(filled.sum())
     if sample_rate is not None:
         count = len(filled)
         time, sample_time = counted_time(count, sample_rate, name)
@@ -60,7 +59,8 @@ def clock_of_log(
         where = f"{name}: channels.time"
     labels = _labels(columns, channels, name)
     again = _mark_repeated(columns, channels, on_this_clock, filled) & _later(stamps)
-    rows = np.flatnonzero(filled & ~again)
+    between = _mark_between_readings(columns, channels, on_this_clock, filled, stamps)
+    rows = np.flatnonzero(filled & ~again & ~between)
     stamps = stamps[rows]
     steps: list[ReadingStep] = []
     if len(stamps) and abs(stamps[0]) > DATE:
@@ -75,25 +75,33 @@ def clock_of_log(
         clock = clock_of(stamps, segments, _repeats(columns, channels, rows, on_this_clock), where)
         clock = replace(clock, rows=rows[clock.rows])
     stamped, more = _stamps(clock, columns, channels, file)
-    if empty:
-        steps.append(
-            ReadingStep(
-                file,
-                f"{count_of(empty, 'row')} with a cell that holds no number",
-                "read as lost",
-                f"{100 * empty / len(filled):.2g} % of the rows",
-            )
-        )
-    if again.any():
-        steps.append(
-            ReadingStep(
-                file,
-                f"{count_of(int(again.sum()), 'row')} the same as the one before",
-                "read as lost",
-                f"{100 * float(again.mean()):.2g} % of the rows",
-            )
-        )
+    steps += _left_out(file, ~filled, again, between, clock.sample_time)
     return LogClock(clock, stamped), steps + _order(clock, file, len(filled)) + more
+
+
+def _left_out(
+    file: str,
+    empty: NDArray[np.bool_],
+    again: NDArray[np.bool_],
+    between: NDArray[np.bool_],
+    sample_time: float,
+) -> list[ReadingStep]:
+    """What is said of rows that are not used; masks over all rows."""
+    steps = []
+    if empty.any():
+        said = f"{count_of(int(empty.sum()), 'row')} with a cell that holds no number"
+        part = f"{100 * float(empty.mean()):.2g} % of the rows"
+        steps.append(ReadingStep(file, said, "read as lost", part))
+    if again.any():
+        said = f"{count_of(int(again.sum()), 'row')} the same as the one before"
+        part = f"{100 * float(again.mean()):.2g} % of the rows"
+        steps.append(ReadingStep(file, said, "read as lost", part))
+    if between.any():
+        said = "rows come faster than readings, which all channels change together"
+        rule = f"one row of each reading, {1 / sample_time:.4g} a second"
+        part = f"{100 * float(between.mean()):.2g} % of the rows say nothing new"
+        steps.append(ReadingStep(file, said, rule, part))
+    return steps
 
 
 def _filled_rows(
@@ -133,17 +141,41 @@ def _mark_repeated(
     filled: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
     """Rows for which the logger had no new reading, among those that are filled."""
+    every, of = _columns_by_quantity(columns, channels, on_this_clock, filled)
+    repeated = np.zeros(len(filled), dtype=bool)
+    if every and filled.any():
+        repeated[filled] = repeated_rows(every, of("position"), of("interaction_force"))
+    return repeated
+
+
+def _mark_between_readings(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    on_this_clock: set[str],
+    filled: NDArray[np.bool_],
+    stamps: Array,
+) -> NDArray[np.bool_]:
+    """Rows of a log that asked its source again before this had a new reading."""
+    every, of = _columns_by_quantity(columns, channels, on_this_clock, filled)
+    between = np.zeros(len(filled), dtype=bool)
+    between[filled] = rows_between_readings(every, of("position"), stamps[filled])
+    return between
+
+
+def _columns_by_quantity(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    on_this_clock: set[str],
+    filled: NDArray[np.bool_],
+) -> tuple[list[Array], Callable[..., list[Array]]]:
+    """Columns of all signals, and those of some quantities: their filled rows, (n,) each."""
     signals = [ch for k, ch in channels.items() if k not in ("time", "segment")]
 
     def of(*quantities: str) -> list[Array]:
         wanted = {c for ch in signals if ch.quantity in quantities for c in ch.columns}
         return [columns.values[c][filled] for c in sorted(wanted & on_this_clock)]
 
-    every = of(*(ch.quantity for ch in signals))
-    repeated = np.zeros(len(filled), dtype=bool)
-    if every and filled.any():
-        repeated[filled] = repeated_rows(every, of("position"), of("interaction_force"))
-    return repeated
+    return of(*(ch.quantity for ch in signals)), of
 
 
 def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> Array | None:

@@ -23,6 +23,11 @@ ALONE = 0.001
 BESIDE = 25
 #: share of the rows above which a log is one of a slower source, which is another matter
 MOST = 0.2
+#: part of the readings of a slower source that must come in step with it, and how far from the step
+#: each may lie, in its periods: of rows that repeat at random 0.6 lie as near
+IN_STEP, OFF_STEP = 0.95, 0.3
+#: readings below which no period of a source is seen
+READINGS = 50
 #: changes to either side of a hold that show noise, and the part of them that must turn back after
 #: the one before: two thirds do in white noise, next to none in a motion
 SHOWN, TURNS = 20, 0.4
@@ -89,6 +94,48 @@ def repeated_rows(
     for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
         out[a + 1 : b + 1] = True
     return out
+
+
+def rows_between_readings(
+    channels: Sequence[Array], positions: Sequence[Array], stamps: Array
+) -> NDArray[np.bool_]:
+    """Rows, but for one a reading, of a log that asked its source before that had a new reading.
+
+    Such a source changes all channels in the same rows, a fixed period apart, and positions go on
+    by several steps at once; the steps of a slow encoder come one by one. Where all rests, a row
+    in each period stays.
+    channels, positions: (n,) each, as in `repeated_rows`;  stamps: (n,) s
+    returns: (n,), all False where the log is none of these
+    """
+    none = np.zeros(len(stamps), dtype=bool)
+    if len(channels) < 2 or len(stamps) < 2:
+        return none
+    changed = np.flatnonzero(~np.logical_and.reduce([np.diff(y) == 0 for y in channels])) + 1
+    if len(changed) < READINGS or len(changed) > (1.0 - MOST) * len(stamps):
+        return none
+    at = stamps[changed]
+    between = np.diff(at)
+    if not (between > 0).all():
+        return none
+    period = float(np.median(between))
+    count = np.concatenate([[0.0], np.cumsum(np.round(between / period))])
+    slope, start = np.polyfit(count, at, 1)
+    in_step = np.abs(at - start - slope * count) <= OFF_STEP * period
+    leaps = [np.abs(x[changed] - x[changed - 1]) for x in positions]
+    by_steps = any(
+        np.median(leap[leap > 0]) > STEPS * reading_step(x)
+        for x, leap in zip(positions, leaps, strict=True)
+        if (leap > 0).any()
+    )
+    if in_step.mean() < IN_STEP or not by_steps:
+        return none
+    kept = none.copy()
+    kept[changed] = True
+    for k in np.flatnonzero(between > 1.6 * period):  # at rest, or rows are lost
+        first, past = changed[k], changed[k + 1]
+        nth = np.floor((stamps[first:past] - stamps[first]) / period + 0.1)
+        kept[first:past] |= np.diff(nth, prepend=0.0) > 0
+    return ~kept
 
 
 def repeats(x: Array, step: float) -> NDArray[np.intp]:

@@ -6,7 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.measurement.repeated_rows import LASTING, repeated_rows, runs_of
+from teleopdesign.measurement.repeated_rows import (
+    LASTING,
+    repeated_rows,
+    rows_between_readings,
+    runs_of,
+)
 
 ROWS = 2000
 
@@ -98,3 +103,39 @@ def test_a_record_with_repeated_rows_is_that_of_lost_rows(with_time):
     off = one.signals["device.position"] - clean[1][: len(one.time)]
     assert np.abs(off).max() < 2.5e-3  # two steps
     assert any("the same as the one before" in step.observed for step in one.reading)
+
+
+def polled(period, poll, *, jitter=0.0, time=8.0):
+    """Stamps, position and force of a script that writes what its source said last."""
+    rng = np.random.default_rng(4)
+    stamps = np.arange(0.0, time, poll)
+    stamps = stamps + jitter * poll * rng.random(len(stamps))
+    at = np.floor(stamps / period + 1e-9) * period
+    # it moves, and rests for a second
+    moved = np.where(np.abs(at - 4.0) < 0.5, 0.0, np.sin(5 * at) * np.cos(1.7 * at))
+    return stamps, np.round(moved / 1e-4) * 1e-4, np.round((moved + 0.2 * np.cos(31 * at)) / 1e-3)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.4])
+@pytest.mark.parametrize("times", [2.0, 4.0, 3.7])
+def test_of_rows_that_come_faster_than_readings_one_of_each_stays(times, jitter):
+    stamps, x, u = polled(0.002 * times, 0.002, jitter=jitter)
+    kept = ~rows_between_readings([x, u], [x], stamps)
+    assert kept.sum() == pytest.approx(8.0 / (0.002 * times), rel=0.03)
+    assert np.diff(stamps[kept]).max() < 1.7 * 0.002 * times, "rests keep their rows"
+    changes = np.flatnonzero((np.diff(x) != 0) | (np.diff(u) != 0)) + 1
+    assert kept[changes].all(), "no reading is left out"
+
+
+def test_a_coarse_encoder_is_no_slow_source():
+    stamps = np.arange(0.0, 8.0, 0.002)
+    for x in (0.01 * stamps, np.sin(stamps), np.sin(stamps) * np.cos(0.3 * stamps)):
+        for step in (1e-4, 1e-3, 1e-2):
+            coarse = np.round(x / step) * step
+            held = np.round(3 * np.sin(2 * stamps))
+            assert not rows_between_readings([coarse, held], [coarse], stamps).any()
+
+
+def test_a_force_that_goes_on_between_positions_is_no_slow_source():
+    stamps, x, _ = polled(0.008, 0.002)
+    assert not rows_between_readings([x, np.cos(31 * stamps)], [x], stamps).any()
