@@ -118,6 +118,8 @@ def rows_between_readings(
     if not (between > 0).all():
         return none
     period = float(np.median(between))
+    if period < 1.5 * float(np.median(np.diff(stamps))):  # as many readings as rows, and rests
+        return none
     count = np.concatenate([[0.0], np.cumsum(np.round(between / period))])
     slope, start = np.polyfit(count, at, 1)
     in_step = np.abs(at - start - slope * count) <= OFF_STEP * period

@@ -139,3 +139,11 @@ def test_a_coarse_encoder_is_no_slow_source():
 def test_a_force_that_goes_on_between_positions_is_no_slow_source():
     stamps, x, _ = polled(0.008, 0.002)
     assert not rows_between_readings([x, np.cos(31 * stamps)], [x], stamps).any()
+
+
+@pytest.mark.parametrize("rest", [0.3, 0.45])
+def test_a_body_that_rests_a_good_part_of_the_time_is_no_slow_source(rest):
+    stamps = np.arange(0.0, 8.0, 0.002)
+    moves = stamps % 2.0 >= 2.0 * rest
+    x = np.where(moves, np.sin(np.pi * (stamps % 2.0)), 0.0)
+    assert not rows_between_readings([x, 3 * x], [x], stamps).any()
