@@ -1,8 +1,10 @@
-"""Exchange: an accepted effect is replaced by one that explains the records better beside the rest.
+"""Exchange: an accepted effect is replaced by one that explains the records better beside the rest,
+or as well with fewer parameters.
 
 Effects are added one at a time, so an early one may only stand in for what was not there yet. Where
 more than noise is left in the end, each of those that others followed is taken out once, and the
-rivals that it beat when it was added are ranked in its place.
+rivals that it beat when it was added are ranked in its place. Effects that explained equally well
+when one of them was added are compared again beside what followed.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
 from .noise_floor import NoiseFloor
-from .order import alternatives_of
+from .order import alternatives_of, is_simpler, select_equals
 from .ranking import Ranked, Ranking
 from .rung import Replaced, Rung
 from .rungs import estimate_without, reorder_and_refit
@@ -47,10 +49,9 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
         return None
     there = [r.added for r in state.rungs if r.added is not None]
     there += [one.candidate for one in state.set_aside]
-    # the last was ranked beside all the others already
     rivals = {
         r.added: rivals_of(r.ranking, there, floor, criteria=criteria)
-        for r in state.rungs[1:-1]
+        for r in _list_followed(state)
         if r.added is not None and r.ranking is not None
     }
     replaced = {r.added: r.replaced for r in state.rungs if r.added is not None}
@@ -66,6 +67,44 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
         return None
     moved = replace(state.with_rungs(order), exchanges=state.exchanges + 1)
     return remove(search, moved) or moved
+
+
+def compare_alternatives(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with fewer alternatives: beside what followed, the records may tell them apart.
+
+    The best of them is taken. None: they are as equal as before.
+    """
+    for rung in _list_followed(state):
+        if rung.added is None or not rung.alternatives or rung.replaced is not None:
+            continue
+        without = estimate_without(state.fit.model, rung, search.prepared)
+        if without is None:
+            continue
+        among = (rung.added, *rung.alternatives)
+        ranking = search.rank(without, step=state.step, among=among)
+        ranked = [r for r in ranking.ranked if r.is_identifiable and r.instead_of is None]
+        equal = select_equals(ranked, criteria=search.criteria)
+        if not 0 < len(equal) < len(among):
+            continue
+        kept = next((r for r in equal if r.candidate == rung.added), equal[0])
+        others = tuple(r.candidate for r in equal if r is not kept)
+        best = replace(rung, added=kept.candidate, fit=kept.fit, alternatives=others)
+        rungs = [best if r is rung else r for r in state.rungs]
+        order = reorder_and_refit(rungs, kept.fit, search.prepared)
+        if order is not None:
+            return state.with_rungs(order)
+    return None
+
+
+def _list_followed(state: LadderState) -> list[Rung]:
+    """Rungs that were ranked without all of the others: what is there now may change their place.
+
+    The last is one of them only where an earlier one changed after it was added.
+    """
+    added = list(state.rungs[1:])
+    last = state.rungs[-1].ranking
+    beside = last is None or last.base is state.rungs[-2].fit
+    return added[:-1] if beside else added
 
 
 def rivals_of(
@@ -94,7 +133,9 @@ def best_exchange(
     step: int = 1,
     replaced: Mapping[Candidate, Replaced | None] | None = None,
 ) -> Exchange | None:
-    """The exchange with the smallest check error; None where none lowers it clearly.
+    """The exchange with the smallest check error.
+
+    None: no exchange lowers the error clearly, and none is simpler and leaves no more.
 
     present: the fit with all that was accepted
     rivals: accepted effect -> what may take its place;  step: number of the rung that is sought
@@ -114,7 +155,10 @@ def best_exchange(
             for r in ranking.ranked
             if r.instead_of is None
             and is_supported(without, r, floor, criteria=criteria)
-            and is_better(present, r.fit, floor, criteria=criteria)
+            and (
+                is_better(present, r.fit, floor, criteria=criteria)
+                or is_simpler(r, dropped, present, criteria=criteria)
+            )
         ]
         if better:
             replacement = min(better, key=lambda r: check_squares(r.fit))

@@ -10,7 +10,7 @@ from ..model import Model
 from .adequacy import is_a_tone
 from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
-from .exchange import exchange
+from .exchange import compare_alternatives, exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
 from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
@@ -80,8 +80,9 @@ def climb(
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    Where no effect is supported alone, a straight line is fitted in place of bends; then, where
-    more than a tone is left, a pair is sought, then an exchange, then a pair in place of all rungs.
+    Where no effect is supported alone, a straight line is fitted in place of bends, and effects
+    that explained equally well are compared again; then, where more than a tone is left, a pair is
+    sought, then an exchange, then a pair in place of all rungs.
     """
     if state.step > search.plan.most_effects:
         return straighten(search, state)
@@ -90,8 +91,9 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         fewer = remove(search, added)
         # two effects that each make the other one superfluous would take turns
         return added if fewer is None or fewer.effects in state.visited else fewer
-    if (straight := straighten(search, state)) is not None:
-        return straight
+    for settle in (straighten, compare_alternatives):
+        if (moved := settle(search, state)) is not None:
+            return moved
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
         return None
     if state.set_aside:  # pairs and exchanges were sought before, beside what was set aside

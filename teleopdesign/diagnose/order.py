@@ -42,7 +42,7 @@ def select_simplest(supported: Sequence[Ranked], *, criteria: Criteria = CRITERI
     better.
     """
     equal = select_equals(supported, criteria=criteria)
-    return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r)))
+    return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r.candidate)))
 
 
 def alternatives_of(
@@ -61,7 +61,7 @@ def alternatives_of(
     return tuple(
         r.candidate
         for r in select_equals(supported, criteria=criteria)
-        if r is not best and simplicity(r)[0] == simplicity(best)[0]
+        if r is not best and simplicity(r.candidate)[0] == simplicity(best.candidate)[0]
     )
 
 
@@ -77,11 +77,26 @@ def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...
     return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
 
 
-def simplicity(ranked: Ranked) -> tuple[int, int, int]:
+def is_simpler(
+    ranked: Ranked, dropped: Candidate, present: Fit, *, criteria: Criteria = CRITERIA
+) -> bool:
+    """Whether a candidate in the place of an effect is simpler and leaves no more.
+
+    present: the fit with the effect that it takes the place of
+    """
+    no_more = ranked.fit.check_error < (1.0 + criteria.near) * present.check_error
+    return (
+        simplicity(ranked.candidate) < simplicity(dropped)
+        and no_more
+        and whole_score(ranked.fit, present) < criteria.close
+    )
+
+
+def simplicity(candidate: Candidate) -> tuple[int, int, int]:
     """Parameters that must be estimated, effects that must be there, and optional parameters.
 
     Fewer is simpler.
     """
-    effect = ranked.candidate.effect
+    effect = candidate.effect
     optional = sum(p.optional for p in effect.parameters.values())
     return len(effect.parameters) - optional, len(effect.needs), optional

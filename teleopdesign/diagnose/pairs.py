@@ -31,10 +31,11 @@ def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Replace the rungs, once, by two effects that leave only noise.
+    """Replace the rungs, once, by two effects that explain most of what these leave.
 
-    Where two are missing, a third can explain more than either does alone, and stand in their way.
-    They are sought among those that explained something alone.
+    Where two are missing, a third can explain more than either does alone, and stand in their way:
+    Maxwell slip explains part of what a spring and a bristle do. They are sought among those that
+    explained something alone.
     """
     ranking = state.rungs[1].ranking if state.step > 1 else None
     if state.replaced or ranking is None:
@@ -43,9 +44,18 @@ def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | N
         return None
     among = [r.candidate for r in ranking.ranked if r.counts]
     pair = _best_pair(search, state, ranking, among)
-    if pair is None or not is_adequate(pair[-1].fit, state.floor, criteria=search.criteria):
+    if pair is None or not _explains_most(search, state, pair[-1].fit):
         return None
     return replace(state.with_rungs((state.rungs[0], *pair)), replaced=True)
+
+
+def _explains_most(search: LadderSearch, state: LadderState, both: Fit) -> bool:
+    """Whether a fit leaves only noise, or less than half of what the last rung leaves above it."""
+    criteria, floor = search.criteria, state.floor
+    if is_adequate(both, floor, criteria=criteria):
+        return True
+    better = is_better(state.fit, both, floor, criteria=criteria)
+    return better and explained_share(state.fit, both, floor) >= criteria.mostly
 
 
 def _best_pair(

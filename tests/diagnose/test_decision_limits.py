@@ -29,6 +29,7 @@ from teleopdesign.diagnose.decision import (
 )
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.order import (
+    is_simpler,
     rank_key,
     select_equals,
     select_other_helpers,
@@ -229,14 +230,24 @@ def test_candidates_that_count_come_first_then_those_that_leave_less():
 
 def test_the_simplest_of_those_that_explain_as_well_is_taken():
     # stribeck has two parameters and needs coulomb, viscous has one and needs nothing
-    assert simplicity(ranked(0.3)) == (2, 1, 0) and simplicity(ranked(0.3, "viscous")) == (1, 0, 0)
-    assert simplicity(ranked(0.3, "load_dependent_friction")) == (1, 1, 3)
+    assert simplicity(ranked(0.3).candidate) == (2, 1, 0)
+    assert simplicity(ranked(0.3, "viscous").candidate) == (1, 0, 0)
+    assert simplicity(ranked(0.3, "load_dependent_friction").candidate) == (1, 1, 3)
     best, near, far = ranked(0.3), ranked(0.3 * 1.0001, "viscous"), ranked(0.31, "spring")
     assert select_equals([best, near, far]) == [best, near]
     assert select_equals([]) == []
     assert select_simplest([best, near, far]) is near
     other = ranked(0.3, "viscous", instead_of=Candidate(EFFECTS["spring"], "device"))
     assert select_simplest([best, other]) is best, "what the user's model has is believed"
+
+
+def test_what_takes_an_effects_place_for_being_simpler_leaves_no_more():
+    present, stribeck = fit(0.3), ranked(0.3).candidate
+    assert is_simpler(ranked(0.3 * 1.0001, "viscous"), stribeck, present)
+    assert is_simpler(ranked(0.1, "viscous"), stribeck, present), "nor where it leaves less"
+    assert not is_simpler(ranked(0.31, "viscous"), stribeck, present), "it leaves 3 % more"
+    assert not is_simpler(ranked(0.1), ranked(0.3, "viscous").candidate, present)
+    assert not is_simpler(ranked(0.1, "spring"), ranked(0.3, "viscous").candidate, present)
 
 
 def test_what_takes_away_half_of_what_the_best_does_is_named_beside_it():

@@ -13,7 +13,7 @@ from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.exchange import exchange
+from teleopdesign.diagnose.exchange import compare_alternatives, exchange
 from teleopdesign.diagnose.ladder_state import begin, look, search_for
 from teleopdesign.diagnose.moves import add, remove
 from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
@@ -111,6 +111,30 @@ def test_a_stand_in_is_exchanged_for_what_it_stood_for(ladder):
     assert exchange(search, spent) is None
 
 
+def test_alternatives_are_told_apart_by_what_followed_them(ladder):
+    search, state = ladder
+    drag, bias = (Candidate(EFFECTS[n], "device") for n in ("quadratic_drag", "bias"))
+    taken = with_effects(search, state, "quadratic_drag", "spring")
+    undecided = replace(taken.rungs[1], alternatives=(bias,))
+    moved = compare_alternatives(
+        search, taken.with_rungs((taken.rungs[0], undecided, taken.rungs[2]))
+    )
+    assert set(added(moved)) == {"bias", "spring"}
+    assert not any(rung.alternatives for rung in moved.rungs)
+    assert moved.fit.check_error < taken.fit.check_error
+    assert compare_alternatives(search, moved) is None
+    # the right one stays, and loses its alternative
+    right = with_effects(search, state, "bias", "spring")
+    undecided = replace(right.rungs[1], alternatives=(drag,))
+    right = right.with_rungs((right.rungs[0], undecided, right.rungs[2]))
+    moved = compare_alternatives(search, right)
+    assert added(moved) == ["bias", "spring"] and not moved.rungs[1].alternatives
+    # the last was ranked beside all others: nothing followed it
+    last = right.with_rungs((*taken.rungs[:1], undecided))
+    assert compare_alternatives(search, last) is None
+    assert compare_alternatives(search, state) is None and exchange(search, state) is None
+
+
 def test_a_pair_is_added_to_the_model_alone(ladder):
     search, state = ladder
     moved = add_pair(search, state)
@@ -130,6 +154,17 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     assert set(added(moved)) == {"spring", "bias"} and moved.replaced
     assert replace_by_pair(search, replace(stand_in, replaced=True)) is None
     assert replace_by_pair(search, state) is None  # the model alone: there is nothing to replace
+
+
+def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
+    search, state = ladder
+    stand_in = with_effects(search, state, "hardening_spring")
+    first = replace(stand_in.rungs[1], ranking=state.ranking)
+    stand_in = stand_in.with_rungs((stand_in.rungs[0], first))
+    never_noise = replace(search, criteria=replace(CRITERIA, adequate=0.0))
+    assert set(added(replace_by_pair(never_noise, stand_in))) == {"spring", "bias"}
+    never_most = replace(search, criteria=replace(CRITERIA, adequate=0.0, mostly=1.1))
+    assert replace_by_pair(never_most, stand_in) is None
 
 
 def test_what_the_stated_errors_do_not_tell_from_absence_is_set_aside_once(ladder):
