@@ -78,13 +78,13 @@ def run(options: argparse.Namespace) -> int:
 def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
     """The fit that is described, its noise floor (if a diagnosis states it), and the model."""
     from ..diagnose.prepare import prepare
-    from ..diagnose.search import estimate_from_starts
+    from ..diagnose.stated_fit import estimate_stated
 
     experiment = experiment_and_answer(options)
     if options.as_is and options.answer is None and experiment.arm is None:
         model = stated_model(experiment, options)
         prepared = prepare(experiment)
-        return estimate_from_starts(model, prepared), prepared, None, "Your model, re-estimated:"
+        return estimate_stated(model, prepared), prepared, None, "Your model, re-estimated:"
     diagnosis = diagnosis_of(experiment, options)
     prepared, before = diagnosis.prepared, diagnosis.before
     added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)

@@ -17,7 +17,7 @@ from .prepare import prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
-from .search import estimate_from_starts
+from .stated_fit import estimate_stated
 
 __all__ = [
     "ArmDiagnosis",
@@ -59,7 +59,7 @@ def rank(model: Model, experiment: Experiment) -> Ranking:
     returns: candidates with their fits and errors on fit and check records
     """
     prepared = prepare(experiment)
-    return rank_candidates(estimate_from_starts(model, prepared), prepared)
+    return rank_candidates(estimate_stated(model, prepared), prepared)
 
 
 check_arguments(globals(), __all__)

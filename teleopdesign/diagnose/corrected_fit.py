@@ -9,12 +9,12 @@ from .ladder_state import LadderSearch
 from .noise_floor import NoiseFloor, noise_floor
 from .ranking import Ranking
 from .reading_error import with_reading_error
-from .search import estimate_from_starts
+from .stated_fit import estimate_stated
 
 
 def corrected_fit(search: LadderSearch) -> Fit:
     """The fit of the stated model as a diagnosis that adds nothing to it reports it."""
-    fit = estimate_from_starts(search.stated, search.prepared)
+    fit = estimate_stated(search.stated, search.prepared)
     fit = with_paying_shift(fit, search.prepared)
     drawn = noise_floor(fit.model, search.prepared, search.generator())
     return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ())))

@@ -24,8 +24,8 @@ from .prepare import Prepared, prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
-from .search import estimate_from_starts
 from .search_plan import PLAN, SearchPlan
+from .stated_fit import estimate_stated
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def restrict_candidates(among: Collection[str], model: Model) -> Model:
 def begin(search: LadderSearch) -> LadderState:
     """The ladder that holds the user's model alone, re-estimated."""
     search.progress("re-estimating the model")
-    fit = estimate_from_starts(search.stated, search.prepared)
+    fit = estimate_stated(search.stated, search.prepared)
     return look(search, (Rung(None, with_late_starts(fit, search.stated, search.prepared)),))
 
 

@@ -34,15 +34,16 @@ def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | N
     """Replace the rungs, once, by two effects that explain most of what these leave.
 
     Where two are missing, a third can explain more than either does alone, and stand in their way:
-    Maxwell slip explains part of what a spring and a bristle do. They are sought among those that
-    explained something alone.
+    Maxwell slip explains part of what a spring and a bristle do. The second need explain nothing
+    alone: beside rigid friction no fall of Stribeck's shows where bristles bend.
     """
     ranking = state.rungs[1].ranking if state.step > 1 else None
     if state.replaced or ranking is None:
         return None
     if is_adequate(state.fit, state.floor, criteria=search.criteria):
         return None
-    among = [r.candidate for r in ranking.ranked if r.counts]
+    alone = [r.candidate for r in ranking.ranked if r.counts]
+    among = None if search.plan.partial_pairs else alone
     pair = _best_pair(search, state, ranking, among)
     if pair is None or not _explains_most(search, state, pair[-1].fit):
         return None
@@ -54,6 +55,8 @@ def _explains_most(search: LadderSearch, state: LadderState, both: Fit) -> bool:
     criteria, floor = search.criteria, state.floor
     if is_adequate(both, floor, criteria=criteria):
         return True
+    if not search.plan.partial_pairs:
+        return False
     better = is_better(state.fit, both, floor, criteria=criteria)
     return better and explained_share(state.fit, both, floor) >= criteria.mostly
 

@@ -26,6 +26,10 @@ class SearchPlan:
     #: and with three trials six joints took over twice the time
     whole_at: int = 3
     pairs_beyond: int = 1
+    #: whether a pair that takes the place of all added effects may leave more than noise, and hold
+    #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
+    #: are in what is left, and on a real arm such a pair took the place of a right name
+    partial_pairs: bool = True
     #: part of the squares of an arm's joint that its first effect takes away where the links were
     #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
     astray: float = 0.75
@@ -82,7 +86,7 @@ class SearchPlan:
         """The plan for each joint of an arm with so many; its records are searched whole."""
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
         most = self.trials if count <= self.whole_at else self.pairs_beyond
-        return replace(plan, trials=min(self.trials, most))
+        return replace(plan, trials=min(self.trials, most), partial_pairs=False)
 
     def omissions(self) -> tuple[str, ...]:
         """What it leaves out of the search with `PLAN`, in words; none where it is that one."""

@@ -16,7 +16,7 @@ from ..by_value import ByValue
 from ..diagnose.fit import Fit
 from ..diagnose.noise_floor import NoiseFloor
 from ..diagnose.prepare import Prepared, prepare
-from ..diagnose.search import estimate_from_starts
+from ..diagnose.stated_fit import estimate_stated
 from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..model import Model
@@ -111,7 +111,7 @@ def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> Residual
     seed: of the draws for the noise floor
     """
     prepared = prepare(experiment)
-    return describe_residual(estimate_from_starts(model, prepared), prepared, seed=seed)
+    return describe_residual(estimate_stated(model, prepared), prepared, seed=seed)
 
 
 check_arguments(globals(), __all__)

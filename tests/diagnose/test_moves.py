@@ -163,6 +163,8 @@ def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leav
     stand_in = stand_in.with_rungs((stand_in.rungs[0], first))
     never_noise = replace(search, criteria=replace(CRITERIA, adequate=0.0))
     assert set(added(replace_by_pair(never_noise, stand_in))) == {"spring", "bias"}
+    on_an_arm = replace(never_noise, plan=search.plan.for_joints(1))
+    assert replace_by_pair(on_an_arm, stand_in) is None, "there it must leave noise only"
     never_most = replace(search, criteria=replace(CRITERIA, adequate=0.0, mostly=1.1))
     assert replace_by_pair(never_most, stand_in) is None
 

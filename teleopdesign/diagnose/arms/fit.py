@@ -24,9 +24,9 @@ from ..prepare import Prepared, Stretch
 from ..record_offsets import apply_record_offsets
 from ..record_shift import record_shifts
 from ..residual import relative_residuals
-from ..search import estimate_from_starts
 from ..shared_links import Knowledge, share, weighted_columns
 from ..solve import BLOCK, solve
+from ..stated_fit import estimate_stated
 from .prepared import PreparedArm
 
 #: part of the measured force below which what is left does not make a joint count for more
@@ -99,7 +99,7 @@ def estimate_arm(
         for j, model in models.items():
             start = bool(model.absent) and k == 0
             fits[j] = (
-                estimate_from_starts(model, records[j])
+                estimate_stated(model, records[j])
                 if start
                 else estimate(model, records[j], effort=effort)
             )

@@ -1,0 +1,58 @@
+"""The fit of a model as its user states it, with effects that have no values yet."""
+
+from __future__ import annotations
+
+from ..errors import ModelError
+from ..model import Model
+from .candidates import Candidate
+from .fit import Fit, estimate, fit_squares
+from .prepare import Prepared
+from .rung import Replaced, restore_replaced
+from .search import estimate_from_starts
+
+
+def estimate_stated(model: Model, prepared: Prepared) -> Fit:
+    """The best fit of a stated model: all effects that have no values at once, or one at a time.
+
+    An effect of several parameters is led astray while the others are far from their values:
+    bristles become rigid where Coulomb's level starts too low. Beside the others' fit it starts as
+    a candidate does.
+    """
+    together = estimate_from_starts(model, prepared)
+    bare, missing = _take_out_absent(model)
+    if not missing or len(model.absent) == 1:
+        return together
+    return min((together, _estimate_one_by_one(bare, missing, prepared)), key=fit_squares)
+
+
+def _estimate_one_by_one(bare: Model, missing: list[Replaced], prepared: Prepared) -> Fit:
+    """The fit to which adding these effects leads, each time the one that explains most."""
+    fit = estimate_from_starts(bare, prepared)
+    while missing:
+        fits = {
+            one.effect.key: estimate_from_starts(one.back_in(fit.model), prepared, fit, worth=0.0)
+            for one in missing
+            if not fit.model.body(one.effect.at).lacks(one.effect.effect)
+        }
+        best = min(fits, key=lambda key: fit_squares(fits[key]))
+        fit, missing = fits[best], [one for one in missing if one.effect.key != best]
+    return estimate(fit.model, prepared)
+
+
+def _take_out_absent(model: Model) -> tuple[Model, list[Replaced]]:
+    """The model without its absent effects of several parameters, and these effects.
+
+    One that an effect with values needs stays.
+    """
+    absent, rest = [], [Candidate(model.body(at).effect(n), at) for n, at in model.absent]
+    rest = [one for one in rest if len(one.effect.parameters) > 1]
+    whole = model
+    for _ in range(len(rest)):  # one that another of them needs goes after that one
+        for one in list(rest):
+            try:
+                model = model.without_effect(one.effect.name, at=one.at)
+            except ModelError:
+                continue
+            absent.append(restore_replaced(one, whole))
+            rest.remove(one)
+    return model, absent

@@ -1,0 +1,56 @@
+"""A model stated without values is led to the values that its effects have."""
+
+import pytest
+from diagnose.own_cases import write_own
+
+import teleopdesign as td
+from teleopdesign.diagnose.fit import fit_squares
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.diagnose.stated_fit import estimate_stated
+
+
+def anew(model, *names):
+    """The model with these of its effects without values."""
+    for name in names:
+        model = model.without_effect(name).with_effect(name)
+    return model
+
+
+@pytest.fixture(scope="module")
+def lacking(tmp_path_factory):
+    """Records of a machine with Stribeck's fall, as they are compared, and the user's model."""
+    folder = write_own(tmp_path_factory.mktemp("stribeck") / "case", "stribeck")
+    experiment = td.load_experiment(folder)
+    return prepare(experiment), td.Model.from_experiment(experiment)
+
+
+def test_effects_without_values_explain_what_they_do_where_they_are_added_one_by_one(lacking):
+    prepared, model = lacking
+    without = anew(model, "coulomb", "viscous")
+    added = without.with_effect("stribeck").with_effect("presliding")
+    fit = estimate_stated(added, prepared)
+    beside = estimate_from_starts(
+        (start := estimate_from_starts(without, prepared)).model.with_effect("stribeck"),
+        prepared,
+        start,
+    )
+    assert fit_squares(fit) <= 1.01 * fit_squares(beside)
+    assert set(fit.model.effects) == set(added.effects)
+
+
+def test_values_and_what_is_held_stay_as_they_are_stated(lacking):
+    prepared, model = lacking
+    stated = model.with_effect("presliding").with_effect("stribeck")
+    name = "device.stribeck.stribeck_velocity"
+    held = td.Value(0.013, fixed=True)
+    fit = estimate_stated(stated.with_values({name: held}), prepared)
+    assert fit.model.parameters[name].value == 0.013 and name not in fit.free
+
+
+def test_what_an_effect_with_values_needs_stays_while_others_are_taken_out(lacking):
+    prepared, model = lacking
+    model = model.with_effect("presliding").with_effect("transmission_compliance")
+    model = model.with_effect("tip_friction", values={"level": 0.02})
+    fit = estimate_stated(model, prepared)
+    assert set(fit.model.effects) == set(model.effects)
