@@ -80,13 +80,16 @@ def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...
 def is_simpler(
     ranked: Ranked, dropped: Candidate, present: Fit, *, criteria: Criteria = CRITERIA
 ) -> bool:
-    """Whether a candidate in the place of an effect is simpler and leaves no more.
+    """Whether a candidate of the same role is simpler than an effect and leaves no more.
+
+    A transmission may leave no more than friction does for it passes on less of what sensors read.
 
     present: the fit with the effect that it takes the place of
     """
     no_more = ranked.fit.check_error < (1.0 + criteria.near) * present.check_error
     return (
-        simplicity(ranked.candidate) < simplicity(dropped)
+        ranked.candidate.effect.role == dropped.effect.role
+        and simplicity(ranked.candidate) < simplicity(dropped)
         and no_more
         and whole_score(ranked.fit, present) < criteria.close
     )

@@ -242,12 +242,14 @@ def test_the_simplest_of_those_that_explain_as_well_is_taken():
 
 
 def test_what_takes_an_effects_place_for_being_simpler_leaves_no_more():
-    present, stribeck = fit(0.3), ranked(0.3).candidate
-    assert is_simpler(ranked(0.3 * 1.0001, "viscous"), stribeck, present)
-    assert is_simpler(ranked(0.1, "viscous"), stribeck, present), "nor where it leaves less"
-    assert not is_simpler(ranked(0.31, "viscous"), stribeck, present), "it leaves 3 % more"
-    assert not is_simpler(ranked(0.1), ranked(0.3, "viscous").candidate, present)
-    assert not is_simpler(ranked(0.1, "spring"), ranked(0.3, "viscous").candidate, present)
+    present, maxwell = fit(0.3), ranked(0.3, "maxwell_slip").candidate
+    assert is_simpler(ranked(0.3 * 1.0001, "presliding"), maxwell, present)
+    assert is_simpler(ranked(0.1, "presliding"), maxwell, present), "nor where it leaves less"
+    assert not is_simpler(ranked(0.31, "presliding"), maxwell, present), "it leaves 3 % more"
+    assert not is_simpler(ranked(0.1, "viscous"), maxwell, present), "it is of another role"
+    presliding = ranked(0.3, "presliding").candidate
+    assert not is_simpler(ranked(0.1, "maxwell_slip"), presliding, present)
+    assert not is_simpler(ranked(0.1, "presliding"), presliding, present)
 
 
 def test_what_takes_away_half_of_what_the_best_does_is_named_beside_it():

@@ -154,6 +154,12 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     assert set(added(moved)) == {"spring", "bias"} and moved.replaced
     assert replace_by_pair(search, replace(stand_in, replaced=True)) is None
     assert replace_by_pair(search, state) is None  # the model alone: there is nothing to replace
+    # beside each of these all was ranked before
+    beside = {
+        frozenset({*state.effects, (n, "device")}) for n in ("spring", "bias", "quadratic_drag")
+    }
+    before = replace(stand_in, visited=frozenset(beside | {stand_in.effects}))
+    assert replace_by_pair(search, before) is None
 
 
 def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
