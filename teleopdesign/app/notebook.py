@@ -10,7 +10,7 @@ def _():
     import marimo as mo
 
     from teleopdesign.app import export, files, logs, pages, settings, views
-    from teleopdesign.app.task import BackgroundTask
+    from teleopdesign.app.task import BackgroundTask, stop_running
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.errors import TeleopDesignError
 
@@ -27,6 +27,7 @@ def _():
         logs,
         mo,
         pages,
+        stop_running,
         views,
     )
 
@@ -160,12 +161,13 @@ def _(choice, folder, mo, names, open_button, views):
 
 
 @app.cell
-def _(get_task, mo, set_note, set_task):
+def _(get_task, mo, set_note, set_task, stop_running):
     def stop(_):
         # the work ends at its next line of progress; the page need not wait for that
-        task.cancel()
-        set_note(f"{task.name}: cancelled")
-        set_task(None)
+        note = stop_running(get_task())
+        if note:
+            set_note(note)
+            set_task(None)
 
     task = get_task()
     pulse = mo.ui.refresh(default_interval="0.5s", options=["0.5s"]) if task is not None else None

@@ -59,3 +59,14 @@ class BackgroundTask(Generic[T]):
             self.error = str(error)
         else:
             self.result = result
+
+
+def stop_running(task: BackgroundTask[T] | None) -> str:
+    """Cancel a task of the page; the note that says so.
+
+    task: None: nothing runs any more, as at a second click. Then there is nothing to say: ""
+    """
+    if task is None:
+        return ""
+    task.cancel()
+    return f"{task.name}: cancelled"

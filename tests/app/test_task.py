@@ -2,7 +2,7 @@
 
 import threading
 
-from teleopdesign.app.task import BackgroundTask
+from teleopdesign.app.task import BackgroundTask, stop_running
 from teleopdesign.errors import ModelError
 
 
@@ -38,3 +38,13 @@ def test_bad_input_becomes_one_line():
     task = BackgroundTask("bad", work)
     task.wait(10)
     assert task.error == "model: no parameter"
+
+
+def test_a_second_click_on_cancel_finds_nothing_to_stop():
+    released = threading.Event()
+    task = BackgroundTask("long", lambda say: (released.wait(), say("on")))
+    assert stop_running(task) == "long: cancelled"
+    released.set()
+    task.wait(5.0)
+    assert task.done and task.error == "cancelled"
+    assert stop_running(None) == ""
