@@ -82,8 +82,13 @@ def compare_alternatives(search: LadderSearch, state: LadderState) -> LadderStat
             continue
         among = (rung.added, *rung.alternatives)
         ranking = search.rank(without, step=state.step, among=among)
-        ranked = [r for r in ranking.ranked if r.is_identifiable and r.instead_of is None]
-        equal = select_equals(ranked, criteria=search.criteria)
+        supported = [
+            r
+            for r in ranking.ranked
+            if r.instead_of is None
+            and is_supported(without, r, state.floor, criteria=search.criteria)
+        ]
+        equal = select_equals(supported, criteria=search.criteria)
         if not 0 < len(equal) < len(among):
             continue
         kept = next((r for r in equal if r.candidate == rung.added), equal[0])

@@ -53,6 +53,13 @@ def with_effects(search, state, *names):
     return state
 
 
+def with_stand_in(search, state):
+    """The state where a hardening spring, ranked beside all others, was added alone."""
+    moved = with_effects(search, state, "hardening_spring")
+    first = replace(moved.rungs[1], ranking=state.ranking)
+    return moved.with_rungs((moved.rungs[0], first))
+
+
 def test_what_is_added_is_the_first_that_the_records_support(ladder):
     search, state = ladder
     moved = add(search, state)
@@ -147,9 +154,7 @@ def test_a_pair_is_added_to_the_model_alone(ladder):
 
 def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     search, state = ladder
-    stand_in = with_effects(search, state, "hardening_spring")
-    first = replace(stand_in.rungs[1], ranking=state.ranking)
-    stand_in = stand_in.with_rungs((stand_in.rungs[0], first))
+    stand_in = with_stand_in(search, state)
     moved = replace_by_pair(search, stand_in)
     assert set(added(moved)) == {"spring", "bias"} and moved.replaced
     assert replace_by_pair(search, replace(stand_in, replaced=True)) is None
@@ -164,9 +169,7 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
 
 def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
     search, state = ladder
-    stand_in = with_effects(search, state, "hardening_spring")
-    first = replace(stand_in.rungs[1], ranking=state.ranking)
-    stand_in = stand_in.with_rungs((stand_in.rungs[0], first))
+    stand_in = with_stand_in(search, state)
     never_noise = replace(search, criteria=replace(CRITERIA, adequate=0.0))
     assert set(added(replace_by_pair(never_noise, stand_in))) == {"spring", "bias"}
     on_an_arm = replace(never_noise, plan=search.plan.for_joints(1))
