@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from itertools import count
 
@@ -210,13 +210,35 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     An effect of the base that did not deserve its name before is no fault of the candidate's.
     """
     stands_for = implausible_effects(fit.model, prepared)
-    if not stands_for:
-        return ""
     if candidate.key in stands_for:
         return stands_for[candidate.key]
-    before = implausible_effects(base.model, prepared)
-    new = [f"{key[0]}: {said}" for key, said in stands_for.items() if key not in before]
-    return f"beside it {new[0]}" if new else ""
+    new = _select_new(stands_for, base, prepared)
+    return next((f"beside it {key[0]}: {said}" for key, said in new.items()), "")
+
+
+def _select_new(
+    stands_for: Mapping[tuple[str, str], str], base: Fit, prepared: Prepared
+) -> dict[tuple[str, str], str]:
+    """Those of the implausible effects of a fit that deserved their names in the base."""
+    before = implausible_effects(base.model, prepared) if stands_for else {}
+    return {key: said for key, said in stands_for.items() if key not in before}
+
+
+def _find_discredited_effect(
+    base: Fit, fit: Fit, candidate: Candidate, prepared: Prepared
+) -> Candidate | None:
+    """The one effect of the base, at the candidate's place, that loses its name beside it.
+
+    It may have stood in for the candidate: a bristle for friction beyond a transmission, say, and
+    beside that it is too stiff to be seen. None: there is none, or the candidate loses its name too
+    """
+    new = _select_new(implausible_effects(fit.model, prepared), base, prepared)
+    if len(new) != 1:
+        return None
+    ((name, at),) = new
+    if at != candidate.at or name == candidate.effect.name:
+        return None
+    return Candidate(base.model.body(at).effect(name), at)
 
 
 def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:
@@ -228,6 +250,8 @@ def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
     superfluous = find_superfluous_effect(base, fit, candidate, criteria=criteria)
+    if superfluous is None and beside.implausible:
+        superfluous = _find_discredited_effect(base, fit, candidate, prepared)
     if superfluous is None:
         return beside
     name, at = superfluous.key

@@ -6,6 +6,7 @@ bristle turns each loop with a force that leads the position, as a damper's does
 
 import json
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -18,11 +19,14 @@ from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.diagnose.candidates import Candidate, candidates
+from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import find_superfluous_effect, objection
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.rung import Rung, restore_replaced
+from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.stated import reset_to_stated
+from teleopdesign.diagnose.width import OpenWidths
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment.rivals import rival_instead
@@ -182,6 +186,43 @@ def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(found):
     gone = unsure.with_values({names[1]: replace(unsure.parameters[names[1]], value=0.0)})
     ended = replace(fit, model=gone, at_bound=(names[1],))
     assert find_superfluous_effect(base, ended, candidate).effect.name == "viscous"
+
+
+#: the module: the folder has a function of the same name
+rank = import_module("teleopdesign.diagnose.rank")
+
+
+def ranked_beside_discredited(found, monkeypatch, name):
+    """The bristle as a candidate, where an effect of the model loses its name beside it."""
+    experiment, diagnosis = found
+    monkeypatch.setattr(rank, "find_superfluous_effect", lambda *_, **__: None)
+    monkeypatch.setattr(
+        rank,
+        "implausible_effects",
+        lambda model, _: (
+            {(name, "device"): "it stands for something else"}
+            if model.body("device").has("presliding") and model.body("device").has(name)
+            else {}
+        ),
+    )
+    base, candidate = diagnosis.before, Candidate(EFFECTS["presliding"], "device")
+    added = base.model.with_effect("presliding", at="device")
+    records = diagnosis.prepared
+    fit = estimate_from_starts(added, records, base)
+    return rank._ranked_best(base, (candidate, fit), OpenWidths(records, CRITERIA))
+
+
+def test_what_loses_its_name_beside_a_candidate_gives_way_to_it(found, monkeypatch):
+    """It stood in for the candidate; to refuse that for it would keep the stand-in."""
+    ranked = ranked_beside_discredited(found, monkeypatch, "viscous")
+    assert ranked.instead_of.effect.name == "viscous"
+    assert ranked.counts and not ranked.fit.model.body("device").has("viscous")
+
+
+def test_a_candidate_that_needs_what_loses_its_name_is_refused(found, monkeypatch):
+    ranked = ranked_beside_discredited(found, monkeypatch, "coulomb")
+    assert ranked.instead_of is None
+    assert ranked.implausible == "beside it coulomb: it stands for something else"
 
 
 #: an effect that another can count as -> its parameter
