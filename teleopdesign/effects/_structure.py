@@ -120,6 +120,22 @@ def tip_is_part(p: Any, facts: RecordFacts) -> str | None:
     )
 
 
+def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
+    """Whether a tip swings on its spring, the actuator's side held, and is a part of the body.
+
+    Belts, cables and gears swing at damping ratios of some hundredths to a half. From one on there
+    is no resonance: the tip lags behind the motion, as much else does.
+    """
+    critical = 2.0 * math.sqrt(p.stiffness * p.tip_inertia)
+    if p.damping < critical or not critical:
+        return tip_is_part(p, facts)
+    ratio = p.damping / critical
+    return (
+        f"a tip with a damping ratio of {ratio:.3g} creeps and does not spring back: it stands for "
+        "something else that follows the motion late"
+    )
+
+
 def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
     """Whether the gap changes the force, and its tip is a part of the body."""
     worth = p.stiffness * p.gap / 2

@@ -12,7 +12,7 @@ is led back to its course (`_structure.py`).
 """
 
 from ._effect import FitSearch, Parameter
-from ._structure import make_structure, rings_like_a_hum
+from ._structure import make_structure, rings_like_a_hum, tip_springs_back
 
 
 def coupling(now, p):
@@ -41,6 +41,7 @@ EFFECT = make_structure(
             search=FitSearch(starts=(0.01,), scale="resonance_damping"),
         ),
     },
+    plausible=tip_springs_back,
     untold=rings_like_a_hum,
     source="two masses on a spring; Mahvash, Okamura, IEEE CDC 2006",
 )

@@ -49,7 +49,11 @@ SAID = {
     "friction_drift": ({"time_constant": 5.0}, {"time_constant": 0.2}, "how the records begin"),
     "viscous_asymmetry": ({"half_difference": -0.1}, {"half_difference": 0.3}, "another force"),
     "coulomb_asymmetry": ({"half_difference": -0.1}, {"half_difference": -0.6}, "a constant force"),
-    "transmission_compliance": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
+    "transmission_compliance": (
+        {"tip_inertia": 0.05, "stiffness": 10.0, "damping": 0.1},
+        {"tip_inertia": 0.2, "stiffness": 10.0, "damping": 0.1},
+        "late",
+    ),
     "backlash": (
         {"tip_inertia": 0.05, "stiffness": 10.0, "gap": 0.1},
         {"tip_inertia": 0.2, "stiffness": 10.0, "gap": 0.1},

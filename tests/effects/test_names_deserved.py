@@ -30,6 +30,8 @@ MORE, LESS = 1.0 + 1e-9, 1.0 - 1e-9
 HUM = 400.0 / (2 * pi * 50.0) ** 2  # kg m^2 that rings at 50 Hz on a spring of 400 N m/rad
 TONE = 0.2 * 400.0 / (2 * pi * 50.0)  # N m s/rad: a damping ratio of a tenth of it
 RINGS = {"stiffness": 400.0, "damping": 0.0}
+SWINGS = {"stiffness": 100.0, "damping": 1.0}
+HEAVY = {"stiffness": 400.0, "tip_inertia": 0.25}
 AT_HUM = {"stiffness": 400.0, "tip_inertia": HUM}
 GAP = {"stiffness": 8.0, "gap": 0.01, "tip_inertia": 0.1}
 
@@ -55,7 +57,9 @@ DESERVED = [
     # 4 rad/s to the power of the exponent, which counts up to one
     ("shear_thinning", "drag", 4.0, 4.01, {"exponent": 0.5}, "8.02 N"),
     ("shear_thinning", "drag", 2.0, 2.01, {"exponent": 1.5}, "8.04 N"),
-    ("transmission_compliance", "tip_inertia", LESS * 0.5, 0.5, {}, "no part"),
+    ("transmission_compliance", "tip_inertia", LESS * 0.5, 0.5, SWINGS, "no part"),
+    # critical: 2 sqrt(400 N m/rad 0.25 kg m^2)
+    ("transmission_compliance", "damping", LESS * 20.0, 20.0, HEAVY, "damping ratio of 1 creeps"),
     ("backlash", "gap", 0.01, LESS * 0.01, GAP, "no plain spring"),
     ("backlash", "tip_inertia", 0.49, 0.5, GAP, "no part"),
 ]
