@@ -9,9 +9,15 @@ import pytest
 from arms.arm_simulator import random_arm, write_experiment
 
 import teleopdesign as td
-from teleopdesign.diagnose.arms import ladder
-from teleopdesign.diagnose.arms.ladder import NO_HELP, NO_MORE_THAN_NOISE
+from teleopdesign.diagnose.adequacy import Floors
+from teleopdesign.diagnose.arms import ladder, refusal
+from teleopdesign.diagnose.arms.diagnosis import ArmRung
+from teleopdesign.diagnose.arms.joint import Joint
+from teleopdesign.diagnose.arms.refusal import NO_HELP, NO_MORE_THAN_NOISE
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.ladder_state import LadderState
+from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS
 
@@ -21,7 +27,7 @@ def test_only_an_inertia_is_taken_up_by_base_parameters_at_every_joint():
     assert taken == {"added_inertia"}
 
 
-def refusal(monkeypatch, errors, floors):
+def refused(monkeypatch, errors, floors):
     """Of an effect: (before, after) of the joint's error and of what its sensors leave."""
     joint = SimpleNamespace(
         name="joint1",
@@ -36,24 +42,89 @@ def refusal(monkeypatch, errors, floors):
         for error, floor in zip(errors, floors, strict=True)
     ]
     monkeypatch.setattr(
-        ladder, "noise_floor", lambda model, *_: SimpleNamespace(drawn=model), raising=True
+        refusal, "noise_floor", lambda model, *_: SimpleNamespace(drawn=model), raising=True
     )
-    return ladder._refusal(joint, *fits)
+    return refusal.refusal(joint, *fits)
 
 
 @pytest.mark.parametrize("noise", [1e-4, 3.5e-3, 0.2])
 def test_an_effect_that_only_weakens_the_noise_of_the_sensors_is_set_aside(monkeypatch, noise):
-    assert refusal(monkeypatch, (1.05 * noise, 0.84 * noise), (noise, 0.8 * noise)) == (
+    assert refused(monkeypatch, (1.05 * noise, 0.84 * noise), (noise, 0.8 * noise)) == (
         NO_MORE_THAN_NOISE
     )
     # what explains far more than it weakens stays, and what weakens nothing
-    assert refusal(monkeypatch, (9.0 * noise, 1.0 * noise), (noise, 0.8 * noise)) == ""
-    assert refusal(monkeypatch, (1.3 * noise, 1.2 * noise), (noise, noise)) == ""
-    assert refusal(monkeypatch, (1.3 * noise, 1.4 * noise), (noise, noise)) == NO_HELP
+    assert refused(monkeypatch, (9.0 * noise, 1.0 * noise), (noise, 0.8 * noise)) == ""
+    assert refused(monkeypatch, (1.3 * noise, 1.2 * noise), (noise, noise)) == ""
+    assert refused(monkeypatch, (1.3 * noise, 1.4 * noise), (noise, noise)) == NO_HELP
 
 
 def test_records_without_sensor_noise_refuse_nothing(monkeypatch):
-    assert refusal(monkeypatch, (0.02, 0.01), (0.0, 0.0)) == ""
+    assert refused(monkeypatch, (0.02, 0.01), (0.0, 0.0)) == ""
+
+
+def climbed(monkeypatch, ladders, refused):
+    """The ladder of an arm whose joint climbs these ladders in turn; what was estimated.
+
+    ladders: names of the effects of each climb;  refused: effects that the whole arm refuses
+    """
+    estimated, climbs = [], iter(ladders)
+
+    def fit_of(name):
+        return SimpleNamespace(name=name, model=name, check_errors={"joint1": 0.1})
+
+    def arm_fit_of(name):
+        return SimpleNamespace(
+            name=name, fits={"joint1": fit_of(name)}, check_errors={"joint1": 0.1}
+        )
+
+    def climb(search, state, _):
+        effects = [Candidate(EFFECTS[name], "joint1") for name in next(climbs)]
+        rungs = [Rung(one, fit_of(one.effect.name)) for one in effects]
+        return state.with_rungs((state.rungs[0], *rungs)), ()
+
+    def estimate_arm(models, _):
+        estimated.append(models["joint1"])
+        return arm_fit_of(models["joint1"])
+
+    monkeypatch.setattr(ladder, "climb", climb)
+    monkeypatch.setattr(refusal, "estimate_arm", estimate_arm)
+    monkeypatch.setattr(refusal, "look", lambda search, rungs, state: state)
+    monkeypatch.setattr(refusal, "is_better", lambda *_, **__: True)
+    monkeypatch.setattr(
+        refusal, "refusal", lambda joint, before, after: "no" if after.name in refused else ""
+    )
+    first = ArmRung(None, arm_fit_of("user's"))
+    nothing = dict(floors=Floors(None, None), first=None, ranking=None, tone=None, supported=())
+    state = LadderState(rungs=(Rung(None, fit_of("user's")),), **nothing)
+    joint = Joint("joint1", SimpleNamespace(criteria=CRITERIA), state)
+    joint, rungs = ladder._climb_joint(joint, (first,), None, lambda _: None)
+    aside = [one.candidate.effect.name for one in joint.state.set_aside]
+    return [r.added.effect.name for r in rungs[1:]], aside, estimated
+
+
+def test_a_joint_climbs_again_without_what_the_whole_arm_refuses(monkeypatch):
+    first = ("stribeck", "transmission_compliance", "spring")
+    rungs, aside, estimated = climbed(
+        monkeypatch, [first, ("stribeck", "spring")], {"transmission_compliance"}
+    )
+    assert rungs == ["stribeck", "spring"]
+    assert aside == ["transmission_compliance"]
+    # what was held against the arm before is not estimated again
+    assert estimated == ["stribeck", "transmission_compliance", "spring"]
+
+
+def test_what_a_second_climb_changes_is_estimated_with_all_joints_again(monkeypatch):
+    rungs, aside, estimated = climbed(
+        monkeypatch, [("stribeck", "presliding"), ("spring", "cogging")], {"presliding"}
+    )
+    assert (rungs, aside) == (["spring", "cogging"], ["presliding"])
+    assert estimated == ["stribeck", "presliding", "spring", "cogging"]
+
+
+def test_a_joint_that_comes_back_to_what_was_refused_ends_without_it(monkeypatch):
+    rungs, aside, _ = climbed(monkeypatch, [("stribeck", "spring")] * 2, {"spring"})
+    assert rungs == ["stribeck"]
+    assert set(aside) == {"spring"}
 
 
 def test_joints_of_larger_arms_seek_pairs_and_exchanges_too():

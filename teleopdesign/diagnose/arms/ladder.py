@@ -7,20 +7,18 @@ are looked at again with what it then says of the links.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from ...effects import SIGNALS, Effect
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..conclusion import conclude
-from ..decision import is_better
-from ..diagnosis import Diagnosis, SetAside
+from ..diagnosis import Diagnosis
 from ..fit import Fit, fit_squares
 from ..ladder import climb, with_candidates_named
-from ..ladder_state import LadderSearch, LadderState, look, restrict_candidates
+from ..ladder_state import LadderSearch, LadderState, restrict_candidates
 from ..moves import add
-from ..noise_floor import noise_floor
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
 from .bodies import as_bodies, with_final_bodies
@@ -30,11 +28,7 @@ from .joint import Joint, begin_joint, others_of, with_known
 from .other_motion import with_other_motions
 from .other_way import untold_way
 from .prepared import PreparedArm, isolate_joint, prepare_arm
-
-#: why an effect that one joint's records supported is not there
-NO_HELP = "it helps no more with all joints estimated together"
-#: the same of one that passes on less of what sensors read: error and noise floor fall together
-NO_MORE_THAN_NOISE = "it weakens the noise of the sensors and explains no more than that"
+from .refusal import hold_against_arm
 
 
 def find_missing_in_arm(
@@ -79,10 +73,8 @@ def find_missing_in_arm(
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
         joints[j] = begin_joint(j, search, first.prepared[j], first.fits[j].model, prepared)
-    order = _climb(joints, prepared)
+    rungs = _climb(joints, first, prepared, said)
     prepared = with_other_motions(prepared, others_of(joints))
-    said("all joints together")
-    rungs = _rungs(joints, order, first, prepared)
     diagnosis = _conclude(experiment, prepared, joints, rungs)
     limited = {j: with_candidates_named(among, d) for j, d in diagnosis.joints.items()}
     motors = {j: stated.parameters[f"{j}.inertia"].value for j in limited}
@@ -103,13 +95,18 @@ def _select_beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
     }
 
 
-def _climb(joints: dict[str, Joint], prepared: PreparedArm) -> list[str]:
-    """Climb the ladder of each joint once; joints: replaced by where they end.
+def _climb(
+    joints: dict[str, Joint],
+    first: ArmFit,
+    prepared: PreparedArm,
+    said: Callable[[str], None],
+) -> tuple[ArmRung, ...]:
+    """Climb the ladder of each joint; joints: replaced by where they end.
 
-    returns: the joints at which effects were added, in the order of their climbs
+    returns: the ladder of the arm, its rungs in the order of the climbs
     """
     waiting: list[str] = list(joints)
-    order: list[str] = []
+    rungs: tuple[ArmRung, ...] = (ArmRung(None, first),)
     while waiting:
         j = max(waiting, key=lambda name: joints[name].gain)
         here = joints[j]
@@ -122,14 +119,34 @@ def _climb(joints: dict[str, Joint], prepared: PreparedArm) -> list[str]:
         astray = _astray(here)
         if astray is not None:
             here = _begin_joint_again(joints, astray, prepared, j)
-        state, _ = climb(here.search, here.state, _as_they_are)
-        joints[j] = replace(here, state=state)
+        beside = with_other_motions(prepared, others_of(joints))
+        joints[j], rungs = _climb_joint(here, rungs, beside, said)
         waiting.remove(j)
-        if len(state.rungs) > 1:
-            order.append(j)
+        if len(joints[j].state.rungs) > 1:
             for other in waiting:
                 joints[other] = replace(joints[other], is_stale=True)
-    return order
+    return rungs
+
+
+def _climb_joint(
+    joint: Joint,
+    rungs: tuple[ArmRung, ...],
+    prepared: PreparedArm,
+    said: Callable[[str], None],
+) -> tuple[Joint, tuple[ArmRung, ...]]:
+    """Climb the ladder of a joint, and hold its effects against the whole arm.
+
+    Where one is refused there, the ladder goes on without it, and what had followed may come back.
+    It ends where nothing is refused that was not set aside before.
+    returns: the joint where its ladder ends;  the ladder of the arm with its rungs
+    """
+    while True:
+        state, _ = climb(joint.search, joint.state, _as_they_are)
+        said(f"{joint.name}: all joints together")
+        gone = {one.candidate.key for one in state.set_aside}
+        joint, rungs = hold_against_arm(replace(joint, state=state), rungs, prepared)
+        if gone.issuperset(one.candidate.key for one in joint.state.set_aside):
+            return joint, rungs
 
 
 def _astray(joint: Joint) -> Model | None:
@@ -174,73 +191,6 @@ def _begin_joint_again(
 def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
     """The rungs of a joint's ladder: what reading does to estimates is not simulated for an arm."""
     return state.rungs
-
-
-def _rungs(
-    joints: dict[str, Joint], order: list[str], first: ArmFit, prepared: PreparedArm
-) -> tuple[ArmRung, ...]:
-    """The ladder of the arm: each effect with all joints estimated again; none raises the error.
-
-    joints: an effect that no longer helps beside those named at other joints, or that raises the
-        error of the whole arm, is set aside, with what was added after it;  order: of their climbs
-    """
-    rungs = [ArmRung(None, first)]
-    for j in order:
-        joint = joints[j]
-        waiting: list[ArmRung] = []
-        kept, why = 1, ""
-        for i, rung in enumerate(joint.state.rungs[1:], 1):
-            last = waiting[-1] if waiting else rungs[-1]
-            models = {n: f.model for n, f in last.fit.fits.items()} | {j: rung.fit.model}
-            fit = estimate_arm(models, prepared)
-            waiting.append(ArmRung(rung.added, fit, rung.instead_of, joint.other))
-            why = _refusal(joint, last.fit, fit)
-            if why:
-                break
-            # of two that mask each other only the second helps: both are there then
-            before, after = rungs[-1].fit.fits[j], fit.fits[j]
-            if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
-                rungs, waiting, kept = [*rungs, *waiting], [], i + 1
-        joints[j] = _cut_ladder(joint, kept, waiting, why or NO_HELP)
-    return tuple(rungs)
-
-
-def _refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
-    """Why an effect is not there with all joints estimated together; "": it is.
-
-    One that passes on less of what sensors read must explain more than that: the hidden tip of a
-    structure follows the force that was measured, and with it a part of its noise.
-    """
-    if after.check_error > before.check_error:
-        return NO_HELP
-    records, name = joint.search.prepared, joint.name
-    sensors, there = (
-        noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn
-        for fit in (before, after)
-    )
-    kept = 1.0 - joint.search.criteria.relevant
-    if there**2 >= kept * sensors**2:
-        return ""
-    left = (after.check_errors[name] / before.check_errors[name]) ** 2
-    return "" if left <= kept * (there / sensors) ** 2 else NO_MORE_THAN_NOISE
-
-
-def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -> Joint:
-    """The joint with the first rungs of its ladder; the others are set aside.
-
-    refused: the other candidates with all joints estimated again
-    """
-    state = joint.state
-    if kept == len(state.rungs):
-        return joint
-    errors = {r.added: r.fit.check_errors[joint.name] for r in refused}
-    aside = [
-        SetAside(r.added, errors.get(r.added, r.fit.check_error), why)
-        for r in state.rungs[kept:]
-        if r.added is not None
-    ]
-    fewer = replace(state.with_rungs(state.rungs[:kept]), set_aside=(*state.set_aside, *aside))
-    return replace(joint, state=look(joint.search, fewer.rungs, fewer))
 
 
 def _conclude(

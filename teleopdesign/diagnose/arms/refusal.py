@@ -1,0 +1,99 @@
+"""What a joint's ladder added, held against the whole arm: which effects stay with all joints.
+
+The records of one joint may support an effect that stands for what another joint lacks, or for
+links that were led astray. With all joints estimated together it helps no more, and is set aside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import takewhile
+
+from ..decision import is_better
+from ..diagnosis import SetAside
+from ..ladder_state import look
+from ..noise_floor import noise_floor
+from .diagnosis import ArmRung
+from .fit import ArmFit, estimate_arm
+from .joint import Joint
+from .prepared import PreparedArm
+
+#: why an effect that one joint's records supported is not there
+NO_HELP = "it helps no more with all joints estimated together"
+#: the same of one that passes on less of what sensors read: error and noise floor fall together
+NO_MORE_THAN_NOISE = "it weakens the noise of the sensors and explains no more than that"
+
+
+def hold_against_arm(
+    joint: Joint, rungs: tuple[ArmRung, ...], prepared: PreparedArm
+) -> tuple[Joint, tuple[ArmRung, ...]]:
+    """The rungs of a joint's ladder with all joints estimated again; none raises the error.
+
+    rungs: the ladder of the arm before, those of this joint last; what the joint's ladder still
+        begins with is not estimated again
+    returns: the joint, cut where an effect was refused, which is set aside then;  the ladder of the
+        arm with its rungs
+    """
+    there = [r for r in rungs if r.added is not None and r.added.at == joint.name]
+    kept = _count_held(joint, there)
+    longer = list(rungs[: len(rungs) - len(there) + kept - 1])
+    waiting, why = list[ArmRung](), ""
+    for i, rung in enumerate(joint.state.rungs[kept:], kept):
+        last = waiting[-1] if waiting else longer[-1]
+        models = {n: f.model for n, f in last.fit.fits.items()} | {joint.name: rung.fit.model}
+        fit = estimate_arm(models, prepared)
+        waiting.append(ArmRung(rung.added, fit, rung.instead_of, joint.other))
+        why = refusal(joint, last.fit, fit)
+        if why:
+            break
+        # of two that mask each other only the second helps: both are there then
+        before, after = longer[-1].fit.fits[joint.name], fit.fits[joint.name]
+        if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
+            longer, waiting, kept = [*longer, *waiting], [], i + 1
+    if waiting:
+        joint = _cut_ladder(joint, kept, waiting, why or NO_HELP)
+    return joint, tuple(longer)
+
+
+def _count_held(joint: Joint, there: Sequence[ArmRung]) -> int:
+    """Leading rungs of a joint's ladder that the ladder of the arm has, the user's model too."""
+    ours = ((r.added, r.instead_of) for r in joint.state.rungs[1:])
+    held = ((r.added, r.instead_of) for r in there)
+    pairs = zip(held, ours, strict=False)
+    return 1 + sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+
+
+def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
+    """Why an effect is not there with all joints estimated together; "": it is.
+
+    One that passes on less of what sensors read must explain more than that: the hidden tip of a
+    structure follows the force that was measured, and with it a part of its noise.
+    """
+    if after.check_error > before.check_error:
+        return NO_HELP
+    records, name = joint.search.prepared, joint.name
+    sensors, there = (
+        noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn
+        for fit in (before, after)
+    )
+    kept = 1.0 - joint.search.criteria.relevant
+    if there**2 >= kept * sensors**2:
+        return ""
+    left = (after.check_errors[name] / before.check_errors[name]) ** 2
+    return "" if left <= kept * (there / sensors) ** 2 else NO_MORE_THAN_NOISE
+
+
+def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -> Joint:
+    """The joint with the first rungs of its ladder; what was refused is set aside.
+
+    refused: with all joints estimated again
+    """
+    state = joint.state
+    aside = [
+        SetAside(r.added, r.fit.check_errors[joint.name], why)
+        for r in refused
+        if r.added is not None
+    ]
+    fewer = replace(state.with_rungs(state.rungs[:kept]), set_aside=(*state.set_aside, *aside))
+    return replace(joint, state=look(joint.search, fewer.rungs, fewer))
