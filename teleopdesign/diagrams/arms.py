@@ -20,17 +20,8 @@ from ..arguments import check_types, matrix_of
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
 from ..errors import ModelError
-from .parts import (
-    Block,
-    Control,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    Weight,
-    as_expression,
-    position_symbol,
-)
+from .junctions import Junction, Kinematics, Weight, as_expression, position_symbol
+from .parts import Block, Control, Linked, Moving
 from .wiring import Diagram
 
 

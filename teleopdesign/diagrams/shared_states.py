@@ -16,7 +16,8 @@ import numpy as np
 
 from ..controllers import matrices_of, unit_state
 from ..errors import ModelError
-from .parts import Block, Control, Junction, Moving
+from .junctions import Junction
+from .parts import Block, Control, Moving
 from .wiring import Diagram
 
 _Place = tuple[int, int]

@@ -6,7 +6,7 @@ simulation) is read off this one wiring.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
@@ -20,19 +20,9 @@ from ..frozen import Frozen
 from ..names import check_name
 from ..notebook import html_table
 from ..quantity import QUANTITIES
-from .parts import (
-    AnyBlock,
-    Attached,
-    Block,
-    Control,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    Part,
-    Weight,
-    position_symbol,
-)
+from .junctions import Junction, Kinematics, Weight, position_symbol
+from .part_text import list_laws, write_equation
+from .parts import AnyBlock, Attached, Block, Control, Linked, Moving, Part
 
 
 @check_types
@@ -254,14 +244,14 @@ class Diagram:
         return diagram
 
     def _repr_html_(self) -> str:
-        rows = [(part.name, _line(part), _content(part)) for part in self.parts]
+        rows = [(part.name, write_equation(part), list_laws(part)) for part in self.parts]
         note = f"from outside: {', '.join(self.outside)}"
         return html_table(f"Diagram {self.name}", ("part", "equation", "content"), rows, note=note)
 
     def __repr__(self) -> str:
         lines = [f"Diagram {self.name}"]
         for part in self.parts:
-            lines.append(f"  {_line(part)}")
+            lines.append(f"  {write_equation(part)}")
         lines.append(f"  from outside: {', '.join(self.outside)}")
         return "\n".join(lines)
 
@@ -269,45 +259,6 @@ class Diagram:
 def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
     """Whether it takes one signal that may be zero for good: a command, or a controller's input."""
     return isinstance(part, Moving | Control)
-
-
-def _sum(terms: Iterable[tuple[str, Weight]]) -> str:
-    text = " ".join(_term_text(signal, weight) for signal, weight in terms)
-    return text.removeprefix("+ ") or "0"
-
-
-def _term_text(signal: str, weight: Weight) -> str:
-    if isinstance(weight, sp.Expr) and not weight.is_number:
-        return f"+ ({weight}) {signal}"
-    value = float(weight)
-    factor = "" if abs(value) == 1 else f"{abs(value):g} "
-    return f"{'-' if value < 0 else '+'} {factor}{signal}"
-
-
-def _line(part: Part) -> str:
-    if isinstance(part, Moving):
-        return f"{part.name} {part.motion} = {_sum([(part.command, 1), *part.loads.items()])}"
-    if isinstance(part, Attached):
-        return f"{part.force} = {'-' if part.sign < 0 else ''}{part.name} {part.motion}"
-    if isinstance(part, Linked):
-        sign = "-" if part.sign < 0 else ""
-        return f"({', '.join(part.forces)}) = {sign}{part.name} ({', '.join(part.motions)})"
-    if isinstance(part, Control):
-        law = part.name if part.dead_time is None else f"exp(-s {part.name})"
-        return f"{part.output} = {law} {part.input}"
-    if isinstance(part, Kinematics):
-        return f"{part.output} = {part.expression}"
-    return f"{part.output} = {_sum(part.terms.items())}"
-
-
-def _content(part: Part) -> str:
-    """What a block holds, in a few words; nothing for sums and kinematics."""
-    if isinstance(part, Control):
-        stages = part.controller.stages if isinstance(part.controller, Controller) else ()
-        return ", ".join(stage.name for stage in stages)
-    if isinstance(part, Moving | Attached):
-        return ", ".join(e.name for e in part.body.effects) if isinstance(part.body, Body) else ""
-    return ""
 
 
 def _prune(diagram: Diagram) -> Diagram:

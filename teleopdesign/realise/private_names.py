@@ -27,7 +27,7 @@ from ..diagrams import (
     Moving,
     position_symbol,
 )
-from ..diagrams.parts import Weight
+from ..diagrams.junctions import Weight
 from ..errors import ModelError
 
 #: beginning of every private name; ends with "_", so that no such name begins another one

@@ -16,7 +16,7 @@ from ...blocks import Body
 from ...controllers import Controller
 from ...derive import has_actuation
 from ...diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
-from ...diagrams.parts import Weight
+from ...diagrams.junctions import Weight
 from .formulas import formula
 from .network import MINUS, Net, Network, Node, join_names
 from .shapes import Run, symbol
