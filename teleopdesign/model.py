@@ -203,10 +203,8 @@ class Model:
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             for effect in body.effects:
-                numbers = {
-                    p: body.parameters[f"{effect.name}.{p}"].value for p in effect.parameters
-                }
-                full = {p: f"{effect.name}.{p}" for p in numbers}
+                full = {p: f"{effect.name}.{p}" for p in effect.parameters}
+                numbers = {p: body.parameters[name].value for p, name in full.items()}
                 values |= {
                     f"{self._place_of(place, full[p])}{full[p]}": v
                     for p, v in effect.canonical(numbers).items()
