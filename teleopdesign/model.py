@@ -121,7 +121,10 @@ class Model:
         return self._with_body(place, self.body(place).without_effect(effect))
 
     def with_values(self, values: Mapping[str, float | Value]) -> Model:
-        """The model with other parameter values, by full names such as "device.coulomb.level"."""
+        """The model with other parameter values (SI), by full names such as "device.coulomb.level".
+
+        raises ModelError: no parameter of that name, or a value outside the parameter's bounds
+        """
         instance(values, Mapping, "with_values", expected='such as {"device.inertia": 0.15}')
         known = self.parameters
         for name in values:

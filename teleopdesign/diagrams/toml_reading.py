@@ -73,7 +73,7 @@ def _short(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
         table.allow((*LAW, "analog") if form.has_analog else LAW)
         blocks[name] = _controller(table)
         analog += [name] if table.flag("analog", False) else []
-    diagram = form.wired(blocks, tuple(analog))
+    diagram = form.wire(blocks, tuple(analog))
     return replace(diagram, name=_string(head, "name")) if "name" in head.content else diagram
 
 

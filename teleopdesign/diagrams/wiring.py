@@ -190,8 +190,11 @@ class Diagram:
             measured=tuple(s for s in self.measured if s not in gone),
         )
 
-    def opened(self, *names: str) -> Diagram:
-        """The diagram with these controllers' outputs from outside; unknown names are ignored."""
+    def open_at(self, *names: str) -> Diagram:
+        """The diagram with its loops open at these controllers: their outputs come from outside.
+
+        What only these controllers used is left out. Unknown names are ignored.
+        """
         free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
         kept = tuple(b for b in self.blocks if b.name not in names)
         return _prune(replace(self, blocks=kept, outside={**self.outside, **free}))
@@ -230,7 +233,10 @@ class Diagram:
 
     @check_types
     def with_values(self, values: Mapping[str, float]) -> Diagram:
-        """The diagram with other parameter values, by the names in `values`."""
+        """The diagram with other parameter values (SI), by the names in `values`.
+
+        raises ModelError: no parameter of that name; the message has the nearest one
+        """
         known, diagram = self.values, self
         for name in values:
             if name not in known:
@@ -264,5 +270,6 @@ def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
 def _prune(diagram: Diagram) -> Diagram:
     """Without outside signals and junctions that only a block taken out had used."""
     used = {s for part in diagram.parts for s in part.inputs} | set(diagram.measured)
+    # forces stay: what drives a motion that is prescribed is no input of its body
     outside = {s: q for s, q in diagram.outside.items() if s in used or q == "force"}
     return replace(diagram, outside=outside)

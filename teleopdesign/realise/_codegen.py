@@ -58,10 +58,10 @@ class Generator:
             key=str,
         )
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
-        self.variables = self._variables()
-        self.names = self._names()
+        self.variables = self._name_variables()
+        self.names = self._name_symbols()
 
-    def _variables(self) -> dict[str, str]:
+    def _name_variables(self) -> dict[str, str]:
         """Variable of the source for each quantity by its name; no such name begins another one."""
         e = self.equations
         symbols = [*self.states, *self.computer_states, *e.inputs, *self.late, *self.sensors]
@@ -71,7 +71,7 @@ class Generator:
         names = [*map(str, symbols), *self.commands, *e.signals, *e.computer.signals]
         return {name: f"v{i}_" for i, name in enumerate(dict.fromkeys(names))}
 
-    def _names(self) -> dict[sp.Symbol, str]:
+    def _name_symbols(self) -> dict[sp.Symbol, str]:
         """Private name of every symbol that the equations hold."""
         e = self.equations
         names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
@@ -118,9 +118,10 @@ class Generator:
 
     def source(self) -> str:
         """The functions of the equations, and the constants of the loop over them."""
-        return f"{self._constants()}\n\n{self._analog()}{self._signals()}{self._computer()}"
+        functions = (self._write_analog(), self._write_signals(), self._write_computer())
+        return f"{self._write_constants()}\n\n{''.join(functions)}"
 
-    def _constants(self) -> str:
+    def _write_constants(self) -> str:
         """First row of the loop's memory for each group of quantities, and their numbers."""
         motions = len(self.motions) if self.commands else 0
         states, bristles, late = len(self.moving), len(self.bristles), len(self.late)
@@ -147,8 +148,8 @@ class Generator:
             **dict.fromkeys(("WEIGHT_0", "WEIGHT_1", "WEIGHT_3"), bristles),
             **dict.fromkeys(("POSITIONS", "VELOCITIES", "SEEN", "TRAVEL"), motions),
             **dict.fromkeys(("KNOWN", "OBSERVED", "BEND"), motions),
-            "NOW": len(self._now()),
-            "MADE": len(self._made()),
+            "NOW": len(self._analog_signals()),
+            "MADE": len(self._computer_signals()),
             "COLUMNS": len(self.layout().columns),
             "SPOILED": 1,
             "PARAMETERS": len(self.parameters),
@@ -163,12 +164,12 @@ class Generator:
         }
         lines += [f"MANY_{name} = {count}" for name, count in counted.items()]
         lines.append(f"ROWS = {first}")
-        lines.append(f"SMOOTH = ({''.join(f'{x}, ' for x in [*self._smooth(), True])})")
+        lines.append(f"SMOOTH = ({''.join(f'{x}, ' for x in [*self._mark_smooth(), True])})")
         lines.append(f"COMPUTER = {bool(self.commands)}")
         lines.append(f"OBSERVER = {self.observer}")
         return "\n".join(lines)
 
-    def _smooth(self) -> list[bool]:
+    def _mark_smooth(self) -> list[bool]:
         """Whether a late signal changes within a step, in place of being held over it."""
         e = self.equations
         moving = {*e.rates, *e.joined, *e.inputs}
@@ -178,13 +179,13 @@ class Generator:
             moving |= {s for s, (x, _) in e.late.items() if x.free_symbols & moving}
         return [bool(x.free_symbols & moving) for x, _ in e.late.values()]
 
-    def _now(self) -> dict[sp.Symbol, sp.Expr]:
+    def _analog_signals(self) -> dict[sp.Symbol, sp.Expr]:
         """Accelerations and signals of continuous time, by their symbols."""
         e = self.equations
         accelerations = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
         return accelerations | {signal(name): x for name, x in e.signals.items()}
 
-    def _made(self) -> dict[str, sp.Expr]:
+    def _computer_signals(self) -> dict[str, sp.Expr]:
         """Signals of the computer."""
         return dict(self.equations.computer.signals) if self.commands else {}
 
@@ -198,7 +199,7 @@ class Generator:
     def _parameter_places(self) -> dict[sp.Symbol, str]:
         return locate_symbols({"PARAMETERS": self.parameters})
 
-    def _analog(self) -> str:
+    def _write_analog(self) -> str:
         e = self.equations
         write = LawWriter(tuple(ANALOG), self._analog_places(), self.names, e.joined).function
         moving, bristles = ([e.rates[s] for s in g] for g in (self.moving, self.bristles))
@@ -207,12 +208,12 @@ class Generator:
             write_reader("sampled_inputs_at", len(self.sampled_inputs)),
             write("rates", to_states=moving, to_bristles=bristles),
             write("slopes", to=[self.slopes[s] for s in self.bristles]),
-            write("signals", to=self._now().values()),
+            write("signals", to=self._analog_signals().values()),
             write("late_values", to=[x for x, _ in e.late.values()]),
         ]
         return "".join(parts)
 
-    def _signals(self) -> str:
+    def _write_signals(self) -> str:
         """Which quantities are the motions that a computer reads, and the columns of a row."""
         places = {x.name: place for x, place in self._analog_places().items()}
         read = self.motions if self.commands else []
@@ -227,17 +228,17 @@ class Generator:
             name: text.replace("[states", "[STATES").replace("[bristles", "[BRISTLES")
             for name, text in places.items()
         }
-        places |= {x.name: locate_entry("NOW", i) for i, x in enumerate(self._now())}
-        places |= {name: locate_entry("MADE", i) for i, name in enumerate(self._made())}
+        places |= {x.name: locate_entry("NOW", i) for i, x in enumerate(self._analog_signals())}
+        places |= {name: locate_entry("MADE", i) for i, name in enumerate(self._computer_signals())}
         columns = enumerate(self.layout().columns)
         lines = [f"{locate_entry('to', i)} = {places[name]}" for i, name in columns]
         return motions + write_function("record", ["inputs", "memory", "to"], lines)
 
-    def _computer(self) -> str:
+    def _write_computer(self) -> str:
         """Signals of the computer, and its states stepped before and after they are taken."""
-        motions, made = self.motions, self._made()
+        motions, made = self.motions, self._computer_signals()
         rows = {
-            "NOW": [reading_symbol(x.name) for x in self._now()],
+            "NOW": [reading_symbol(x.name) for x in self._analog_signals()],
             "SEEN": [reading_symbol(m) for m in motions],
             "TRAVEL": [travel_rate(m) for m in motions],
             "KNOWN": [estimate(m) for m in motions],
@@ -253,15 +254,15 @@ class Generator:
         sources |= {name: locate_entry("MADE", i) for i, name in enumerate(made)}
         commands = [f"{locate_entry('to', i)} = {sources[c]}" for i, c in enumerate(self.commands)]
         parts = [
-            self._stepped(writer, "computer_before", True),
+            self._write_steps(writer, "computer_before", True),
             writer.function("computer_signals", to=made.values()),
             writer.function("computer_late", to=kept),
-            self._stepped(writer, "computer_after", False),
+            self._write_steps(writer, "computer_after", False),
             write_function("held_commands", ["n", "sampled", "memory", "to"], commands),
         ]
         return "".join(parts)
 
-    def _stepped(self, writer: LawWriter, name: str, before: bool) -> str:
+    def _write_steps(self, writer: LawWriter, name: str, before: bool) -> str:
         """Source of a function that carries states over a sample: exactly, or as they say."""
         computer = self.equations.computer
         results: dict[str, sp.Expr] = {}

@@ -65,6 +65,8 @@ class _Ring:
 
     @property
     def size(self) -> int:
+        # the sample so many whole periods ago, the one before it, between which a part of a period
+        # is interpolated, and the one that is written now
         return int(self.samples) + 2
 
     def field(self) -> str:
@@ -125,6 +127,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
                 continue
             rate = equation.rates[x]
             slope, rest = code(sp.diff(rate, x)), code(rate.xreplace({x: sp.S(0)}))
+            # exact for inputs that are held over the period, as in the simulation
             exact = f"exp(a{i} * T) * s->x{i} + T * {name}_phi(a{i} * T) * ({rest})"
             lines += [f"    const double a{i} = {slope};", f"    const double n{i} = {exact};"]
         return lines + [f"    s->x{i} = n{i};" for i, x in enumerate(states) if x in group]

@@ -138,7 +138,7 @@ class _Builder:
             self.rates |= more.rates
             unknown += [signal(s) for s in more.outputs]
             inputs = list(self.outside)
-        solved, joined = self._acted(*solve_linear(rows, unknown, self.diagram.name))
+        solved, joined = self._place_acting_forces(*solve_linear(rows, unknown, self.diagram.name))
         for motion in self.motions:
             self.rates[signal(motion)] = velocity(motion)
             self.rates[velocity(motion)] = solved[acceleration(motion)]
@@ -161,7 +161,7 @@ class _Builder:
             joined=joined,
         )
 
-    def _acted(
+    def _place_acting_forces(
         self, solved: dict[sp.Symbol, sp.Expr], joined: Steps
     ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
         """The solution with forces behind nonlinear actuators in place, and these forces."""
@@ -186,12 +186,12 @@ class _Builder:
         for part in self.diagram.parts:
             if isinstance(part, Moving):
                 load = sum(g * signal(s) for s, g in part.loads.items())
-                rows.append(self._needed(part, signal(part.command)) - load)
+                rows.append(self._balance_body(part, signal(part.command)) - load)
             elif isinstance(part, Attached):
-                rows.append(signal(part.force) - part.sign * self._needed(part, _NO_COMMAND))
+                rows.append(signal(part.force) - part.sign * self._balance_body(part, _NO_COMMAND))
                 unknown.append(signal(part.force))
             elif isinstance(part, Linked):
-                rows += self._linked(part)
+                rows += self._link_bodies(part)
                 unknown += [signal(s) for s in part.forces]
             elif isinstance(part, Control) and part.analog:
                 v = motion_of(self.diagram, part.motion)[1] if part.motion else NO_VELOCITY
@@ -207,7 +207,7 @@ class _Builder:
                 unknown.append(signal(part.output))
         return rows, unknown
 
-    def _linked(self, part: Linked) -> list[sp.Expr]:
+    def _link_bodies(self, part: Linked) -> list[sp.Expr]:
         forces = part.body.forces(
             [motion_of(self.diagram, m) for m in part.motions],
             lambda name: parameter_symbol(part.name, name),
@@ -215,7 +215,7 @@ class _Builder:
         pairs = zip(part.forces, forces, strict=True)
         return [signal(s) - part.sign * force for s, force in pairs]
 
-    def _needed(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
+    def _balance_body(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
         """inertia a + force + friction - acting: the force that the body needs from others."""
         assert isinstance(part.body, Body)
         refuse_unsimulated(part, self.diagram.name)
