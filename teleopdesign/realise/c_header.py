@@ -125,9 +125,8 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
             if x in equation.steps:
                 lines.append(f"    const double n{i} = {code(equation.steps[x])};")
                 continue
-            rate = equation.rates[x]
+            rate = equation.rates[x]  # stepped exactly: its inputs are held over the period
             slope, rest = code(sp.diff(rate, x)), code(rate.xreplace({x: sp.S(0)}))
-            # exact for inputs that are held over the period, as in the simulation
             exact = f"exp(a{i} * T) * s->x{i} + T * {name}_phi(a{i} * T) * ({rest})"
             lines += [f"    const double a{i} = {slope};", f"    const double n{i} = {exact};"]
         return lines + [f"    s->x{i} = n{i};" for i, x in enumerate(states) if x in group]
