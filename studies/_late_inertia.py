@@ -71,7 +71,7 @@ def stable_share(hand: Body, *, bandwidth: float, delay: float) -> float:
     The delay is exact. The loop is stable without the cancellation, and its gain grows with the
     share: it stays stable up to the first frequency at which a positive real gain is 1.
     """
-    opened = device(1.0, bandwidth=bandwidth, delay=delay, hand=hand).opened("C")
+    opened = device(1.0, bandwidth=bandwidth, delay=delay, hand=hand).open_at("C")
     moved = matrix_response(opened, ["L"], ["R_MBC"], _GRID).data.values[:, 0, 0]
     gain = law(1.0, bandwidth)(2j * np.pi * _GRID) * moved
     turn = np.flatnonzero(np.diff(np.sign(gain.imag)))

@@ -16,20 +16,22 @@
 
 The names that a user types:
 
-    experiments   Experiment, Record, experiment, load_experiment, check_experiment, example,
-                  fetch
-    models        Model, Body, Value
-    effects       EFFECTS, Effect, Parameter, load_effect
+    experiments   Experiment, experiment, load_experiment, check_experiment, example
+    models        Model, Body
+    effects       EFFECTS, load_effect
     diagnosis     fit, compare, rank, find_missing, find_missing_in_arm, describe,
                   propose_experiment
-    diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram, write_diagram
-    controllers   CONTROLLERS, Controller, controller, load_controller, from_control
-    responses     derive_transfers, transfer_functions, bode, measured_impedance,
-                  simulate_diagram, simulate_many, Sampling, sine
+    diagrams      Diagram, haptic_interface, teleoperator, hand, read_diagram, write_diagram
+    controllers   CONTROLLERS, controller, from_control
+    responses     derive_transfers, transfer_functions, bode, simulate_diagram, simulate_many,
+                  Sampling, sine
     design        design_compensation
-    studies       study, measure, tune, fit_simulation
+    studies       study, measure, tune
     passivity     diagram_claims, positive_real
     errors        ExperimentError, ModelError
+
+Rarer ones, such as `td.Effect` and `td.fetch`, are there too and stand in `td.FURTHER`: classes of
+results, and what definitions, studies and recordings are made of.
 
 Every folder is there as well: `td.passivity`, `td.diagrams`, `td.frequency` ... A folder named by a
 verb can be called: `td.diagnose` does what `td.find_missing` does, and so do `td.check`,
@@ -97,9 +99,12 @@ if TYPE_CHECKING:
     from . import simulate as simulate
     from . import studies as studies
     from . import unexplained as unexplained
-    from .blocks import Body, Value, hand
+    from .blocks import Body, hand
+    from .blocks import Value as Value
     from .check import check_experiment
-    from .controllers import CONTROLLERS, Controller, controller, from_control, load_controller
+    from .controllers import CONTROLLERS, controller, from_control
+    from .controllers import Controller as Controller
+    from .controllers import load_controller as load_controller
     from .derive import all_transfers as derive_transfers
     from .derive import transfer_functions
     from .design import Assumptions as Assumptions
@@ -110,17 +115,22 @@ if TYPE_CHECKING:
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
     from .diagnose import compare, find_missing, find_missing_in_arm, fit, rank
-    from .diagrams import ANY, Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
-    from .effects import EFFECTS, Effect, Parameter, load_effect
+    from .diagrams import ANY as ANY
+    from .diagrams import Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
+    from .effects import EFFECTS, load_effect
+    from .effects import Effect as Effect
     from .effects import FitSearch as FitSearch
+    from .effects import Parameter as Parameter
     from .effects import State as State
     from .errors import ExperimentError, ModelError
     from .errors import TeleopDesignError as TeleopDesignError
     from .examples import example
-    from .frequency import bode, measured_impedance
-    from .measurement import Experiment, Record, load_experiment
+    from .frequency import bode
+    from .frequency import measured_impedance as measured_impedance
+    from .measurement import Experiment, load_experiment
+    from .measurement import Record as Record
     from .measurement.from_arrays import experiment
-    from .measurement.recordings import fetch
+    from .measurement.recordings import fetch as fetch
     from .model import Model
     from .next_experiment import propose as propose_experiment
     from .passivity import Certificate as Certificate
@@ -132,9 +142,10 @@ if TYPE_CHECKING:
     from .simulate import simulate as simulate_diagram
     from .studies import MEASURES as MEASURES
     from .studies import Study as Study
-    from .studies import fit_simulation, measure, study, tune
+    from .studies import fit_simulation as fit_simulation
     from .studies import latin_hypercube as latin_hypercube
     from .studies import limit as limit
+    from .studies import measure, study, tune
     from .studies import random_samples as random_samples
     from .studies import read_study as read_study
     from .studies import sensitivities as sensitivities
@@ -144,21 +155,15 @@ if TYPE_CHECKING:
     from .unexplained import describe
 
 __all__ = [
-    "ANY",
     "Body",
     "CONTROLLERS",
-    "Controller",
     "Diagram",
     "EFFECTS",
-    "Effect",
     "Experiment",
     "ExperimentError",
     "Model",
     "ModelError",
-    "Parameter",
-    "Record",
     "Sampling",
-    "Value",
     "bode",
     "check_experiment",
     "compare",
@@ -169,19 +174,15 @@ __all__ = [
     "diagram_claims",
     "example",
     "experiment",
-    "fetch",
     "find_missing",
     "find_missing_in_arm",
     "fit",
-    "fit_simulation",
     "from_control",
     "hand",
     "haptic_interface",
-    "load_controller",
     "load_effect",
     "load_experiment",
     "measure",
-    "measured_impedance",
     "positive_real",
     "propose_experiment",
     "rank",
@@ -201,22 +202,17 @@ __all__ = [
 GROUPS: dict[str, dict[str, str]] = {
     "experiments": {
         "Experiment": "measurement",
-        "Record": "measurement",
         "experiment": "measurement.from_arrays",
         "load_experiment": "measurement",
         "check_experiment": "check",
         "example": "examples",
-        "fetch": "measurement.recordings",
     },
     "models": {
         "Model": "model",
         "Body": "blocks",
-        "Value": "blocks",
     },
     "effects": {
         "EFFECTS": "effects",
-        "Effect": "effects",
-        "Parameter": "effects",
         "load_effect": "effects",
     },
     "diagnosis": {
@@ -230,7 +226,6 @@ GROUPS: dict[str, dict[str, str]] = {
     },
     "diagrams": {
         "Diagram": "diagrams",
-        "ANY": "diagrams",
         "haptic_interface": "diagrams",
         "teleoperator": "diagrams",
         "hand": "blocks",
@@ -239,16 +234,13 @@ GROUPS: dict[str, dict[str, str]] = {
     },
     "controllers": {
         "CONTROLLERS": "controllers",
-        "Controller": "controllers",
         "controller": "controllers",
-        "load_controller": "controllers",
         "from_control": "controllers",
     },
     "responses": {
         "derive_transfers": "derive:all_transfers",
         "transfer_functions": "derive",
         "bode": "frequency",
-        "measured_impedance": "frequency",
         "simulate_diagram": "simulate:simulate",
         "simulate_many": "simulate",
         "Sampling": "simulate",
@@ -261,7 +253,6 @@ GROUPS: dict[str, dict[str, str]] = {
         "study": "studies",
         "measure": "studies",
         "tune": "studies",
-        "fit_simulation": "studies",
     },
     "passivity": {
         "diagram_claims": "passivity",
@@ -272,8 +263,8 @@ GROUPS: dict[str, dict[str, str]] = {
         "ModelError": "errors",
     },
 }
-#: the same for names that `dir` leaves to their folders: classes of results, and what definitions
-#: and studies are made of
+#: the same for names that `dir` leaves to their folders: classes of results, and what definitions,
+#: studies and recordings are made of
 FURTHER: dict[str, dict[str, str]] = {
     "results": {
         "Comparison": "diagnose",
@@ -287,8 +278,14 @@ FURTHER: dict[str, dict[str, str]] = {
         "Certificate": "passivity",
     },
     "parts of definitions": {
+        "Value": "blocks",
+        "ANY": "diagrams",
+        "Effect": "effects",
+        "Parameter": "effects",
         "FitSearch": "effects",
         "State": "effects",
+        "Controller": "controllers",
+        "load_controller": "controllers",
         "Assumptions": "design",
         "TeleopDesignError": "errors",
     },
@@ -302,6 +299,12 @@ FURTHER: dict[str, dict[str, str]] = {
         "limit": "studies",
         "trade_off": "studies",
         "sensitivities": "studies",
+        "fit_simulation": "studies",
+    },
+    "recordings": {
+        "Record": "measurement",
+        "fetch": "measurement.recordings",
+        "measured_impedance": "frequency",
     },
     "exchange": {
         "to_iosystem": "realise.iosystem",

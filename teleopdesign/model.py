@@ -121,7 +121,10 @@ class Model:
         return self._with_body(place, self.body(place).without_effect(effect))
 
     def with_values(self, values: Mapping[str, float | Value]) -> Model:
-        """The model with other parameter values, by full names such as "device.coulomb.level"."""
+        """The model with other parameter values (SI), by full names such as "device.coulomb.level".
+
+        raises ModelError: no parameter of that name, or a value outside the parameter's bounds
+        """
         instance(values, Mapping, "with_values", expected='such as {"device.inertia": 0.15}')
         known = self.parameters
         for name in values:
@@ -203,10 +206,8 @@ class Model:
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             for effect in body.effects:
-                numbers = {
-                    p: body.parameters[f"{effect.name}.{p}"].value for p in effect.parameters
-                }
-                full = {p: f"{effect.name}.{p}" for p in numbers}
+                full = {p: f"{effect.name}.{p}" for p in effect.parameters}
+                numbers = {p: body.parameters[name].value for p, name in full.items()}
                 values |= {
                     f"{self._place_of(place, full[p])}{full[p]}": v
                     for p, v in effect.canonical(numbers).items()

@@ -6,6 +6,7 @@ import ast
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 
 import pytest
 from syntax_trees import PACKAGE, syntax_trees
@@ -39,18 +40,27 @@ COMPILED = ("realise/integrator", "realise/_free_mass")
 #: cells of a page: marimo gives each what it uses by name, nobody calls them
 CELLS = ("app/notebook",)
 
+#: lines of a file: beyond, a second concept is looked for. What is longer says why it is one
+MOST_LINES_OF_A_FILE = 310
+WHOLE = {
+    "__init__": "the map of the package, and its names",
+    "app/notebook": "cells of one page, which marimo reads from one file",
+    "realise/integrator": "one loop, compiled as a whole",
+}
 MOST_LINES = 60
 MOST_POSITIONAL = 6
 MOST_CONSTANTS_OF_DIAGNOSE = 60
 
 
+def paths() -> dict[str, Path]:
+    """Name such as "passivity/ports" -> file."""
+    return {path.relative_to(PACKAGE).with_suffix("").as_posix(): path for path in syntax_trees()}
+
+
 @cache
 def modules() -> dict[str, ast.Module]:
     """Name such as "passivity/ports" -> syntax tree."""
-    return {
-        path.relative_to(PACKAGE).with_suffix("").as_posix(): tree
-        for path, tree in syntax_trees().items()
-    }
+    return {name: syntax_trees()[path] for name, path in paths().items()}
 
 
 def functions() -> Iterator[tuple[str, Function]]:
@@ -168,6 +178,12 @@ def test_a_type_is_seen_as_a_class_and_as_a_name(code, defined):
 
 def test_one_function_is_called_teleoperator():
     assert [m for m, f in functions() if f.name == "teleoperator"] == ["diagrams/teleoperator"]
+
+
+def test_no_file_holds_a_second_concept():
+    lengths = {m: len(p.read_text().splitlines()) for m, p in paths().items()}
+    long = {m: n for m, n in lengths.items() if n > MOST_LINES_OF_A_FILE}
+    assert long.keys() == WHOLE.keys(), long
 
 
 def test_no_function_is_longer_than_a_page():

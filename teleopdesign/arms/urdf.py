@@ -58,7 +58,7 @@ def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Chain:
     links = []
     before = chain[0].parent if chain else ""
     for joint in chain:
-        rotation, origin = _rigidly(robot, before, joint)
+        rotation, origin = _locate_parent(robot, before, joint)
         links.append(
             Link(
                 name=joint.child,
@@ -256,7 +256,7 @@ def _chain(robot: _Robot, joints: Sequence[str]) -> list[_Joint]:
     return chain
 
 
-def _rigidly(robot: _Robot, frame: str, joint: _Joint) -> tuple[Array, Array]:
+def _locate_parent(robot: _Robot, frame: str, joint: _Joint) -> tuple[Array, Array]:
     """Rotation and origin of the parent of a joint, in the frame of a link that it is fixed to."""
     carrier = {j.child: j for j in robot.joints}
     rotation, origin, link = np.eye(3), np.zeros(3), joint.parent

@@ -166,7 +166,11 @@ class Body:
         return replace(self, effects=tuple(effects), parameters=kept)
 
     def with_values(self, values: Mapping[str, float | Value]) -> Body:
-        """The body with other parameter values; a plain number keeps the parameter's `fixed`."""
+        """The body with other parameter values (SI), by names such as "coulomb.level".
+
+        A plain number keeps whether the parameter is fixed.
+        raises ModelError: no parameter of that name, or a value outside the parameter's bounds
+        """
         instance(values, Mapping, "with_values", expected='such as {"inertia": 0.15}')
         new = {}
         for name, number_or_value in values.items():

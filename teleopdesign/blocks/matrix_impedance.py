@@ -55,7 +55,10 @@ class MatrixImpedance:
         }
 
     def with_values(self, values: Mapping[str, float]) -> MatrixImpedance:
-        """The impedance with other values of entries that it has."""
+        """The impedance with other values (SI) of entries that it has, such as "stiffness_1_2".
+
+        raises ModelError: no such entry, also where it is zero
+        """
         known = self.parameters
         for name in values:
             if name not in known:

@@ -14,7 +14,12 @@ NINETY_FIVE = 1.96
 
 @dataclass(frozen=True, eq=False)
 class Value(ByValue):
-    """A parameter's value (SI); fixed: known, not to be re-estimated; stderr: NaN where unknown."""
+    """A parameter's value with what is known of it.
+
+    value: SI;  fixed: known, so that no fit estimates it anew
+    stderr: standard error, in the unit of the value; NaN where it is unknown
+    raises ModelError: the value is no number
+    """
 
     value: float
     fixed: bool = False

@@ -29,7 +29,7 @@ def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> d
     moving = forth + back
     reasons: dict[str, str] = {}
     if moving < RARE:
-        reasons["velocity"] = f"it is told to move {100 * moving:.2g} % of the time"
+        reasons["velocity"] = f"it moves only {100 * moving:.2g} % of the time"
     elif min(forth, back) < RARE * moving:
         reasons["velocity"] = "it only ever moves one way"
     elif (spread := float(np.std(speed[direction != 0]) / np.mean(speed[direction != 0]))) < STEADY:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, TypeVar
 
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ._arms import inertia_line, joint_of, place_at_pose
-from ._options import add_effect_files, add_folder
 from ._progress import Reporter
 from ._terminal import print_styled
 
@@ -28,54 +27,6 @@ if TYPE_CHECKING:
 
 #: of one or two bodies, or of an arm
 Diagnosed = TypeVar("Diagnosed", bound="Diagnosis | ArmDiagnosis")
-
-
-def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
-    """Arguments: the experiment's folder, the user's effects, and an answer to continue from."""
-    if answer:
-        parser.add_argument(
-            "folder",
-            type=Path,
-            help="folder with experiment.toml and its records, or an answer of `teleopdesign "
-            "diagnose --json`",
-        )
-        add_answer(parser)
-    else:
-        add_folder(parser)
-        parser.set_defaults(answer=None)
-    add_effect_files(parser)
-
-
-def add_answer(parser: argparse.ArgumentParser) -> None:
-    """The answer that stands for a diagnosis."""
-    parser.add_argument(
-        "--answer",
-        type=Path,
-        metavar="F",
-        help="an answer of `teleopdesign diagnose --json` for that folder, in place of a diagnosis",
-    )
-
-
-def add_search(parser: argparse.ArgumentParser) -> None:
-    """What a diagnosis searches."""
-    parser.add_argument(
-        "--quick",
-        action="store_true",
-        help="a first look: two effects at most, no pairs, no exchanges, windows of long records; "
-        "what was left out is printed",
-    )
-    add_candidate_options(parser)
-
-
-def add_candidate_options(parser: argparse.ArgumentParser) -> None:
-    """Adds the options that choose the candidate effects."""
-    for option, text in (
-        ("--only", "the effects that are tried (all that the model could take)"),
-        ("--exclude", "effects that are not tried"),
-    ):
-        parser.add_argument(
-            option, action="extend", nargs="+", default=[], metavar="EFFECT", help=text
-        )
 
 
 def effects_by_name(options: argparse.Namespace) -> Mapping[str, Effect]:

@@ -53,8 +53,8 @@ def diagnose_all(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         reporter.clear()
         print(
-            f"teleopdesign: stopped; {reporter.kept()} kept in {output}, the same command goes on "
-            "from there",
+            f"teleopdesign: stopped; {reporter.describe_finished()} kept in {output}, "
+            "the same command goes on from there",
             file=sys.stderr,
         )
         return STOPPED

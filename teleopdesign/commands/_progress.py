@@ -77,7 +77,7 @@ class PointReporter:
         """Take the line off a terminal."""
         self._reporter.clear()
 
-    def kept(self) -> str:
+    def describe_finished(self) -> str:
         """How much is kept where the study is stopped."""
         last = self.last
         if last is None:

@@ -11,7 +11,8 @@ from typing import NoReturn
 
 from ..errors import ExperimentError
 from . import STOPPED
-from ._diagnosis import add_candidate_options, candidate_effects
+from ._diagnosis import candidate_effects
+from ._options import add_candidate_options
 
 #: the machine itself: the page runs code, nobody else may reach it
 LOOPBACK = "127.0.0.1"

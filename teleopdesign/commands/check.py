@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError
 from ..plain_data import write_json
-from ._diagnosis import add_experiment, experiment_of, stated_model
-from ._options import check_output
+from ._diagnosis import experiment_of, stated_model
+from ._options import add_experiment, check_output
 from ._paths import shell_word
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from ..errors import ModelError
 from ..plain_data import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, stated_model
-from ._options import check_output
+from ._diagnosis import diagnosis_of, experiment_and_answer, stated_model
+from ._options import add_experiment, check_output
 from ._paths import shell_word
 
 if TYPE_CHECKING:

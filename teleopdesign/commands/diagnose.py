@@ -9,15 +9,9 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..plain_data import write_beside
-from ._diagnosis import (
-    add_search,
-    diagnose_experiment,
-    experiment_of,
-    print_diagnosis,
-    search_missing,
-)
+from ._diagnosis import diagnose_experiment, experiment_of, print_diagnosis, search_missing
 from ._folders import diagnose_all
-from ._options import add_effect_files, check_output, count_argument, say
+from ._options import add_effect_files, add_search, check_output, count_argument, say
 from ._paths import shell_word
 from ._report import write_arm_page, write_page
 

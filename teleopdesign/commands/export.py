@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ..plain_data import write_text
 from ._arms import add_body
-from ._diagnosis import add_experiment, model_of_source
-from ._options import check_output
+from ._diagnosis import model_of_source
+from ._options import add_experiment, check_output
 
 EXAMPLES = """
   teleopdesign export answer.json --to mjcf

@@ -61,7 +61,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--counts-per-turn", type=float, metavar="N", help="of the encoder")
     parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where there is no time")
     parser.add_argument("--inertia", type=float, help="if it is known: kg or kg*m^2")
-    for use, text in (("fit", "that is fitted"), ("check", "that errors are told of")):
+    for use, text in (("fit", "that is fitted"), ("check", "on which errors are computed")):
         parser.add_argument(
             f"--{use}-span",
             nargs=2,

@@ -12,14 +12,8 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import (
-    add_experiment,
-    arm_diagnosis_of,
-    diagnosis_of,
-    experiment_and_answer,
-    print_diagnosis,
-)
-from ._options import check_output, say
+from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer, print_diagnosis
+from ._options import add_experiment, check_output, say
 from ._values import value_from
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from ..errors import ExperimentError
 from ..plain_data import write_json
 from ._arms import add_body
 from ._claims import WIDTH, claim_data, claim_lines
-from ._diagnosis import add_answer, body_of_source
+from ._diagnosis import body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
-from ._options import add_effect_files, check_output
+from ._options import add_answer, add_effect_files, check_output
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -43,72 +43,107 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     add_answer(parser)
     add_body(parser, pose=True)
+    _add_compensator(parser)
+    _add_computer(parser)
+    parser.add_argument(
+        "--stroke",
+        type=float,
+        default=0.01,
+        metavar="AMPLITUDE",
+        help="of a diagram: largest position of the motions that are searched for one that "
+        "releases energy, m or rad (%(default)g)",
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=0.1,
+        metavar="SPEED",
+        help="of a diagram: largest speed of these motions, m/s or rad/s (%(default)g)",
+    )
+    parser.add_argument(
+        "--json", type=Path, metavar="F", help="write claims, certificates and motions"
+    )
+    parser.add_argument(
+        "--check",
+        type=Path,
+        metavar="F",
+        help="only check the certificates of a file that --json wrote",
+    )
+    add_effect_files(parser)
+
+
+def _add_compensator(parser: argparse.ArgumentParser) -> None:
+    """Arguments: the compensation that is judged, by its law, or none."""
     law = parser.add_mutually_exclusive_group()
     law.add_argument(
         "--dahl",
         nargs=2,
         type=float,
         metavar=("LEVEL", "STIFFNESS"),
-        help="Dahl compensator, N and N/m",
+        help="compensation by a Dahl model: friction level (N or N m) and bristle stiffness (N/m "
+        "or N m/rad)",
     )
     law.add_argument(
         "--smoothed-coulomb",
         nargs=2,
         type=float,
-        metavar=("LEVEL", "A"),
-        help="smoothed Coulomb, N and m/s",
+        metavar=("LEVEL", "VELOCITY"),
+        help="compensation LEVEL v/(VELOCITY + |v|): friction level (N or N m) and the velocity at "
+        "which half of it is reached (m/s or rad/s)",
     )
-    parser.add_argument("--period", type=float, metavar="S", help="sample period, s")
-    parser.add_argument("--delay", type=float, default=0.0, metavar="S", help="computing delay, s")
+
+
+def _add_computer(parser: argparse.ArgumentParser) -> None:
+    """Arguments: the computer that samples, and the virtual wall that it renders."""
+    parser.add_argument("--period", type=float, metavar="T", help="sample period, s")
     parser.add_argument(
-        "--encoder-step", type=float, default=0.0, metavar="M", help="step of the encoder, m or rad"
+        "--delay",
+        type=float,
+        default=0.0,
+        metavar="DELAY",
+        help="delay of the computer, s, a whole number of periods (0); needs --period",
+    )
+    parser.add_argument(
+        "--encoder-step",
+        type=float,
+        default=0.0,
+        metavar="STEP",
+        help="step of the encoder, m or rad (0: none); needs --period",
     )
     parser.add_argument(
         "--wall",
         nargs=2,
         type=float,
-        metavar=("K", "B"),
-        help="virtual wall, N/m and N s/m; needs --period",
+        metavar=("STIFFNESS", "DAMPING"),
+        help="virtual wall: stiffness (N/m or N m/rad) and damping (N s/m or N m s/rad); needs "
+        "--period",
     )
-    parser.add_argument(
-        "--stroke", type=float, default=0.01, metavar="M", help="of a search in a diagram, m or rad"
-    )
-    parser.add_argument(
-        "--speed", type=float, default=0.1, metavar="V", help="largest in it, m/s or rad/s"
-    )
-    parser.add_argument(
-        "--json", type=Path, metavar="F", help="write claims, certificates and motions"
-    )
-    parser.add_argument(
-        "--check", type=Path, metavar="F", help="check the certificates of such a file, no more"
-    )
-    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print claims and margins; write what was asked for. The verdicts do not change the status."""
     if options.check is not None:
-        return _check(options.check)
-    _sound(options)
+        return _check_file(options.check)
+    _check_options(options)
     if is_diagram(options.source):
-        return settle_diagram(options, _computer(options))
+        return settle_diagram(options, _make_sampling(options))
     from ..passivity.device_claims import margins
     from ..passivity.identified import identify_device
 
     device = identify_device(*body_of_source(options.source, options))
-    compensator = _compensator(options)
-    claims = _all_claims(options, device, compensator)
+    compensator = _choose_compensator(options)
+    claims = _settle_claims(options, device, compensator)
     limits = margins(device, compensator)
-    print(_text(device, claims, limits))
+    print(_describe_device(device, claims, limits))
     if options.period is not None and device.damping.low > 0:
-        print("\n" + _z_width(device, options.period, options.delay))
+        print("\n" + _describe_z_width(device, options.period, options.delay))
     if options.json is not None:
         content = {"claims": [claim_data(s) for s in claims], "margins": [vars(m) for m in limits]}
         write_json(options.json, content)
     return 0
 
 
-def _sound(options: argparse.Namespace) -> None:
+def _check_options(options: argparse.Namespace) -> None:
     if options.source is None:
         raise ExperimentError(
             "passivity: expected a folder, an answer (.json), a diagram (.toml), or --check F"
@@ -149,7 +184,7 @@ def _is_stated(options: argparse.Namespace, name: str) -> bool:
     return getattr(options, name.replace("-", "_")) is not None
 
 
-def _compensator(options: argparse.Namespace) -> Compensator | None:
+def _choose_compensator(options: argparse.Namespace) -> Compensator | None:
     from ..passivity.device_claims import Compensator
 
     for law in ("dahl", "smoothed_coulomb"):
@@ -158,14 +193,14 @@ def _compensator(options: argparse.Namespace) -> Compensator | None:
     return None
 
 
-def _all_claims(
+def _settle_claims(
     options: argparse.Namespace, device: IdentifiedDevice, compensator: Compensator | None
 ) -> list[TopicClaim]:
     import numpy as np
 
     from ..passivity.device_claims import compensation_claims, device_claims, wall_claims
 
-    computer = _computer(options)
+    computer = _make_sampling(options)
     claims = device_claims(device)
     if compensator is not None:
         rng = np.random.default_rng(1)
@@ -179,7 +214,7 @@ def _all_claims(
     return claims
 
 
-def _computer(options: argparse.Namespace) -> Sampling | None:
+def _make_sampling(options: argparse.Namespace) -> Sampling | None:
     from ..simulate import Sampling
 
     if options.period is None:
@@ -187,7 +222,9 @@ def _computer(options: argparse.Namespace) -> Sampling | None:
     return Sampling(options.period, options.delay, options.encoder_step)
 
 
-def _text(device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequence[Margin]) -> str:
+def _describe_device(
+    device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequence[Margin]
+) -> str:
     from ..quantity import unit_of
 
     force, stiff = device.force_unit, device.stiffness_unit
@@ -214,7 +251,7 @@ def _text(device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequen
     return "\n".join([*lines, *claim_lines(claims), "", *map(str, limits)])
 
 
-def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
+def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
     from ..passivity import z_width
 
     width = z_width(
@@ -231,7 +268,7 @@ def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
     )
 
 
-def _check(path: Path) -> int:
+def _check_file(path: Path) -> int:
     """Check each certificate of a file of claims with the small checker alone."""
     from ..passivity.checker import Refused, check
 

@@ -5,14 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ._diagnosis import (
-    add_experiment,
-    add_search,
-    arm_diagnosis_of,
-    diagnosis_of,
-    experiment_and_answer,
-)
-from ._options import check_output
+from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer
+from ._options import add_experiment, add_search, check_output
 from ._report import write_arm_page, write_page
 
 EXAMPLES = """

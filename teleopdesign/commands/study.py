@@ -140,7 +140,9 @@ def _run_file(path: Path) -> dict[str, Any]:
 def _describe_kept(out: Path | None, reporter: PointReporter) -> str:
     if out is None:
         return "; nothing is kept: give --out F to keep what is finished"
-    return f"; {reporter.kept()} kept in {out}.part, the same command goes on from there"
+    return (
+        f"; {reporter.describe_finished()} kept in {out}.part, the same command goes on from there"
+    )
 
 
 def _print_failures(result: Study) -> None:

@@ -83,7 +83,10 @@ class Controller:
 
     @check_types
     def with_values(self, values: Mapping[str, float]) -> Controller:
-        """The controller with other parameter values, by "law.parameter"."""
+        """The controller with other parameter values (SI), by names such as "dahl.level".
+
+        raises ModelError: no parameter of that name
+        """
         known = self.names()
         for name in values:
             if name not in known:
@@ -97,7 +100,11 @@ class Controller:
         )
 
     def sampled(self, period: float) -> Controller:
-        """The controller as a computer of that period (s) realises it."""
+        """The controller as a computer of that period (s) realises it.
+
+        Only laws that say so change: `virtual_admittance`, a system of python-control in continuous
+        time. The others are stepped by the simulation, with their inputs held over a period.
+        """
         stages = (
             g if g.law.sampled is None else replace(g.law.sampled(g.values, period), name=g.name)
             for g in self.stages

@@ -118,7 +118,7 @@ class _Laws:
     def state(self, i: int, read: _Reading) -> ControllerState:
         calls, m = self.calls, self.m
         change = _function(f"change_{i}", lambda t, *z: calls.change(t, z[:m], z[m:])[i])
-        held = _function(f"held_{i}", lambda t, h, *z: calls.held(t, z[:m], h, z[m:])[i])
+        held = _function(f"held_{i}", lambda t, h, *z: calls.advance(t, z[:m], h, z[m:])[i])
 
         def changed(now: Any, p: Any) -> sp.Expr:
             inputs, states = read(now)
@@ -180,35 +180,35 @@ class _Calls:
         self.last: dict[str, tuple[Any, np.ndarray]] = {}
 
     def output(self, t: float, u: _Numbers, x: _Numbers) -> np.ndarray:
-        return self._kept("output", (t, u, x), lambda: self._output(t, x, u))
+        return self._remember("output", (t, u, x), lambda: self._compute_output(t, x, u))
 
     def change(self, t: float, u: _Numbers, x: _Numbers) -> np.ndarray:
         """Rates, or states at the next sample of a system in discrete time."""
-        return self._kept("change", (t, u, x), lambda: self._dynamics(t, x, u))
+        return self._remember("change", (t, u, x), lambda: self._compute_rates(t, x, u))
 
-    def held(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
+    def advance(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
         """States a period later, the inputs held."""
-        return self._kept("held", (t, u, period, x), lambda: self._carried(t, u, period, x))
+        return self._remember("held", (t, u, period, x), lambda: self._integrate(t, u, period, x))
 
-    def _kept(self, what: str, at: Any, call: Callable[[], np.ndarray]) -> np.ndarray:
+    def _remember(self, what: str, at: Any, call: Callable[[], np.ndarray]) -> np.ndarray:
         known = self.last.get(what)
         if known is None or known[0] != at:
             known = self.last[what] = (at, call())
         return known[1]
 
-    def _output(self, t: float, x: _Numbers, u: _Numbers) -> np.ndarray:
+    def _compute_output(self, t: float, x: _Numbers, u: _Numbers) -> np.ndarray:
         answer = self.system.output(t, np.array(x, dtype=float), np.array(u, dtype=float))
         return np.asarray(answer, dtype=float).reshape(-1)
 
-    def _dynamics(self, t: float, x: Any, u: _Numbers) -> np.ndarray:
+    def _compute_rates(self, t: float, x: Any, u: _Numbers) -> np.ndarray:
         rates = self.system.dynamics(t, np.array(x, dtype=float), np.array(u, dtype=float))
         return np.asarray(rates, dtype=float).reshape(-1)
 
-    def _carried(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
+    def _integrate(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
         from scipy.integrate import solve_ivp
 
         answer = solve_ivp(
-            lambda now, y: self._dynamics(now, y, u),
+            lambda now, y: self._compute_rates(now, y, u),
             (t, t + period),
             np.array(x, dtype=float),
             rtol=_RELATIVE,

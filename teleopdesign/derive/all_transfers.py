@@ -178,6 +178,6 @@ def _derive(
     name: str, case: Case, transfers: dict[str, Transfer], undone: dict[str, str], seconds: float
 ) -> None:
     try:
-        transfers[name] = Transfer(name, case, case.derived(seconds=seconds))
+        transfers[name] = Transfer(name, case, case.derive(seconds=seconds))
     except ModelError as error:
         undone[name] = str(error)

@@ -153,7 +153,7 @@ def transfer(
 
 def round_trip(diagram: Diagram, part: Control) -> sp.Expr:
     """What comes back at the output of a controller for 1 put in there, all else at work."""
-    opened, out = diagram.opened(part.name), part.output
+    opened, out = diagram.open_at(part.name), part.output
     ways = paths(diagram, part)
     return sp.Add(*(product(law, transfer(opened, s, (out,))[out]) for s, law in ways))
 

@@ -42,7 +42,7 @@ class _Algebra:
         if expression.is_Symbol:
             return {(expression.name,): Fraction(1)}
         if expression.is_Add:
-            return self.reduced(_sum([self.read(a) for a in expression.args]))
+            return self.reduce(_sum([self.read(a) for a in expression.args]))
         if expression.is_Mul:
             product: WordPolynomial = {(): Fraction(1)}
             for factor in expression.args:
@@ -61,7 +61,7 @@ class _Algebra:
         polynomial = self.read(base)
         if len(polynomial) == 1:
             ((word, factor),) = polynomial.items()
-            return self.reduced({tuple(_inverse_letter(x) for x in reversed(word)): 1 / factor})
+            return self.reduce({tuple(_inverse_letter(x) for x in reversed(word)): 1 / factor})
         if base not in self.names:
             letter = f"|{len(self.names)}|"  # no name of a block
             self.names[base] = letter
@@ -73,9 +73,9 @@ class _Algebra:
         for a, x in left.items():
             for b, y in right.items():
                 out[a + b] = out.get(a + b, Fraction(0)) + x * y
-        return self.reduced(out)
+        return self.reduce(out)
 
-    def reduced(self, polynomial: WordPolynomial) -> WordPolynomial:
+    def reduce(self, polynomial: WordPolynomial) -> WordPolynomial:
         """Apply the rules until none applies."""
         done: WordPolynomial = {}
         todo = dict(polynomial)
@@ -114,7 +114,7 @@ class _Algebra:
 
     def vanishes(self, polynomial: WordPolynomial, depth: int = _DEEPEST) -> bool:
         """Whether the polynomial is 0, denominators multiplied out from both sides."""
-        polynomial = self.reduced(polynomial)
+        polynomial = self.reduce(polynomial)
         if not polynomial:
             return True
         if depth == 0:

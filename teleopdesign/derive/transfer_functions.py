@@ -66,7 +66,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
     """
     cases = named_cases(diagram)
-    expressions = {name: case.derived() for name, case in cases.items()}
+    expressions = {name: case.derive() for name, case in cases.items()}
     texts = {name: case.text for name, case in cases.items()}
     return TransferFunctions(diagram, Frozen(expressions), Frozen(texts))
 
@@ -84,7 +84,7 @@ class Case:
     given: str | tuple[str, ...]
     text: str
 
-    def derived(self, *, seconds: float = math.inf) -> sp.Expr:
+    def derive(self, *, seconds: float = math.inf) -> sp.Expr:
         """The expression in the blocks; arguments and errors as of `transfer`."""
         transfers = transfer(
             self.diagram, self.output, (self.input,), given=self.given, seconds=seconds
@@ -94,7 +94,7 @@ class Case:
 
 def named_cases(diagram: Diagram) -> dict[str, Case]:
     """The transfer functions of a haptic interface that have a name, see `transfer_functions`."""
-    force = diagram.opened("K")
+    force = diagram.open_at("K")
     by_name: dict[str, Case] = {}
     if diagram.has("Z_H"):
         cases = {"T_o": ("C", "H"), "T_MBC": ("H",), "T_FF": ("C",), "T_H": ()}

@@ -71,7 +71,7 @@ def two_port_functions(
     raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s; no convention
     """
     check_convention(convention)
-    expressions = {name: case.derived() for name, case in two_port_cases(diagram).items()}
+    expressions = {name: case.derive() for name, case in two_port_cases(diagram).items()}
     if "Z_t" in expressions:
         expressions["Z_t - Z_E"] = expressions["Z_t"] - block_symbol("Z_E")
     texts = {name: _TEXTS[name] for name in expressions}

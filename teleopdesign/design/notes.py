@@ -104,7 +104,10 @@ def _explain_no_proposal(friction: FrictionInterval, travel: float, unit: str) -
             f"{friction.where_lowest}), so that no level is sure"
         )
     elif friction.presliding is not None and friction.presliding.low <= 0:
-        why = "the presliding stiffness is not told from zero, so no stiffness is sure (P43)"
+        why = (
+            "the presliding stiffness cannot be distinguished from zero, so no stiffness is sure "
+            "(P43)"
+        )
     else:
         why = (
             "friction is a spring in small motion, and no damping is identified that makes up for "

@@ -10,20 +10,9 @@ from .energy_tanks import energy_tanks
 from .felt_friction import FeltFriction, felt_friction
 from .four_channel import four_channel
 from .haptic_interface import four_cases, haptic_interface
+from .junctions import Junction, Kinematics, position_symbol
 from .parallel_rods import parallel_rods
-from .parts import (
-    ANY,
-    AnyBlock,
-    Attached,
-    Block,
-    Control,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    Part,
-    position_symbol,
-)
+from .parts import ANY, AnyBlock, Attached, Block, Control, Linked, Moving, Part
 from .shared_states import with_shared_states
 from .shipped import SHIPPED, load_shipped
 from .teleoperator import teleoperator

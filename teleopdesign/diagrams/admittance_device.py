@@ -12,7 +12,8 @@ from __future__ import annotations
 
 from ..blocks import Body
 from ..controllers import Controller
-from .parts import ANY, AnyBlock, Attached, Block, Control, Junction, Moving
+from .junctions import Junction
+from .parts import ANY, AnyBlock, Attached, Block, Control, Moving
 from .wiring import Diagram
 
 _TEXTS = {

@@ -20,17 +20,8 @@ from ..arguments import check_types, matrix_of
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
 from ..errors import ModelError
-from .parts import (
-    Block,
-    Control,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    Weight,
-    as_expression,
-    position_symbol,
-)
+from .junctions import Junction, Kinematics, Weight, as_expression, position_symbol
+from .parts import Block, Control, Linked, Moving
 from .wiring import Diagram
 
 
@@ -125,6 +116,7 @@ def teleoperator_of_arms(
                 terms[force] = 1
         junctions.append(Junction(f"F_P{k + 1}", terms))
     arm_sides = [
+        # the coupling pulls the slave's tip to the master's, and the master's back to it
         _side("m", master, "F_u", -1, hand, "H"),
         _side("s", slave, "F_d", 1, environment, "E"),
     ]
@@ -175,6 +167,7 @@ def _side(
         arms = {k: w for k, w in arms.items() if w != 0}
         torque, command = f"T_{side}{n}", f"U_{side}{n}"
         blocks.append(Moving(f"Z_{side}{n}", body, q, command, {torque: 1}, f"{outside}{n}"))
+        # forces at the tip act on the joints by the transposed Jacobian: the power is the same
         commanded: dict[str, Weight] = {f"F_P{k}": sign * w for k, w in arms.items()}
         law = arm.cancellations[n - 1] if arm.cancellations else None
         if law is not None:

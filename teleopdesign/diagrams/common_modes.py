@@ -119,12 +119,12 @@ def _drop_unobserved(
         row = waiting.pop(0)
         image = _product([row], a)[0]
         for pivot, known in zip(pivots, rows, strict=True):
-            row = _less(row, row[pivot], known)
+            row = _subtract(row, row[pivot], known)
         first = next((k for k, x in enumerate(row) if x), None)
         if first is None:
             continue
         row = [x / row[first] for x in row]
-        rows = [_less(known, known[first], row) for known in rows]
+        rows = [_subtract(known, known[first], row) for known in rows]
         rows.append(row)
         pivots.append(first)
         waiting.append(image)
@@ -137,7 +137,7 @@ def _drop_unobserved(
     )
 
 
-def _less(row: list[Fraction], factor: Fraction, other: list[Fraction]) -> list[Fraction]:
+def _subtract(row: list[Fraction], factor: Fraction, other: list[Fraction]) -> list[Fraction]:
     return [x - factor * y for x, y in zip(row, other, strict=True)] if factor else row
 
 

@@ -15,7 +15,8 @@ from ..controllers import Controller, from_control, measured_plant, opaque_laws
 from ..effects import EFFECTS
 from ..errors import ModelError
 from .common_modes import with_common_modes
-from .parts import Control, Entry, Junction, Moving
+from .junctions import Junction
+from .parts import Control, Entry, Moving
 
 if TYPE_CHECKING:
     import control

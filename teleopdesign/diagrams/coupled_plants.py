@@ -19,7 +19,8 @@ from ..blocks import Body, MatrixImpedance, Value
 from ..controllers import from_control
 from ..errors import ModelError
 from .control_parts import code_parts, entry_of
-from .parts import Control, Junction, Linked, Moving
+from .junctions import Junction
+from .parts import Control, Linked, Moving
 
 if TYPE_CHECKING:
     import control

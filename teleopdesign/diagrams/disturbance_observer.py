@@ -16,7 +16,8 @@ from dataclasses import replace
 
 from ..controllers import controller
 from ..errors import ModelError
-from .parts import Control, Junction, Moving
+from .junctions import Junction
+from .parts import Control, Moving
 from .wiring import Diagram
 
 

@@ -23,7 +23,8 @@ from dataclasses import replace
 
 from ..controllers import Controller, controller
 from ..errors import ModelError
-from .parts import Block, Control, Junction, Moving
+from .junctions import Junction
+from .parts import Block, Control, Moving
 from .wiring import Diagram
 
 _TEXTS = {

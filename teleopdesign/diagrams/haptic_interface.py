@@ -16,7 +16,8 @@ from collections.abc import Collection
 from ..blocks import Body
 from ..controllers import Controller
 from ..errors import ModelError
-from .parts import ANY, AnyBlock, Attached, Block, Control, Junction, Moving
+from .junctions import Junction
+from .parts import ANY, AnyBlock, Attached, Block, Control, Moving
 from .wiring import Diagram
 
 TEXTS = {

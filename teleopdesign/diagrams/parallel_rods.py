@@ -20,7 +20,8 @@ from ..arguments import matrix_of
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError
-from .parts import Block, Control, Junction, Linked, Moving
+from .junctions import Junction
+from .parts import Block, Control, Linked, Moving
 from .wiring import Diagram
 
 #: controllers of single rods (None: none), or by (rod that acts, rod that is read), from 1

@@ -1,19 +1,17 @@
-"""What a diagram is made of: blocks, junctions and kinematics, each with the signals it wires."""
+"""Blocks of a diagram, each with the signals that it wires; with junctions, all its parts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
-
-import sympy as sp
 
 from ..arguments import check_types
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError, quote
+from ..errors import ModelError
 from ..frozen import Frozen
 from ..names import check_name
+from .junctions import Junction, Kinematics, as_expression, check_names
 
 
 @dataclass(frozen=True)
@@ -25,33 +23,6 @@ class AnyBlock:
 
 
 ANY = AnyBlock()
-#: a sign, a factor, or an expression of positions (on `position_symbol`), such as a lever arm
-Weight: TypeAlias = float | sp.Expr
-
-
-def position_symbol(name: str) -> sp.Symbol:
-    """Symbol of a position (m or rad), for weights of forces and for kinematics."""
-    return sp.Symbol(name, real=True)
-
-
-def as_expression(weight: Weight, *, where: str) -> sp.Expr:
-    """A weight as sympy expression; text is none: `read_expression` reads text.
-
-    raises ModelError: neither a number nor an expression
-    """
-    try:
-        expression = sp.sympify(weight, strict=True)
-    except sp.SympifyError:
-        expression = None
-    if not isinstance(expression, sp.Expr):
-        shown = quote(weight) if isinstance(weight, str) else type(weight).__name__
-        raise ModelError(f"{where}: found {shown}, expected a number or a sympy expression")
-    return expression
-
-
-def _check_names(where: str, *names: str) -> None:
-    for name in names:
-        check_name(name, where=where)
 
 
 @check_types
@@ -73,7 +44,7 @@ class Moving:
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
-        _check_names(f"block {self.name}", self.motion, self.command, *self.loads)
+        check_names(f"block {self.name}", self.motion, self.command, *self.loads)
         if self.driver:  # blank: none
             check_name(self.driver, where=f"block {self.name}: driver")
         for signal, sign in self.loads.items():
@@ -106,7 +77,7 @@ class Attached:
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
-        _check_names(f"block {self.name}", self.motion, self.force)
+        check_names(f"block {self.name}", self.motion, self.force)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -134,7 +105,7 @@ class Linked:
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
-        _check_names(f"block {self.name}", *self.motions, *self.forces)
+        check_names(f"block {self.name}", *self.motions, *self.forces)
         if not len(self.motions) == len(self.forces) == self.body.size:
             raise ModelError(
                 f"{self.name}: {self.body.size} rows, found {len(self.motions)} motions and "
@@ -195,10 +166,10 @@ class Control:
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
-        _check_names(f"block {self.name}: others", *self.others)
+        check_names(f"block {self.name}: others", *self.others)
         if self.others and not self.is_code:
             raise ModelError(f"{self.name}: others are for a law that is known as code alone")
-        _check_names(f"block {self.name}", self.input, self.output)
+        check_names(f"block {self.name}", self.input, self.output)
         if self.motion:  # blank: none
             check_name(self.motion, where=f"block {self.name}: motion")
 
@@ -228,76 +199,5 @@ class Control:
         return any(stage.law.response is not None for stage in stages)
 
 
-@check_types
-@dataclass(frozen=True)
-class Junction:
-    """A summing junction:  output = sum of weight * signal.
-
-    A weight may depend on positions: torque = lever arm(angle) * force.
-    """
-
-    output: str
-    terms: Mapping[str, Weight]
-
-    def __post_init__(self) -> None:
-        check_name(self.output, where="junction")
-        _check_names(self.name, *self.terms)
-        for signal, weight in self.terms.items():
-            as_expression(weight, where=f"{self.name}: {signal}")
-        _check_names(self.name, *self.arms)
-        object.__setattr__(self, "terms", Frozen(self.terms))
-
-    @property
-    def name(self) -> str:
-        return f"junction {self.output}"
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return (self.output,)
-
-    @property
-    def arms(self) -> tuple[str, ...]:
-        """Positions that the weights depend on."""
-        return tuple(sorted({x for w in self.terms.values() for x in _names(w)}))
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return (*self.terms, *(x for x in self.arms if x not in self.terms))
-
-
-@check_types
-@dataclass(frozen=True)
-class Kinematics:
-    """A position that others determine:  output = expression of positions (`position_symbol`).
-
-    axis: of the output, "prismatic" or "revolute"
-    """
-
-    output: str
-    expression: sp.Expr
-    axis: str = "prismatic"
-
-    def __post_init__(self) -> None:
-        check_name(self.output, where="kinematics")
-        as_expression(self.expression, where=self.name)
-        _check_names(self.name, *self.inputs)
-
-    @property
-    def name(self) -> str:
-        return f"kinematics {self.output}"
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return (self.output,)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return _names(self.expression)
-
-
 Block = Moving | Attached | Linked | Control
 Part = Moving | Attached | Linked | Control | Junction | Kinematics
-
-
-def _names(expression: Weight) -> tuple[str, ...]:
-    return tuple(sorted(s.name for s in sp.sympify(expression, strict=True).free_symbols))

@@ -16,7 +16,8 @@ import numpy as np
 
 from ..controllers import matrices_of, unit_state
 from ..errors import ModelError
-from .parts import Block, Control, Junction, Moving
+from .junctions import Junction
+from .parts import Block, Control, Moving
 from .wiring import Diagram
 
 _Place = tuple[int, int]
@@ -37,11 +38,11 @@ def with_shared_states(diagram: Diagram) -> Diagram:
             place = part.entry.row, part.entry.column
             systems.setdefault(part.entry.of, {})[place] = part
     for name, entries in systems.items():
-        diagram = _together(diagram, name, entries)
+        diagram = _join_entries(diagram, name, entries)
     return diagram
 
 
-def _together(diagram: Diagram, name: str, entries: Mapping[_Place, Control]) -> Diagram:
+def _join_entries(diagram: Diagram, name: str, entries: Mapping[_Place, Control]) -> Diagram:
     where = f"{diagram.name}: {name}"
     a, b, c, d, period = _matrices(where, entries)
     inputs = {place[1]: part.input for place, part in entries.items()}

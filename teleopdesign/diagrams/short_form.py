@@ -29,7 +29,7 @@ class ShortForm:
     controls: Mapping[str, str]
     has_analog: bool = False
 
-    def wired(self, blocks: Mapping[str, Content], analog: tuple[str, ...]) -> Diagram:
+    def wire(self, blocks: Mapping[str, Content], analog: tuple[str, ...]) -> Diagram:
         """The diagram with these blocks; analog: controllers that no computer samples."""
         arguments = {**self.bodies, **self.controls}
         by_argument: dict[str, Any] = {arguments[name]: block for name, block in blocks.items()}
@@ -66,6 +66,6 @@ def kind_of(diagram: Diagram) -> str | None:
     for kind, form in KINDS.items():
         controls = {b.name for b in diagram.controls}
         known = controls <= set(form.controls) and set(contents) - controls <= set(form.bodies)
-        if known and form.wired(contents, analog) == diagram:
+        if known and form.wire(contents, analog) == diagram:
             return kind
     return None

@@ -21,18 +21,8 @@ from ..measurement.description import BODY, body_from
 from ..measurement.toml_table import Table, describe_toml_value, read_toml
 from ..quantity import AXES, QUANTITIES
 from .expressions import read_expression
-from .parts import (
-    ANY,
-    AnyBlock,
-    Attached,
-    Block,
-    Control,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    Weight,
-)
+from .junctions import Junction, Kinematics, Weight
+from .parts import ANY, AnyBlock, Attached, Block, Control, Linked, Moving
 from .short_form import KINDS, Content
 from .toml_matrices import MATRICES, read_matrices
 from .wiring import Diagram
@@ -83,7 +73,7 @@ def _short(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
         table.allow((*LAW, "analog") if form.has_analog else LAW)
         blocks[name] = _controller(table)
         analog += [name] if table.flag("analog", False) else []
-    diagram = form.wired(blocks, tuple(analog))
+    diagram = form.wire(blocks, tuple(analog))
     return replace(diagram, name=_string(head, "name")) if "name" in head.content else diagram
 
 

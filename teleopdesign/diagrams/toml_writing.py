@@ -16,7 +16,8 @@ from ..errors import ModelError
 from ..measurement.toml_text import inline_text, key_text, string_text
 from ..plain_data import write_text
 from .expression_writing import expression_text
-from .parts import AnyBlock, Attached, Block, Control, Junction, Kinematics, Linked, Moving
+from .junctions import Junction, Kinematics
+from .parts import AnyBlock, Attached, Block, Control, Linked, Moving
 from .short_form import kind_of
 from .toml_matrices import MATRICES
 from .wiring import Diagram

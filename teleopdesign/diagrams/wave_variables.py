@@ -21,7 +21,8 @@ from dataclasses import replace
 from ..blocks import Body
 from ..controllers import Controller, controller
 from ..errors import ModelError, did_you_mean
-from .parts import ANY, AnyBlock, Block, Control, Junction
+from .junctions import Junction
+from .parts import ANY, AnyBlock, Block, Control
 from .teleoperator import TEXTS, teleoperator
 from .wiring import Diagram
 

@@ -6,7 +6,7 @@ simulation) is read off this one wiring.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
@@ -20,19 +20,9 @@ from ..frozen import Frozen
 from ..names import check_name
 from ..notebook import html_table
 from ..quantity import QUANTITIES
-from .parts import (
-    AnyBlock,
-    Attached,
-    Block,
-    Control,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    Part,
-    Weight,
-    position_symbol,
-)
+from .junctions import Junction, Kinematics, Weight, position_symbol
+from .part_text import list_laws, write_equation
+from .parts import AnyBlock, Attached, Block, Control, Linked, Moving, Part
 
 
 @check_types
@@ -200,8 +190,11 @@ class Diagram:
             measured=tuple(s for s in self.measured if s not in gone),
         )
 
-    def opened(self, *names: str) -> Diagram:
-        """The diagram with these controllers' outputs from outside; unknown names are ignored."""
+    def open_at(self, *names: str) -> Diagram:
+        """The diagram with its loops open at these controllers: their outputs come from outside.
+
+        What only these controllers used is left out. Unknown names are ignored.
+        """
         free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
         kept = tuple(b for b in self.blocks if b.name not in names)
         return _prune(replace(self, blocks=kept, outside={**self.outside, **free}))
@@ -240,7 +233,10 @@ class Diagram:
 
     @check_types
     def with_values(self, values: Mapping[str, float]) -> Diagram:
-        """The diagram with other parameter values, by the names in `values`."""
+        """The diagram with other parameter values (SI), by the names in `values`.
+
+        raises ModelError: no parameter of that name; the message has the nearest one
+        """
         known, diagram = self.values, self
         for name in values:
             if name not in known:
@@ -254,14 +250,14 @@ class Diagram:
         return diagram
 
     def _repr_html_(self) -> str:
-        rows = [(part.name, _line(part), _content(part)) for part in self.parts]
+        rows = [(part.name, write_equation(part), list_laws(part)) for part in self.parts]
         note = f"from outside: {', '.join(self.outside)}"
         return html_table(f"Diagram {self.name}", ("part", "equation", "content"), rows, note=note)
 
     def __repr__(self) -> str:
         lines = [f"Diagram {self.name}"]
         for part in self.parts:
-            lines.append(f"  {_line(part)}")
+            lines.append(f"  {write_equation(part)}")
         lines.append(f"  from outside: {', '.join(self.outside)}")
         return "\n".join(lines)
 
@@ -271,47 +267,9 @@ def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
     return isinstance(part, Moving | Control)
 
 
-def _sum(terms: Iterable[tuple[str, Weight]]) -> str:
-    text = " ".join(_term_text(signal, weight) for signal, weight in terms)
-    return text.removeprefix("+ ") or "0"
-
-
-def _term_text(signal: str, weight: Weight) -> str:
-    if isinstance(weight, sp.Expr) and not weight.is_number:
-        return f"+ ({weight}) {signal}"
-    value = float(weight)
-    factor = "" if abs(value) == 1 else f"{abs(value):g} "
-    return f"{'-' if value < 0 else '+'} {factor}{signal}"
-
-
-def _line(part: Part) -> str:
-    if isinstance(part, Moving):
-        return f"{part.name} {part.motion} = {_sum([(part.command, 1), *part.loads.items()])}"
-    if isinstance(part, Attached):
-        return f"{part.force} = {'-' if part.sign < 0 else ''}{part.name} {part.motion}"
-    if isinstance(part, Linked):
-        sign = "-" if part.sign < 0 else ""
-        return f"({', '.join(part.forces)}) = {sign}{part.name} ({', '.join(part.motions)})"
-    if isinstance(part, Control):
-        law = part.name if part.dead_time is None else f"exp(-s {part.name})"
-        return f"{part.output} = {law} {part.input}"
-    if isinstance(part, Kinematics):
-        return f"{part.output} = {part.expression}"
-    return f"{part.output} = {_sum(part.terms.items())}"
-
-
-def _content(part: Part) -> str:
-    """What a block holds, in a few words; nothing for sums and kinematics."""
-    if isinstance(part, Control):
-        stages = part.controller.stages if isinstance(part.controller, Controller) else ()
-        return ", ".join(stage.name for stage in stages)
-    if isinstance(part, Moving | Attached):
-        return ", ".join(e.name for e in part.body.effects) if isinstance(part.body, Body) else ""
-    return ""
-
-
 def _prune(diagram: Diagram) -> Diagram:
     """Without outside signals and junctions that only a block taken out had used."""
     used = {s for part in diagram.parts for s in part.inputs} | set(diagram.measured)
+    # forces stay: what drives a motion that is prescribed is no input of its body
     outside = {s: q for s, q in diagram.outside.items() if s in used or q == "force"}
     return replace(diagram, outside=outside)

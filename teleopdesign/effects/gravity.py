@@ -36,7 +36,7 @@ def untold(p, facts):
     travel = facts.text(facts.travel, "position")
     return (
         f"over a travel of {travel} a spring and a constant force give this torque within "
-        f"{100 * bend:.2g} % of its variation: hardly told from these"
+        f"{100 * bend:.2g} % of its variation: hardly distinguished from these"
     )
 
 

@@ -58,7 +58,7 @@ class Grid:
             for j, a in enumerate(self.amplitude)
         ]
 
-    def labelled(
+    def label(
         self, values: Mapping[str, tuple[np.ndarray, str]], *, cases: Sequence[str], length: str
     ) -> xarray.Dataset:
         """Values (cases, ...) with their units as a dataset; length: unit of amplitude."""

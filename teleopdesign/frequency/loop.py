@@ -58,7 +58,10 @@ class LoopGain:
         return bool(self.expression.has(sp.exp))
 
     def transfer_function(self, *, delay_order: int = 4) -> control.TransferFunction:
-        """As python-control system; dead times and holds by Pade approximation of that order."""
+        """As python-control system, N/N; dead times and holds by Pade approximation of that order.
+
+        Up to delay_order/delay (rad/s) the phase is right within 0.4 degrees at order 4, 4.2 at 1.
+        """
         return as_transfer_function(self.expression, delay_order=delay_order)
 
     def __repr__(self) -> str:

@@ -28,7 +28,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class MatrixResponse(ByValue):
-    """Complex response over frequency (Hz), output and input; what has no linear form is named."""
+    """Response of several outputs to several inputs.
+
+    data: complex, over frequency (Hz), output and input
+    left_out: names of what has no linear form
+    """
 
     data: xarray.DataArray
     left_out: tuple[str, ...]
@@ -97,7 +101,8 @@ def matrix_response(
     except np.linalg.LinAlgError:
         raise ModelError(f"{diagram.name}: the wiring does not determine all signals") from None
     chosen = [
-        solved[:, unknown.index(o)] if o in unknown else _itself(o, inputs, s) for o in outputs
+        solved[:, unknown.index(o)] if o in unknown else _respond_to_itself(o, inputs, s)
+        for o in outputs
     ]
     data = xarray.DataArray(
         np.stack(chosen, axis=1),
@@ -111,6 +116,6 @@ def matrix_response(
     return MatrixResponse(data, form.left_out)
 
 
-def _itself(output: str, inputs: Sequence[str], s: np.ndarray) -> np.ndarray:
+def _respond_to_itself(output: str, inputs: Sequence[str], s: np.ndarray) -> np.ndarray:
     """Response of a free signal: one to itself, zero to others."""
     return np.tile(np.array([float(output == i) for i in inputs], dtype=complex), (len(s), 1))

@@ -75,6 +75,6 @@ def measured_impedance(
         "unsettled": (unsettled, "1"),
         "motion_amplitude": (moved, length),
     }
-    data = grid.labelled(values, cases=list(cases), length=length)
+    data = grid.label(values, cases=list(cases), length=length)
     data.attrs |= {"drive": drive or motion, "motion": motion, "force": force, "give": give}
     return ImpedanceMap(data)

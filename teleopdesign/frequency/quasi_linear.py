@@ -53,7 +53,7 @@ def quasi_linear_impedance(
             z[(i, *at)] = form.value(size, f)
     axis = first_axis(next(iter(cases.values())))
     values = {"impedance": (z, unit_of("stiffness", axis))}
-    data = grid.labelled(values, cases=list(cases), length=unit_of("position", axis))
+    data = grid.label(values, cases=list(cases), length=unit_of("position", axis))
     data.attrs |= {"motion": motion, "force": force}
     return ImpedanceMap(data)
 

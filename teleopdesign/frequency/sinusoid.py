@@ -59,7 +59,7 @@ def steady_harmonics(
     cycles = _CYCLES
     while True:
         setup = _set_up(diagram, drive, duration=cycles / drive.frequency)
-        rows, timing = setup.checked(long_step="refine", every_step=True)
+        rows, timing = setup.run_resolved(long_step="refine", every_step=True)
         columns = dict(zip(setup.program.layout.columns, rows.T, strict=True))
         columns = _outside_signals(diagram, drive, len(rows), timing.step) | columns
         harmonics = {

@@ -30,9 +30,9 @@ def default_bandwidth(experiment: Experiment) -> float:
 def share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> float:
     """Share of the fitted rows in which the position tells a direction of motion, at this Hz.
 
-    The wider the band, the more of the readings' error is left in the velocity. Where a velocity is
-    not told from rest, friction takes up whatever force acts: no model fails there, and none is
-    tested.
+    The wider the band, the more of the readings' error is left in the velocity. Where a velocity
+    cannot be distinguished from rest, friction takes up whatever force acts: no model fails there,
+    and none is tested.
     """
     resolution = experiment.channels[f"{body}.position"].resolution
     directions = [

@@ -56,7 +56,7 @@ class Conversion:
             return columns[self.columns[0]] * self.factor
         total = np.full(len(columns[self.columns[0]]), self.offset)
         for name, scale in zip(self.columns, self.scales, strict=True):
-            total += scale * self._unwrapped(columns[name])
+            total += scale * self._unwrap(columns[name])
         return total * self.factor
 
     @property
@@ -72,7 +72,7 @@ class Conversion:
         half = 0.5 * self.period
         return sum(int(np.sum(np.abs(np.diff(columns[n])) > half)) for n in self.columns)
 
-    def _unwrapped(self, column: Array) -> Array:
+    def _unwrap(self, column: Array) -> Array:
         if self.period == 0.0:
             return column
         return np.asarray(np.unwrap(column, period=self.period), dtype=np.float64)

@@ -58,7 +58,7 @@ def clock_of_log(
         stamps = columns.values[channels["time"].column] * (to_seconds or 1.0)
         where = f"{name}: channels.time"
     labels = _labels(columns, channels, name)
-    again = _mark_repeated(columns, channels, on_this_clock, filled) & _later(stamps)
+    again = _mark_repeated(columns, channels, on_this_clock, filled) & _mark_later_rows(stamps)
     between = _mark_between_readings(columns, channels, on_this_clock, filled, stamps)
     rows = np.flatnonzero(filled & ~again & ~between)
     stamps = stamps[rows]
@@ -127,7 +127,7 @@ def _filled_rows(
     return filled
 
 
-def _later(stamps: Array) -> NDArray[np.bool_]:
+def _mark_later_rows(stamps: Array) -> NDArray[np.bool_]:
     """Rows whose stamp is not that of the row before, nor next to it: such are one row twice."""
     steps = np.diff(stamps, prepend=stamps[:1])
     forward = steps[steps > 0]

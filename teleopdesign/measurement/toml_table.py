@@ -54,7 +54,7 @@ class Table:
         """The text under `key`, not empty; without a default it must be there."""
         if key not in self.content and default is not None:
             return default
-        value = self._required(key, "a text in quotes")
+        value = self._require(key, "a text in quotes")
         if not isinstance(value, str) or not value.strip():
             raise self._wrong_type(key, "a text in quotes")
         return value
@@ -68,20 +68,20 @@ class Table:
 
     def number(self, key: str, *, above: float = -math.inf) -> float:
         """The finite number > `above` under `key`."""
-        value = self._required(key, "a number")
-        return self._checked(value, key, above)
+        value = self._require(key, "a number")
+        return self._check_number(value, key, above)
 
     def number_or_none(self, key: str, *, above: float = -math.inf) -> float | None:
         """As `number`, None if the key is absent."""
         return self.number(key, above=above) if key in self.content else None
 
-    def _required(self, key: str, kind: str) -> Any:
+    def _require(self, key: str, kind: str) -> Any:
         if key not in self.content:
             hint = did_you_mean(key, self.content).replace("did you mean", "is it written as")
             raise ExperimentError(f"{self.where()}: no key {quote(key)}, expected {kind}{hint}")
         return self.content[key]
 
-    def _checked(self, value: object, key: str, above: float) -> float:
+    def _check_number(self, value: object, key: str, above: float) -> float:
         wanted = "a finite number" if above == -math.inf else f"a finite number above {above:g}"
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self._wrong_type(key, "a number")

@@ -74,7 +74,7 @@ class ArmPaths(ByValue):
             f"{self.condition:.3g}, of the records {self.recorded:.3g}"
         )
         if self.is_useful:
-            return f"{text}; told best: {gained}"
+            return f"{text}; known best: {gained}"
         return f"none is better than the present records: {text}"
 
 
@@ -165,8 +165,8 @@ class _Judge:
         """
         once: Array = np.arange(SAMPLES) * period / SAMPLES
         for used in USED:
-            if self._is_allowed(*self._sized(drawn, period, once, used)):
-                return self._sized(drawn, period, time, used)
+            if self._is_allowed(*self._scale_path(drawn, period, once, used)):
+                return self._scale_path(drawn, period, time, used)
         nothing = np.full((len(self.limits), len(time)), np.nan)
         return nothing, nothing, nothing
 
@@ -177,7 +177,7 @@ class _Judge:
         force = force + level * np.sign(velocity) + damping * velocity
         return bool(np.all(np.abs(force).max(axis=1) <= [limit.force for limit in self.limits]))
 
-    def _sized(
+    def _scale_path(
         self, drawn: Array, period: float, time: Array, used: float
     ) -> tuple[Array, Array, Array]:
         """The path that uses a part of the limits of position, speed and acceleration."""

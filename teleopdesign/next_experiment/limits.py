@@ -51,8 +51,8 @@ class Limits:
                 )
         return replace(self, **values)
 
-    def widened(self, factor: float) -> Limits:
-        """All limits times a factor; the stroke about its middle."""
+    def widen(self, factor: float) -> Limits:
+        """All limits times a factor above 0; the stroke grows about its middle."""
         middle, half = 0.5 * (self.low + self.high), 0.5 * factor * (self.high - self.low)
         return Limits(
             middle - half,

@@ -125,7 +125,7 @@ class Refit:
         """
         return float(np.sqrt(max(self.errors[other] ** 2 - self.errors[truth] ** 2, 0.0)))
 
-    def expected(self, *, truth: int, other: int) -> float:
+    def predict_separation(self, *, truth: int, other: int) -> float:
         """Mean of `separation` over the sensors' errors, for records of the truth."""
         both = (relative_residuals(self.fits[i].model, self.check) for i in (truth, other))
         apart = [b - a for (a, _), (b, _) in zip(*both, strict=True)]
@@ -172,7 +172,7 @@ def predict(
             truth,
             rivals[i],
             present[number, i],
-            fitted.expected(truth=0, other=k),
+            fitted.predict_separation(truth=0, other=k),
             _score(fitted.fits[k], fitted.fits[0]),
         )
         for k, i in enumerate(against, start=1)

@@ -92,7 +92,7 @@ def setups(
     inertia: Mapping[str, float],
 ) -> Iterator[ChangedSetUp]:
     """The simulated set-ups; places: bodies that the rivals differ at."""
-    wide = {b: limit.widened(WIDER) for b, limit in limits.items()}
+    wide = {b: limit.widen(WIDER) for b, limit in limits.items()}
     course = course_of(wide, prepared)
     yield ChangedSetUp(
         f"the stroke, speed, acceleration and force may be {WIDER:g} times larger",

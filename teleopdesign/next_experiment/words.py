@@ -129,7 +129,7 @@ def _remedies_said(remedies: Sequence[Remedy]) -> str:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])
         more = len(helping) - MOST_SAID
         others = f"; or in {more} other ways (`Proposal.remedies`)" if more > 0 else ""
-        return f"Tried in simulation, it would be told if {listed}{others}."
+        return f"In simulation, it would be identified if {listed}{others}."
     changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)
     if all(r.separation < SAME for r in remedies):
         return (

@@ -6,14 +6,14 @@ the constants that say which row of the loop's memory holds what, and that loop.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 
 import sympy as sp
 
 from ..controllers import calls_in
-from .equations import Equations
-from .laws import Names, assignments, indent
+from ._law_source import LawWriter, locate_entry, locate_symbols, write_function, write_reader
+from .equations import Equations, affine_slopes
+from .layout import Layout
 from .signal_symbols import (
     PERIOD,
     TIME,
@@ -31,109 +31,6 @@ ANALOG = "time states bristles inputs late memory".split()
 DIGITAL = "n period sampled memory".split()
 
 
-@dataclass(frozen=True)
-class Layout:
-    """Order of everything that the loop takes and returns, as names.
-
-    columns: of a row of the result;  exponential: states stepped exactly in their affine part, the
-    last ones among the states
-    """
-
-    states: tuple[str, ...]
-    computer_states: tuple[str, ...]
-    inputs: tuple[str, ...]
-    sampled_inputs: tuple[str, ...]
-    commands: tuple[str, ...]
-    late: tuple[str, ...]
-    parameters: tuple[str, ...]
-    columns: tuple[str, ...]
-    exponential: tuple[str, ...]
-
-
-def slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
-    """Hidden state -> A, where its rate is A z + B with A free of the state."""
-    moving = {f(m) for m in equations.motions for f in (signal, velocity)}
-    by_state = {}
-    for state, rate in equations.rates.items():
-        # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
-        slope = sp.diff(rate, state) if state not in moving else sp.S(0)
-        if slope != 0 and not slope.has(state):
-            by_state[state] = slope
-    return by_state
-
-
-def needed_steps(
-    results: Iterable[sp.Expr], joined: Mapping[sp.Symbol, sp.Expr]
-) -> dict[sp.Symbol, sp.Expr]:
-    """Those of the named steps that the results are written in, in their order."""
-    wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
-    needed = {}
-    for symbol, expression in reversed(list(joined.items())):
-        if symbol in wanted:
-            needed[symbol] = expression
-            wanted |= expression.free_symbols
-    return dict(reversed(list(needed.items())))
-
-
-#: symbol -> the text that reads it
-_Places = Mapping[sp.Symbol, str]
-
-
-def _entry(first: str, i: int) -> str:
-    """Entry of a lane in the row i of a group."""
-    return f"memory[{first} + {f'{i} * LANES + ' if i else ''}lane]"
-
-
-def _places(rows: Mapping[str, Iterable[sp.Symbol]]) -> dict[sp.Symbol, str]:
-    """Where each symbol is read, by the beginning of its group in the memory."""
-    return {x: _entry(row, i) for row, symbols in rows.items() for i, x in enumerate(symbols)}
-
-
-def _function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
-    body = indent(list(lines) or ["pass"], 4)
-    return f"@jitted\ndef {name}({', '.join([*arguments, 'lane'])}):\n{body}\n\n\n"
-
-
-def _reader(name: str, many: int) -> str:
-    """Source of a function that returns a column of a table as numbers: see `integrator.py`.
-
-    Behind the last column the table stays as it is there: one column is what is held throughout.
-    """
-    numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
-    held = "    column = min(column, table.shape[1] - 1)\n" if many else ""
-    return f"@jitted\ndef {name}(table, column):\n{held}    return ({', '.join(numbers)},)\n\n\n"
-
-
-@dataclass(frozen=True)
-class _Writer:
-    """What the source of some laws is written with: arguments, and names of what they hold."""
-
-    arguments: tuple[str, ...]
-    places: _Places
-    names: Names
-    joined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-
-    def lines(self, results: Mapping[str, sp.Expr]) -> list[str]:
-        """Lines that compute the results under their private names, common parts once."""
-        needed = needed_steps(results.values(), self.joined)
-        expressions = (*results.values(), *needed.values())
-        used = set().union(*(x.free_symbols for x in expressions))
-        return [
-            *(f"{self.names[x]} = {place}" for x, place in self.places.items() if x in used),
-            *assignments({self.names[s]: e for s, e in needed.items()}, self.names),
-            *assignments(results, self.names, shared="k"),
-        ]
-
-    def function(self, name: str, **rows: Iterable[sp.Expr]) -> str:
-        """Source of a function that puts these into the memory, each group from a row on."""
-        places = {
-            _entry(to, i): sp.sympify(x, strict=True) for to in rows for i, x in enumerate(rows[to])
-        }
-        results = {f"out{i}": x for i, x in enumerate(places.values())}
-        lines = [*self.lines(results), *map(" = ".join, zip(places, results, strict=True))]
-        return _function(name, (*self.arguments, *rows), lines)
-
-
 class Generator:
     """Names and source for one diagram's equations.
 
@@ -143,7 +40,7 @@ class Generator:
     def __init__(self, equations: Equations, *, observer: int = 0) -> None:
         e = self.equations = equations
         self.observer = observer
-        self.slopes = slopes(e)
+        self.slopes = affine_slopes(e)
         self.bristles = sorted(self.slopes, key=str)
         self.moving = sorted((x for x in e.rates if x not in self.slopes), key=str)
         self.states = [*self.moving, *self.bristles]
@@ -161,10 +58,10 @@ class Generator:
             key=str,
         )
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
-        self.variables = self._variables()
-        self.names = self._names()
+        self.variables = self._name_variables()
+        self.names = self._name_symbols()
 
-    def _variables(self) -> dict[str, str]:
+    def _name_variables(self) -> dict[str, str]:
         """Variable of the source for each quantity by its name; no such name begins another one."""
         e = self.equations
         symbols = [*self.states, *self.computer_states, *e.inputs, *self.late, *self.sensors]
@@ -174,7 +71,7 @@ class Generator:
         names = [*map(str, symbols), *self.commands, *e.signals, *e.computer.signals]
         return {name: f"v{i}_" for i, name in enumerate(dict.fromkeys(names))}
 
-    def _names(self) -> dict[sp.Symbol, str]:
+    def _name_symbols(self) -> dict[sp.Symbol, str]:
         """Private name of every symbol that the equations hold."""
         e = self.equations
         names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
@@ -221,9 +118,10 @@ class Generator:
 
     def source(self) -> str:
         """The functions of the equations, and the constants of the loop over them."""
-        return f"{self._constants()}\n\n{self._analog()}{self._signals()}{self._computer()}"
+        functions = (self._write_analog(), self._write_signals(), self._write_computer())
+        return f"{self._write_constants()}\n\n{''.join(functions)}"
 
-    def _constants(self) -> str:
+    def _write_constants(self) -> str:
         """First row of the loop's memory for each group of quantities, and their numbers."""
         motions = len(self.motions) if self.commands else 0
         states, bristles, late = len(self.moving), len(self.bristles), len(self.late)
@@ -250,8 +148,8 @@ class Generator:
             **dict.fromkeys(("WEIGHT_0", "WEIGHT_1", "WEIGHT_3"), bristles),
             **dict.fromkeys(("POSITIONS", "VELOCITIES", "SEEN", "TRAVEL"), motions),
             **dict.fromkeys(("KNOWN", "OBSERVED", "BEND"), motions),
-            "NOW": len(self._now()),
-            "MADE": len(self._made()),
+            "NOW": len(self._analog_signals()),
+            "MADE": len(self._computer_signals()),
             "COLUMNS": len(self.layout().columns),
             "SPOILED": 1,
             "PARAMETERS": len(self.parameters),
@@ -266,12 +164,12 @@ class Generator:
         }
         lines += [f"MANY_{name} = {count}" for name, count in counted.items()]
         lines.append(f"ROWS = {first}")
-        lines.append(f"SMOOTH = ({''.join(f'{x}, ' for x in [*self._smooth(), True])})")
+        lines.append(f"SMOOTH = ({''.join(f'{x}, ' for x in [*self._mark_smooth(), True])})")
         lines.append(f"COMPUTER = {bool(self.commands)}")
         lines.append(f"OBSERVER = {self.observer}")
         return "\n".join(lines)
 
-    def _smooth(self) -> list[bool]:
+    def _mark_smooth(self) -> list[bool]:
         """Whether a late signal changes within a step, in place of being held over it."""
         e = self.equations
         moving = {*e.rates, *e.joined, *e.inputs}
@@ -281,66 +179,66 @@ class Generator:
             moving |= {s for s, (x, _) in e.late.items() if x.free_symbols & moving}
         return [bool(x.free_symbols & moving) for x, _ in e.late.values()]
 
-    def _now(self) -> dict[sp.Symbol, sp.Expr]:
+    def _analog_signals(self) -> dict[sp.Symbol, sp.Expr]:
         """Accelerations and signals of continuous time, by their symbols."""
         e = self.equations
         accelerations = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
         return accelerations | {signal(name): x for name, x in e.signals.items()}
 
-    def _made(self) -> dict[str, sp.Expr]:
+    def _computer_signals(self) -> dict[str, sp.Expr]:
         """Signals of the computer."""
         return dict(self.equations.computer.signals) if self.commands else {}
 
     def _analog_places(self) -> dict[sp.Symbol, str]:
         e = self.equations
         rows = {"states": self.moving, "bristles": self.bristles, "late": self.late}
-        places = _places({**rows, "COMMANDS": [e.commands[c] for c in self.commands]})
+        places = locate_symbols({**rows, "COMMANDS": [e.commands[c] for c in self.commands]})
         places |= {x: f"inputs[{i}]" for i, x in enumerate(e.inputs)}
         return places | self._parameter_places()
 
     def _parameter_places(self) -> dict[sp.Symbol, str]:
-        return _places({"PARAMETERS": self.parameters})
+        return locate_symbols({"PARAMETERS": self.parameters})
 
-    def _analog(self) -> str:
+    def _write_analog(self) -> str:
         e = self.equations
-        write = _Writer(tuple(ANALOG), self._analog_places(), self.names, e.joined).function
+        write = LawWriter(tuple(ANALOG), self._analog_places(), self.names, e.joined).function
         moving, bristles = ([e.rates[s] for s in g] for g in (self.moving, self.bristles))
         parts = [
-            _reader("inputs_at", len(e.inputs)),
-            _reader("sampled_inputs_at", len(self.sampled_inputs)),
+            write_reader("inputs_at", len(e.inputs)),
+            write_reader("sampled_inputs_at", len(self.sampled_inputs)),
             write("rates", to_states=moving, to_bristles=bristles),
             write("slopes", to=[self.slopes[s] for s in self.bristles]),
-            write("signals", to=self._now().values()),
+            write("signals", to=self._analog_signals().values()),
             write("late_values", to=[x for x, _ in e.late.values()]),
         ]
         return "".join(parts)
 
-    def _signals(self) -> str:
+    def _write_signals(self) -> str:
         """Which quantities are the motions that a computer reads, and the columns of a row."""
         places = {x.name: place for x, place in self._analog_places().items()}
         read = self.motions if self.commands else []
         lines = [
-            f"{_entry(to, i)} = {places[of(m).name]}"
+            f"{locate_entry(to, i)} = {places[of(m).name]}"
             for to, of in (("to_positions", signal), ("to_velocities", velocity))
             for i, m in enumerate(read)
         ]
         arguments = ["states", "inputs", "memory", "to_positions", "to_velocities"]
-        motions = _function("motions", arguments, lines)
+        motions = write_function("motions", arguments, lines)
         places = {
             name: text.replace("[states", "[STATES").replace("[bristles", "[BRISTLES")
             for name, text in places.items()
         }
-        places |= {x.name: _entry("NOW", i) for i, x in enumerate(self._now())}
-        places |= {name: _entry("MADE", i) for i, name in enumerate(self._made())}
+        places |= {x.name: locate_entry("NOW", i) for i, x in enumerate(self._analog_signals())}
+        places |= {name: locate_entry("MADE", i) for i, name in enumerate(self._computer_signals())}
         columns = enumerate(self.layout().columns)
-        lines = [f"{_entry('to', i)} = {places[name]}" for i, name in columns]
-        return motions + _function("record", ["inputs", "memory", "to"], lines)
+        lines = [f"{locate_entry('to', i)} = {places[name]}" for i, name in columns]
+        return motions + write_function("record", ["inputs", "memory", "to"], lines)
 
-    def _computer(self) -> str:
+    def _write_computer(self) -> str:
         """Signals of the computer, and its states stepped before and after they are taken."""
-        motions, made = self.motions, self._made()
+        motions, made = self.motions, self._computer_signals()
         rows = {
-            "NOW": [reading_symbol(x.name) for x in self._now()],
+            "NOW": [reading_symbol(x.name) for x in self._analog_signals()],
             "SEEN": [reading_symbol(m) for m in motions],
             "TRAVEL": [travel_rate(m) for m in motions],
             "KNOWN": [estimate(m) for m in motions],
@@ -349,22 +247,22 @@ class Generator:
         }
         kept = (x for x, _ in self.equations.computer.late.values()) if self.commands else ()
         read = {x: f"sampled[{i}]" for i, x in enumerate(self.sampled_inputs)}
-        places = _places(rows) | read | self._parameter_places()
+        places = locate_symbols(rows) | read | self._parameter_places()
         names = {**self.names, TIME: "(n * period)"}
-        writer = _Writer(tuple(DIGITAL), places, names)
+        writer = LawWriter(tuple(DIGITAL), places, names)
         sources = {x.name: text for x, text in read.items()}
-        sources |= {name: _entry("MADE", i) for i, name in enumerate(made)}
-        commands = [f"{_entry('to', i)} = {sources[c]}" for i, c in enumerate(self.commands)]
+        sources |= {name: locate_entry("MADE", i) for i, name in enumerate(made)}
+        commands = [f"{locate_entry('to', i)} = {sources[c]}" for i, c in enumerate(self.commands)]
         parts = [
-            self._stepped(writer, "computer_before", True),
+            self._write_steps(writer, "computer_before", True),
             writer.function("computer_signals", to=made.values()),
             writer.function("computer_late", to=kept),
-            self._stepped(writer, "computer_after", False),
-            _function("held_commands", ["n", "sampled", "memory", "to"], commands),
+            self._write_steps(writer, "computer_after", False),
+            write_function("held_commands", ["n", "sampled", "memory", "to"], commands),
         ]
         return "".join(parts)
 
-    def _stepped(self, writer: _Writer, name: str, before: bool) -> str:
+    def _write_steps(self, writer: LawWriter, name: str, before: bool) -> str:
         """Source of a function that carries states over a sample: exactly, or as they say."""
         computer = self.equations.computer
         results: dict[str, sp.Expr] = {}
@@ -372,7 +270,7 @@ class Generator:
         for i, s in enumerate(self.computer_states):
             if (s in computer.before) is not before or not self.commands:
                 continue
-            state = _entry("COMPUTER_STATES", i)
+            state = locate_entry("COMPUTER_STATES", i)
             if s in computer.steps:
                 results[f"out{i}"] = computer.steps[s]
                 ends.append(f"{state} = out{i}")
@@ -381,4 +279,4 @@ class Generator:
             results[f"b{i}"] = computer.rates[s].xreplace({s: sp.S(0)})
             ends.append(f"e, f, _, _ = phi(period * a{i})")
             ends.append(f"{state} = e * {state} + period * f * b{i}")
-        return _function(name, writer.arguments, [*writer.lines(results), *ends])
+        return write_function(name, writer.arguments, [*writer.lines(results), *ends])

@@ -72,7 +72,7 @@ def residual_along(
     forces = [_force(effect, along) for effect in along.present(body.effects, "force")]
     if motion.carried is not None:
         forces = [_force_of_links(motion, motion.carried, along), *forces]
-    needed = (acting + interaction).less([inertia, *forces])
+    needed = (acting + interaction).subtract([inertia, *forces])
     contact = body.contact()
     structures = along.present(body.effects, "structure")
     if contact != 0 and structures:

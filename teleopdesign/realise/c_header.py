@@ -65,6 +65,8 @@ class _Ring:
 
     @property
     def size(self) -> int:
+        # the sample so many whole periods ago, the one before it, between which a part of a period
+        # is interpolated, and the one that is written now
         return int(self.samples) + 2
 
     def field(self) -> str:
@@ -123,7 +125,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
             if x in equation.steps:
                 lines.append(f"    const double n{i} = {code(equation.steps[x])};")
                 continue
-            rate = equation.rates[x]
+            rate = equation.rates[x]  # stepped exactly: its inputs are held over the period
             slope, rest = code(sp.diff(rate, x)), code(rate.xreplace({x: sp.S(0)}))
             exact = f"exp(a{i} * T) * s->x{i} + T * {name}_phi(a{i} * T) * ({rest})"
             lines += [f"    const double a{i} = {slope};", f"    const double n{i} = {exact};"]

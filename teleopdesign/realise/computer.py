@@ -7,8 +7,12 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from ..diagrams import Attached, Control, Diagram, Junction, Linked, Moving
+from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..errors import ModelError
+from ._linear import solve_linear
+from .late_signals import LateSignals
+from .signal_symbols import PERIOD, estimate, rate_of, reading_symbol, signal, travel_rate
+from .wired_parts import NO_VELOCITY, SignalReader, place_controller, sum_inputs
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,83 @@ def _electronic_signals(diagram: Diagram) -> set[str]:
     electronic = {c.output for c in diagram.controls if c.analog} - sensors
     electronic |= {c.input for c in diagram.controls if c.analog and c.input in made}
     grown = True
-    while grown:
+    while grown:  # a junction of electronic signals alone or with others is electronic as well
         behind = {j.output for j in made.values() if electronic & set(j.terms)}
         grown, electronic = not behind <= electronic, electronic | behind
     return electronic
+
+
+@dataclass
+class ComputerRows:
+    """Equations of the computer's parts before they are solved.
+
+    rows: of its signals, each = 0;  rates, steps: state -> rate, or value at the next sample
+    before: states stepped ahead of the output;  outputs: names of the signals
+    """
+
+    rows: list[sp.Expr] = field(default_factory=list)
+    rates: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    steps: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    before: set[sp.Symbol] = field(default_factory=set)
+    outputs: list[str] = field(default_factory=list)
+
+
+def write_computer(
+    diagram: Diagram,
+    digital: Collection[str],
+    of: SignalReader,
+    rate: SignalReader,
+    speed: SignalReader,
+    period: sp.Expr = sp.S.Zero,
+    *,
+    late: LateSignals,
+) -> ComputerRows:
+    """Equations of the computer's parts; what they delay is put into `late`.
+
+    digital: signals that the computer makes;  period: s, 0 in continuous time
+    of, rate, speed: name of a signal -> symbol of its value, of its change over a sample, and of
+        its velocity as the computer knows it
+    """
+    result = ComputerRows()
+    for part in diagram.parts:
+        if isinstance(part, Control):
+            if part.analog:
+                continue
+            travel = known = NO_VELOCITY
+            if part.motion:
+                moved = diagram.position(part.motion)
+                readings = {x: of(x.name) for x in moved.free_symbols}
+                travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
+            others = tuple(map(of, part.others))
+            equation = place_controller(
+                part, of(part.input), travel, known, period, others=others, late=late
+            )
+            result.rows.append(signal(part.output) - equation.output)
+            result.rates |= equation.rates
+            result.steps |= equation.steps
+            result.before |= equation.before
+        elif isinstance(part, Junction | Kinematics) and part.output in digital:
+            result.rows.append(signal(part.output) - sum_inputs(part, of))
+        else:
+            continue
+        result.outputs += part.outputs
+    return result
+
+
+def solve_computer(diagram: Diagram, digital: Collection[str]) -> ComputerEquations:
+    """What a sampled computer does with its readings;  digital: signals that it makes."""
+    sensors = sensor_signals(diagram)
+
+    def of(name: str) -> sp.Symbol:
+        return reading_symbol(name) if name in sensors else signal(name)
+
+    late: LateSignals = {}
+    parts = write_computer(diagram, digital, of, travel_rate, estimate, PERIOD, late=late)
+    solved, _ = solve_linear(parts.rows, [signal(s) for s in parts.outputs], diagram.name)
+    return ComputerEquations(
+        {x: r.xreplace(solved) for x, r in parts.rates.items()},
+        {x: r.xreplace(solved) for x, r in parts.steps.items()},
+        frozenset(parts.before),
+        {s.name: e for s, e in solved.items()},
+        {s: (e.xreplace(solved), d) for s, (e, d) in late.items()},
+    )

@@ -7,41 +7,42 @@ same set of equations. All equations are linear in accelerations and forces and 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import sympy as sp
 
 from ..blocks import Body
-from ..controllers import Controller, ControllerEquation, parameter_symbol
+from ..controllers import parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
-from ..diagrams.parts import Weight
-from ..diagrams.second_input import without_motion
-from ..effects import SIGNALS, Effect
+from ..effects import SIGNALS
 from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
-from .computer import ComputerEquations, computer_signals, held_signals, sensor_signals
-from .late_signals import LateSignals, replace_delays, without_delays
+from .computer import (
+    ComputerEquations,
+    computer_signals,
+    held_signals,
+    solve_computer,
+    write_computer,
+)
+from .late_signals import LateSignals, replace_delays
 from .signal_symbols import (
-    PERIOD,
     TIME,
     acceleration,
-    estimate,
     motion_of,
     parameter_names,
-    rate_of,
-    reading_symbol,
     signal,
-    travel_rate,
     velocity,
 )
+from .wired_parts import (
+    NO_VELOCITY,
+    check_inputs,
+    place_controller,
+    refuse_unsimulated,
+    sum_inputs,
+)
 
-#: signal's name -> symbol that stands for it
-_Reader = Callable[[str], sp.Symbol]
-#: state -> rate, or value at the next sample
-_Changes = dict[sp.Symbol, sp.Expr]
 _NO_COMMAND = sp.Symbol("no_command", real=True)
-_NO_VELOCITY = sp.Symbol("no_velocity", real=True)
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class Equations:
         return tuple(d for _, d in (*self.late.values(), *self.computer.late.values()))
 
 
-def equations(
+def build_equations(
     diagram: Diagram, *, prescribed: Iterable[str] = (), sampled: bool = True
 ) -> Equations:
     """Explicit equations of a diagram whose blocks all have laws.
@@ -83,6 +84,18 @@ def equations(
     sampled: commands are held inputs and the computer is apart; False: all is one
     """
     return _Builder(diagram, tuple(prescribed), sampled).build()
+
+
+def affine_slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
+    """Hidden state -> A, where its rate is A z + B with A free of the state."""
+    moving = {f(m) for m in equations.motions for f in (signal, velocity)}
+    by_state = {}
+    for state, rate in equations.rates.items():
+        # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
+        slope = sp.diff(rate, state) if state not in moving else sp.S(0)
+        if slope != 0 and not slope.has(state):
+            by_state[state] = slope
+    return by_state
 
 
 class _Builder:
@@ -97,7 +110,7 @@ class _Builder:
                     f"{did_you_mean(motion, motions)}"
                 )
         self.motions = tuple(m for m in motions if m not in prescribed)
-        _check_inputs(diagram, motions)
+        check_inputs(diagram, motions)
         driven = {b.driver for b in self.moving if b.motion in prescribed}
         self.outside = [s for s in diagram.outside if s not in driven]
         computed = computer_signals(diagram)
@@ -116,14 +129,16 @@ class _Builder:
         if self.sampled:
             held = held_signals(self.diagram, self.digital, self.sampled_inputs)
             commands = {s: signal(s) for s in held}
-            computer = self._computer()
+            computer = solve_computer(self.diagram, self.digital)
         else:
-            more, names = self._computer_rows(signal, velocity, velocity, self.late)
-            rows += more[0]
-            self.rates |= more[1]
-            unknown += [signal(s) for s in names]
+            more = write_computer(
+                self.diagram, self.digital, signal, velocity, velocity, late=self.late
+            )
+            rows += more.rows
+            self.rates |= more.rates
+            unknown += [signal(s) for s in more.outputs]
             inputs = list(self.outside)
-        solved, joined = self._acted(*solve_linear(rows, unknown, self.diagram.name))
+        solved, joined = self._place_acting_forces(*solve_linear(rows, unknown, self.diagram.name))
         for motion in self.motions:
             self.rates[signal(motion)] = velocity(motion)
             self.rates[velocity(motion)] = solved[acceleration(motion)]
@@ -146,7 +161,7 @@ class _Builder:
             joined=joined,
         )
 
-    def _acted(
+    def _place_acting_forces(
         self, solved: dict[sp.Symbol, sp.Expr], joined: Steps
     ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
         """The solution with forces behind nonlinear actuators in place, and these forces."""
@@ -171,19 +186,19 @@ class _Builder:
         for part in self.diagram.parts:
             if isinstance(part, Moving):
                 load = sum(g * signal(s) for s, g in part.loads.items())
-                rows.append(self._needed(part, signal(part.command)) - load)
+                rows.append(self._balance_body(part, signal(part.command)) - load)
             elif isinstance(part, Attached):
-                rows.append(signal(part.force) - part.sign * self._needed(part, _NO_COMMAND))
+                rows.append(signal(part.force) - part.sign * self._balance_body(part, _NO_COMMAND))
                 unknown.append(signal(part.force))
             elif isinstance(part, Linked):
-                rows += self._linked(part)
+                rows += self._link_bodies(part)
                 unknown += [signal(s) for s in part.forces]
             elif isinstance(part, Control) and part.analog:
-                v = motion_of(self.diagram, part.motion)[1] if part.motion else _NO_VELOCITY
+                v = motion_of(self.diagram, part.motion)[1] if part.motion else NO_VELOCITY
                 known = self.diagram.is_position(part.input)
                 source = self.diagram.position(part.input) if known else signal(part.input)
                 others = tuple(map(signal, part.others))
-                equation = _place_controller(part, source, v, v, others=others, late=self.late)
+                equation = place_controller(part, source, v, v, others=others, late=self.late)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates
@@ -192,7 +207,7 @@ class _Builder:
                 unknown.append(signal(part.output))
         return rows, unknown
 
-    def _linked(self, part: Linked) -> list[sp.Expr]:
+    def _link_bodies(self, part: Linked) -> list[sp.Expr]:
         forces = part.body.forces(
             [motion_of(self.diagram, m) for m in part.motions],
             lambda name: parameter_symbol(part.name, name),
@@ -200,25 +215,10 @@ class _Builder:
         pairs = zip(part.forces, forces, strict=True)
         return [signal(s) - part.sign * force for s, force in pairs]
 
-    def _needed(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
+    def _balance_body(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
         """inertia a + force + friction - acting: the force that the body needs from others."""
         assert isinstance(part.body, Body)
-        if parted := [e.name for e in part.body.effects if e.role == "structure"]:
-            raise ModelError(
-                f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form: what holds "
-                "the body would have to be wired to its tip (transmission_compliance has one)"
-            )
-        if unknown := [e.name for e in part.body.effects if e.channels()]:
-            raise ModelError(
-                f"{self.diagram.name}: {part.name}: {unknown[0]} has no simulated form: its law "
-                "uses a channel of a record"
-            )
-        outside = SIGNALS["interaction_force"]
-        if unknown := [e.name for e in part.body.effects if _uses(e, outside)]:
-            raise ModelError(
-                f"{self.diagram.name}: {part.name}: {unknown[0]} has no simulated form: its law "
-                "uses now.interaction_force, a channel of a record; a diagram has none"
-            )
+        refuse_unsimulated(part, self.diagram.name)
         equation = part.body.equation()
         position, speed, change = motion_of(self.diagram, part.motion)
         names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}
@@ -244,108 +244,3 @@ class _Builder:
         if equation.friction != 0:
             self.friction[f"{part.name}_friction"] = equation.friction.xreplace(here)
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
-
-    def _computer_rows(
-        self,
-        of: _Reader,
-        rate: _Reader,
-        speed: _Reader,
-        late: LateSignals,
-        period: sp.Expr = sp.S.Zero,
-    ) -> tuple[tuple[list[sp.Expr], _Changes, _Changes, set[sp.Symbol]], list[str]]:
-        rows: list[sp.Expr] = []
-        rates: _Changes = {}
-        steps: _Changes = {}
-        before: set[sp.Symbol] = set()
-        names: list[str] = []
-        for part in self.diagram.parts:
-            if isinstance(part, Control):
-                if part.analog:
-                    continue
-                travel = known = _NO_VELOCITY
-                if part.motion:
-                    moved = self.diagram.position(part.motion)
-                    readings = {x: of(x.name) for x in moved.free_symbols}
-                    travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
-                others = tuple(map(of, part.others))
-                equation = _place_controller(
-                    part, of(part.input), travel, known, period, others=others, late=late
-                )
-                rows.append(signal(part.output) - equation.output)
-                rates |= equation.rates
-                steps |= equation.steps
-                before |= equation.before
-            elif isinstance(part, Junction | Kinematics) and part.output in self.digital:
-                rows.append(signal(part.output) - sum_inputs(part, of))
-            else:
-                continue
-            names += part.outputs
-        return (rows, rates, steps, before), names
-
-    def _computer(self) -> ComputerEquations:
-        sensors = sensor_signals(self.diagram)
-
-        def of(name: str) -> sp.Symbol:
-            return reading_symbol(name) if name in sensors else signal(name)
-
-        late: LateSignals = {}
-        listed, names = self._computer_rows(of, travel_rate, estimate, late, PERIOD)
-        rows, rates, steps, before = listed
-        solved, _ = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
-        return ComputerEquations(
-            {x: r.xreplace(solved) for x, r in rates.items()},
-            {x: r.xreplace(solved) for x, r in steps.items()},
-            frozenset(before),
-            {s.name: e for s, e in solved.items()},
-            {s: (e.xreplace(solved), d) for s, (e, d) in late.items()},
-        )
-
-
-def _uses(effect: Effect, signal: sp.Symbol) -> bool:
-    """Whether a law of the effect uses this signal of its body."""
-    return any(law.has(signal) for law in (effect.expression(), *effect.rates().values()))
-
-
-def _check_inputs(diagram: Diagram, motions: list[str]) -> None:
-    for part in diagram.controls:
-        stages = part.controller.stages[:1] if isinstance(part.controller, Controller) else ()
-        if part.input in motions and any(g.law.takes == "force" for g in stages):
-            raise ModelError(
-                f"{diagram.name}: {part.name}: {stages[0].law.name} takes a force, found the "
-                f'motion "{part.input}": wire its input to the force that is commanded'
-            )
-
-
-def _place_controller(
-    part: Control,
-    input: sp.Expr,
-    rate: sp.Expr,
-    speed: sp.Expr,
-    period: sp.Expr = sp.S.Zero,
-    *,
-    others: tuple[sp.Expr, ...],
-    late: LateSignals,
-) -> ControllerEquation:
-    """The equation of a controller on signals; what it delays is put into `late`."""
-    assert isinstance(part.controller, Controller)
-    signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
-    signals["period"] = period
-    made = part.controller.equation(part.name, signals, others=others, code=True)
-
-    equation = without_delays(made, part.name, late)
-    kept = [*equation.rates.values(), *equation.steps.values(), *(e for e, _ in late.values())]
-    if any(e.has(_NO_VELOCITY) for e in (equation.output, *kept)):
-        raise without_motion(part.name)
-    return equation
-
-
-def sum_inputs(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
-    """Output of a junction or kinematics;  of: signal -> symbol that stands for it."""
-    if isinstance(part, Kinematics):
-        return _read(part.expression, of)
-    return sp.Add(*(_read(weight, of) * of(s) for s, weight in part.terms.items()))
-
-
-def _read(weight: Weight, of: _Reader) -> sp.Expr:
-    expression = sp.sympify(weight, strict=True)
-    return expression.xreplace({x: of(x.name) for x in expression.free_symbols})

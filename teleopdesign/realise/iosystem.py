@@ -20,12 +20,13 @@ from ..arguments import check_types
 from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
 from ..errors import ModelError
-from ._codegen import needed_steps
-from .equations import Equations, equations, sum_inputs
+from ._law_source import needed_steps
+from .equations import Equations, build_equations
 from .private_names import PrivateNames, private_names
 from .sampled_iosystem import sampled_iosystem
 from .signal_symbols import TIME, motion_of, signal, velocity
 from .simulated import prepare_for_simulation
+from .wired_parts import sum_inputs
 
 if TYPE_CHECKING:
     import control
@@ -131,7 +132,7 @@ def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Int
     import control
 
     diagram = names.diagram
-    parts = equations(_replace_code_by_wires(diagram), prescribed=prescribed)
+    parts = build_equations(_replace_code_by_wires(diagram), prescribed=prescribed)
     if parts.late:
         raise ModelError(
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"

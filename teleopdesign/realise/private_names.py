@@ -27,7 +27,7 @@ from ..diagrams import (
     Moving,
     position_symbol,
 )
-from ..diagrams.parts import Weight
+from ..diagrams.junctions import Weight
 from ..errors import ModelError
 
 #: beginning of every private name; ends with "_", so that no such name begins another one
@@ -58,16 +58,17 @@ class PrivateNames:
             public = self.public_name(name)
             if public in owners:
                 two = sorted(
-                    (owners[public], self._said(name)), key=lambda text: text != "the signal"
+                    (owners[public], self._describe_signal(name)),
+                    key=lambda text: text != "the signal",
                 )
                 raise ModelError(
                     f'{self.public[_TITLE]}: "{public}" is the name of {" and of ".join(two)}: '
                     "call the signal otherwise"
                 )
-            owners[public] = self._said(name)
+            owners[public] = self._describe_signal(name)
         return tuple(map(self.public_name, names))
 
-    def _said(self, name: str) -> str:
+    def _describe_signal(self, name: str) -> str:
         begin = _BEGIN.match(name)
         if begin is None or begin[0] == name:
             return "the signal"

@@ -15,10 +15,11 @@ from ..blocks import Body, MatrixImpedance
 from ..controllers import ControlLaw, Controller
 from ..diagrams import Attached, Control, Diagram, Kinematics, Moving
 from ..effects import Effect
-from ._codegen import Generator, Layout
+from ._codegen import Generator
 from ._loop import module_source
 from .compiled import compiled_module
-from .equations import Equations, equations
+from .equations import Equations, build_equations
+from .layout import Layout
 from .private_names import PrivateNames, private_names
 
 
@@ -85,7 +86,7 @@ def _program(
     key = (_structure(names.diagram), motions, sampled, observer, jit)
     if key not in _programs:
         with names.in_errors():
-            private = equations(names.diagram, prescribed=motions, sampled=sampled)
+            private = build_equations(names.diagram, prescribed=motions, sampled=sampled)
         generator = Generator(private, observer=observer)
         laws = generator.source()
         calls = generator.calls()

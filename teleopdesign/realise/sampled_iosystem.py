@@ -133,7 +133,7 @@ class _Sample:
             self.inner[values] = self._first_inner(values)
         inner = self.inner[values]
         while True:
-            answer, worst = self._advanced(t, x, inputs, values, inner)
+            answer, worst = self._advance(t, x, inputs, values, inner)
             if not np.isfinite(answer.after).all():
                 raise GrowsWithoutBound(f"to_iosystem: the state is no finite number at {t:g} s")
             if worst <= RELOAD:
@@ -154,7 +154,7 @@ class _Sample:
         if inner > _MOST_DIVIDED * self.least:
             raise long_step_error(self.dt / self.least, self.dt / inner, "is far too long")
 
-    def _advanced(
+    def _advance(
         self,
         t: float,
         x: np.ndarray,
@@ -188,7 +188,7 @@ class _Sample:
             for j in range(inner):
                 at["step"](j == 0, t + j * h, h, analog, analog, analog, memory, 0)
         worst = memory[at["WORST"] : at["WORST"] + len(layout.exponential)].max(initial=0.0)
-        after = np.concatenate([memory[self.rows], self._kept(past)])
+        after = np.concatenate([memory[self.rows], self._order_ring(past)])
         return _Answer(signals, after), float(worst)
 
     def _ring(self, kept: np.ndarray) -> np.ndarray:
@@ -199,7 +199,7 @@ class _Sample:
             past[-age % self.slots] = kept[(age - 1) * many : age * many]
         return past.reshape(-1)
 
-    def _kept(self, past: np.ndarray) -> np.ndarray:
+    def _order_ring(self, past: np.ndarray) -> np.ndarray:
         """The samples of the ring by their age at the next sample, from 1 on."""
         ring = past.reshape(self.slots, len(self.late))
         return np.concatenate([ring[-age % self.slots] for age in range(self.slots - 1)])

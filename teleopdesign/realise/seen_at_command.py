@@ -95,7 +95,7 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
     stages = stages_along(body, motion, known)
     known = known.with_signals({_ACTING: known.constant(model.acting.value)})
     ways = [_net(body, motion, known, _ACTING)]
-    ways += [_way_of_stage(stage, motion, known) for stage in reversed(stages)]
+    ways += [_trace_stage(stage, motion, known) for stage in reversed(stages)]
     for way in ways:
         residual, blind = _undo_way(residual, blind, way, motion)
     passed = motion.interaction
@@ -143,7 +143,7 @@ def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
         return np.asarray(np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,)))
 
 
-def _way(
+def _trace_influence(
     effect: Effect,
     law: sp.Expr,
     signal: sp.Symbol,
@@ -186,10 +186,12 @@ def _solve_systems(matrices: Array | NDArray[np.complex128], right: Array) -> An
         return np.full(right.shape, np.nan)
 
 
-def _way_of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
+def _trace_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
     at_stage = replace(along, signals=stage.signals)
     delays, parts = stage.delays, stage.parts
-    return _way(stage.effect, stage.law, _COMMAND, at_stage, motion, delays=delays, parts=parts)
+    return _trace_influence(
+        stage.effect, stage.law, _COMMAND, at_stage, motion, delays=delays, parts=parts
+    )
 
 
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
@@ -198,7 +200,7 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     for effect in _effects_that_take(body, signal):
         if effect.states and effect.is_absent(along.values):
             continue
-        way = _way(effect, effect.expression(), signal, along, motion)
+        way = _trace_influence(effect, effect.expression(), signal, along, motion)
         gain, over = gain - way.gain, over - way.dynamics
     if body.level().has(signal):
         level, with_speeds = level_along(body, along)

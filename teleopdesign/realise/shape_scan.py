@@ -55,6 +55,8 @@ def _shape_module(
     law, used = effect.expression(), _signals_of_shape(effect)
     by = slopes_by(effect, "level")
     arguments = [*(names[s] for s in effect.symbols().values()), *(f"{n}_" for n in used)]
+    # the states move by the readings' travel, the force follows the smoothed velocity: so no travel
+    # of a bristle is lost. 1e-12: a rate may divide by the level, which is far above or absent
     return f"""{HEAD}
 
 @jitted
@@ -102,7 +104,7 @@ def _shape_source(effect: Effect) -> str:
             *slope_lines("a", a, by, names),
             *slope_lines("b", b, by, names),
             "e, p1, p2, p3 = phi(a * h)",
-            "s1 = p1 - p2",
+            "s1 = p1 - p2",  # d phi_1/dz
             "before = z",
             "z = before * e + b * h * p1",
             f"{STATE} = z",
@@ -126,6 +128,7 @@ def _stop_lines(count: int) -> list[str]:
             f"stop_{i} = max(s{i}, 0.0)",
             f"z_{i} += h * r{i}",
             f"held_{i} = abs(z_{i}) > stop_{i}",
+            # an element that slides stays at its stop: its force no longer grows with travel
             f"z_{i} = copysign(stop_{i}, z_{i}) if held_{i} else z_{i}",
         ]
     return lines

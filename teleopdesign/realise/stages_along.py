@@ -108,17 +108,17 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     whole, part = divmod(max(tau, 0.0) / step, 1.0)
     late, later = int(whole), int(whole) + 1
     shifted = filter_traced(
-        lambda y: (1 - part) * _later(y, late) + part * _later(y, later), signal
+        lambda y: (1 - part) * _delay_samples(y, late) + part * _delay_samples(y, later), signal
     )
     tangent = shifted.tangent.copy()
-    slope = (_later(signal.value, later) - _later(signal.value, late)) / step
+    slope = (_delay_samples(signal.value, later) - _delay_samples(signal.value, late)) / step
     for i, column in enumerate(along.columns):
         if isinstance(column, sp.Symbol) and delay.has(column):
             tangent[i] += slope * float(sp.diff(delay, column).subs(along.values))
     return replace(shifted, tangent=tangent)
 
 
-def _later(y: Array, steps: int) -> Array:
+def _delay_samples(y: Array, steps: int) -> Array:
     """Signals (..., n) so many steps later: before they begin they are what they begin with."""
     held = min(steps, y.shape[-1])
     shifted = np.empty_like(y)

@@ -49,9 +49,9 @@ class Traced:
         return Traced(self.value + other.value, tangent)
 
     def __sub__(self, other: Traced) -> Traced:
-        return self.less([other])
+        return self.subtract([other])
 
-    def less(self, others: Sequence[Traced]) -> Traced:
+    def subtract(self, others: Sequence[Traced]) -> Traced:
         """The signal without others; of their tangents only rows that may not be zero are read."""
         value = self.value
         for other in others:

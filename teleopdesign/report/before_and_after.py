@@ -38,7 +38,7 @@ class BodySamples:
     measured: Array
     residual: tuple[Array, ...]
 
-    def only(self, rungs: list[int]) -> BodySamples:
+    def select_rungs(self, rungs: list[int]) -> BodySamples:
         """The same samples on these rungs."""
         return replace(self, residual=tuple(self.residual[i] for i in rungs))
 

@@ -33,7 +33,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_findings_at_bound(diagnosis),
         *_clock(diagnosis),
         *_open_parameters(diagnosis),
-        *_together(diagnosis.after),
+        *_find_correlated(diagnosis.after),
         *_open_candidates(diagnosis),
         *_excluded_effects(diagnosis),
         *_findings_on_exclusions(diagnosis),
@@ -145,7 +145,9 @@ def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
             best, error = with_error(value.value, value.stderr)
             why = f"{best} ± {error} {unit_text(model.unit(name))}: it may be zero."
         else:
-            why = "its effect on the force cannot be told from that of the other parameters."
+            why = (
+                "its effect on the force cannot be distinguished from that of the other parameters."
+            )
         findings.append(
             Finding(
                 topic="a parameter left open",
@@ -157,7 +159,7 @@ def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
     return findings
 
 
-def _together(fit: Fit) -> list[Finding]:
+def _find_correlated(fit: Fit) -> list[Finding]:
     """Pairs of parameters whose estimates are so correlated that only a combination is known."""
     size = np.linalg.norm(fit.jacobian, axis=0)
     moving = [i for i in range(len(fit.free)) if size[i] > 0]

@@ -83,7 +83,7 @@ def body_views(diagnosis: Diagnosis, names: tuple[str, ...]) -> tuple[BodyView, 
         rungs = _list_changed_rungs(rows.residual)
         errors = [diagnosis.rungs[i].fit.check_error for i in rungs]
         steps = [(names[i], error) for i, error in zip(rungs, errors, strict=True)]
-        views.append(_view(body, diagnosis, steps, rows.only(rungs)))
+        views.append(_view(body, diagnosis, steps, rows.select_rungs(rungs)))
     return tuple(views)
 
 

@@ -133,7 +133,8 @@ def verdict(diagnosis: Diagnosis) -> str:
             if less
             else ""
         )
-        return f"Your model lacks {join_names(named)}. With {_it(added)}, {fell}.{others} {rest}"
+        pronoun = "it" if len(added) == 1 else "them"
+        return f"Your model lacks {join_names(named)}. With {pronoun}, {fell}.{others} {rest}"
     if not added:
         return (
             f"Undecided: something is missing, but no effect that was tried explains it. The force "
@@ -152,7 +153,3 @@ def verdict(diagnosis: Diagnosis) -> str:
     return (
         f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"
     )
-
-
-def _it(added: list[str]) -> str:
-    return "it" if len(added) == 1 else "them"

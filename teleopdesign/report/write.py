@@ -109,7 +109,7 @@ def figures_of(page: Page) -> Figures:
         over_velocity=tuple(
             graph_figure(
                 v.over_velocity,
-                _alt(v.body, "mean residual over velocity"),
+                _describe_figure(v.body, "mean residual over velocity"),
                 width=WIDE,
             )
             for v in page.views
@@ -117,7 +117,7 @@ def figures_of(page: Page) -> Figures:
         excerpts=tuple(
             graph_figure(
                 v.excerpt,
-                _alt(v.body, "measured and modelled force"),
+                _describe_figure(v.body, "measured and modelled force"),
                 width=WIDE,
             )
             for v in page.views
@@ -131,7 +131,7 @@ def figures_of(page: Page) -> Figures:
     )
 
 
-def _alt(body: str, what: str) -> str:
+def _describe_figure(body: str, what: str) -> str:
     return f"{body}: {what}, before and after."
 
 

@@ -75,7 +75,7 @@ class CaseResults:
             numbers = self.numbers.setdefault(name, np.full(len(self.open), np.nan))
             numbers[cases] = outcome.reduced[done, j]
 
-    def labelled(
+    def label(
         self,
         diagram: Diagram,
         columns: Mapping[str, np.ndarray],

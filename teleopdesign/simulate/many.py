@@ -71,7 +71,7 @@ def simulate_many(
     result.open_rows(samples_of(duration, period), period, study.keep)
     result.refuse(list_refusals(diagram, columns))
     study.run_all(result)
-    return result.labelled(diagram, columns, study.wanted_of(result.numbers), duration)
+    return result.label(diagram, columns, study.reductions_of(result.numbers), duration)
 
 
 class _Mistake(ModelError):
@@ -90,16 +90,16 @@ class _Study:
     reduce: dict[str, tuple[Any, str]] | None
     after: float
 
-    def wanted(self, columns: Sequence[str]) -> dict[str, tuple[Any, str]]:
+    def choose_reductions(self, columns: Sequence[str]) -> dict[str, tuple[Any, str]]:
         """The reductions, with the default in place."""
         if self.reduce is None:
             return {} if self.keep else {f"{name}_rms": (name, "rms") for name in columns}
         return self.reduce
 
-    def wanted_of(self, numbers: Iterable[str]) -> dict[str, tuple[Any, str]]:
+    def reductions_of(self, numbers: Iterable[str]) -> dict[str, tuple[Any, str]]:
         """The reductions; by default those that there are numbers of."""
         if self.reduce is not None or self.keep:
-            return self.wanted(())
+            return self.choose_reductions(())
         return {name: (name.removesuffix("_rms"), "rms") for name in numbers}
 
     def run_all(self, result: CaseResults) -> None:
@@ -242,7 +242,7 @@ class _Study:
 
         kept = {name: column(name, "keep") for name in self.keep}
         reductions: dict[str, Reduction] = {}
-        for name, what in self.wanted(names).items():
+        for name, what in self.choose_reductions(names).items():
             signal, kind = _reduction(name, what)
             if (
                 name in self.keep

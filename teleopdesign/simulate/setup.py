@@ -260,7 +260,7 @@ class Setup:
                 f"{8e-9 * numbers:.2g} GB: use a longer step, a shorter time or more give"
             )
 
-    def checked(
+    def run_resolved(
         self, *, long_step: Literal["refine", "refuse"], every_step: bool = False
     ) -> tuple[np.ndarray, Timing]:
         """Run with a step that resolves oscillations and bristles, or refuse a longer one."""

@@ -136,7 +136,7 @@ def simulate(
         give=give,
         jit=jit,
     )
-    rows, timing = setup.checked(long_step=long_step, every_step=every_step)
+    rows, timing = setup.run_resolved(long_step=long_step, every_step=every_step)
     result = _label_rows(setup, rows, timing, every_step)
     if estimate_error:
         columns = setup.program.layout.columns

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from ..diagrams import Attached, Control, Diagram, Linked, Moving
-from ..diagrams.parts import Weight
+from ..diagrams.junctions import Weight
 from ..diagrams.units import first_axis
 from ..quantity import unit_of
 

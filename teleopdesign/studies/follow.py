@@ -115,7 +115,7 @@ class _Search:
     target: Target
     weights: np.ndarray
 
-    def simulated(self, shares: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    def simulate(self, shares: np.ndarray) -> tuple[np.ndarray, list[str]]:
         """Signals (points, signals, n) at the measured times, and why a point has none."""
         points = values_at(self.box, np.atleast_2d(shares))
         time, rows, reasons = simulated_signals(
@@ -131,7 +131,7 @@ class _Search:
 
     def residual(self, shares: np.ndarray) -> np.ndarray:
         """(m,); NaN where there is no simulation: the search then takes a shorter step."""
-        signals, _ = self.simulated(shares)
+        signals, _ = self.simulate(shares)
         return self.flat(signals[0] - self.target.values)
 
     def slopes(self, shares: np.ndarray) -> SignalSlopes:
@@ -165,7 +165,7 @@ def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed
     search = _Search(case, box, target, 1 / _noise(target, target.size))
     first = shares_of(box, start_values(case, box))
     points = np.vstack([first, unit_box(box.names).inside(starts, seed)])
-    signals, reasons = search.simulated(points)
+    signals, reasons = search.simulate(points)
     squares = np.sum(search.flat(signals - target.values) ** 2, axis=-1)
     order = [int(k) for k in np.argsort(squares) if np.isfinite(squares[k])]
     if not order:
@@ -174,7 +174,7 @@ def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed
     _, best = min(ends, key=lambda end: end[0])
     agreeing = sum(bool(np.abs(x - best).max() < _SAME) for _, x in ends)
     if len(target.names) > 1 and len(target.noise) < len(target.names):
-        left = rms_of(search.simulated(best)[0][0] - target.values)
+        left = rms_of(search.simulate(best)[0][0] - target.values)
         left = np.maximum(left, _EXACTLY * target.size)
         search = replace(search, weights=1 / _noise(target, left))
         _, best = search.minimise(best)

@@ -15,7 +15,7 @@ hand = { measure = "peak", signal = "R_M" }
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -27,26 +27,11 @@ from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..measurement.toml_table import Table, describe_toml_value, read_toml
 from ..simulate import Sampling, sine
+from .axes_from_toml import read_axes, read_whole
 from .chosen_measures import Measure, measure
 from .diagnosed import diagnose_recording
 from .measures import MEASURES
-from .samples import (
-    Samples,
-    latin_hypercube,
-    random_samples,
-    sensitivity_samples,
-    sobol,
-)
 
-#: most values of one axis
-_MOST_VALUES = 1_000_000
-_METHODS: Mapping[str, Callable[..., Samples]] = {
-    "latin_hypercube": latin_hypercube,
-    "sobol": sobol,
-    "random": random_samples,
-    "sensitivity": sensitivity_samples,
-}
-_SCALES = ("linear", "log")
 _NUMBERS = ("step", "give")
 
 
@@ -75,14 +60,16 @@ def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
     head = root.table("study")
     head.allow(("model", "experiments", "seed"))
     try:
-        arguments = _model(head, path.parent, effects)
-        arguments["axes"] = [*arguments.pop("axes", []), *_axes(root)]
-        arguments["measures"] = _measures(root.table("measures")) or arguments.get("measures", {})
-        arguments |= _simulation(root.table("simulation"))
+        arguments = _read_model(head, path.parent, effects)
+        arguments["axes"] = [*arguments.pop("axes", []), *read_axes(root)]
+        arguments["measures"] = _read_measures(root.table("measures")) or arguments.get(
+            "measures", {}
+        )
+        arguments |= _read_simulation(root.table("simulation"))
     except ModelError as error:
         raise ExperimentError(f"{path.name}: {error}") from error
     if "seed" in head.content:
-        arguments["seed"] = _read_whole(head, "seed")
+        arguments["seed"] = read_whole(head, "seed")
     if not arguments["measures"]:
         raise ExperimentError(
             f"{path.name}: measures: found none, expected one of {', '.join(MEASURES)}"
@@ -90,13 +77,13 @@ def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
     return arguments
 
 
-def _model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str, Any]:
+def _read_model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str, Any]:
     if ("model" in head.content) == ("experiments" in head.content):
         raise ExperimentError(
             f"{head.where()}: expected model (a diagram) or experiments (folders), one of them"
         )
     if "model" in head.content:
-        return {"model": _diagram(head, folder, effects)}
+        return {"model": _read_diagram(head, folder, effects)}
     content = head.content["experiments"]
     if not isinstance(content, list) or not all(isinstance(g, str) for g in content):
         raise ExperimentError(
@@ -104,11 +91,11 @@ def _model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str
             "expected a list of folders, "
             'such as ["rod", "runs/*"]'
         )
-    folders = _folders(content, folder, head.where("experiments"))
+    folders = _list_folders(content, folder, head.where("experiments"))
     return {"model": diagnose_recording, "axes": [{"experiment": folders}], "measures": ["verdict"]}
 
 
-def _folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
+def _list_folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
     """Folders of experiments, patterns with * resolved."""
     folders: list[str] = []
     for text in patterns:
@@ -120,7 +107,7 @@ def _folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
     return list(dict.fromkeys(folders))
 
 
-def _diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagram:
+def _read_diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagram:
     from ..diagrams import SHIPPED, load_shipped
 
     name = head.text("model")
@@ -134,82 +121,7 @@ def _diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagra
     return read_diagram(folder / name, effects=effects)
 
 
-def _axes(root: Table) -> list[Any]:
-    table = root.table("axes")
-    parts: list[Any] = []
-    if table.content:
-        parts.append({name: _axis(table, name) for name in table.content})
-    if "samples" in root.content:
-        parts.append(_samples(root.table("samples")))
-    return parts
-
-
-def _axis(table: Table, name: str) -> Any:
-    """A list, one value, or { from, to, points, scale }."""
-    content = table.content[name]
-    if isinstance(content, dict):
-        grid = table.table(name)
-        grid.allow(("from", "to", "points", "scale"))
-        low, high, count = grid.number("from"), grid.number("to"), _read_whole(grid, "points")
-        if not 1 < count <= _MOST_VALUES or low == high:
-            raise ExperimentError(
-                f"{grid.where()}: found {count} points from {low:g} to {high:g}, expected at least "
-                "2 between two numbers"
-            )
-        if _scale(grid) == "log":
-            if min(low, high) <= 0:
-                raise ExperimentError(f"{grid.where()}: a log scale needs from and to above 0")
-            return np.geomspace(low, high, count)
-        return np.linspace(low, high, count)
-    if isinstance(content, list):
-        if not content or not (
-            all(map(_is_number, content)) or all(isinstance(x, str) for x in content)
-        ):
-            raise ExperimentError(
-                f"{table.where(name)}: found {describe_toml_value(content)}, "
-                "expected numbers or texts, at least one"
-            )
-        return content if isinstance(content[0], str) else [float(x) for x in content]
-    return content if isinstance(content, str) else table.number(name)
-
-
-def _samples(table: Table) -> Samples:
-    table.allow(("method", "points", "seed", "ranges"))
-    method = table.text("method")
-    if method not in _METHODS:
-        raise ExperimentError(
-            f"{table.where('method')}: found {quote(method)}, expected {', '.join(_METHODS)}"
-            f"{did_you_mean(method, _METHODS)}"
-        )
-    ranges = table.table("ranges")
-    if not ranges.content:
-        raise ExperimentError(f"{table.where('ranges')}: found none, expected at least one")
-    seed = _read_whole(table, "seed") if "seed" in table.content else 0
-    extents = {name: _range(ranges.table(name)) for name in ranges.content}
-    return _METHODS[method](extents, _read_whole(table, "points"), seed=seed)
-
-
-def _range(table: Table) -> Any:
-    """{ from, to }, { from, to, scale = "log" }, { from, to, step } or a normal distribution."""
-    from scipy.stats import loguniform, norm
-
-    if "mean" in table.content:
-        table.allow(("mean", "standard_deviation"))
-        return norm(table.number("mean"), table.number("standard_deviation", above=0.0))
-    table.allow(("from", "to", "scale", "step"))
-    low, high = table.number("from"), table.number("to")
-    if low >= high:
-        raise ExperimentError(f"{table.where()}: found {low:g} to {high:g}, expected from < to")
-    if "step" in table.content:
-        return low, high, table.number("step", above=0.0)
-    if _scale(table) == "log":
-        if low <= 0:
-            raise ExperimentError(f"{table.where()}: a log scale needs from and to above 0")
-        return loguniform(low, high)
-    return low, high
-
-
-def _simulation(table: Table) -> dict[str, Any]:
+def _read_simulation(table: Table) -> dict[str, Any]:
     table.allow(("duration", "inputs", "motion", "initial", "computer", "every_step", *_NUMBERS))
     arguments: dict[str, Any] = {
         n: table.number(n, above=0.0) for n in _NUMBERS if n in table.content
@@ -220,14 +132,16 @@ def _simulation(table: Table) -> dict[str, Any]:
     initial = table.table("initial")
     arguments["initial"] = {name: initial.number(name) for name in initial.content}
     inputs, motions = table.table("inputs"), table.table("motion")
-    arguments["inputs"] = {name: _input(inputs, name) for name in inputs.content}
-    arguments["motion"] = {name: sine(**_sine(motions.table(name))) for name in motions.content}
+    arguments["inputs"] = {name: _read_input(inputs, name) for name in inputs.content}
+    arguments["motion"] = {
+        name: sine(**_read_sine(motions.table(name))) for name in motions.content
+    }
     if "computer" in table.content:
-        arguments["computer"] = _computer(table)
+        arguments["computer"] = _read_computer(table)
     return arguments
 
 
-def _computer(table: Table) -> Any:
+def _read_computer(table: Table) -> Any:
     content = table.content["computer"]
     if isinstance(content, str):
         if content != "continuous":
@@ -244,28 +158,28 @@ def _computer(table: Table) -> Any:
         if name == "velocity":
             values[name] = computer.text(name)
         elif name == "observer_order":
-            values[name] = _read_whole(computer, name)
+            values[name] = read_whole(computer, name)
         else:
             values[name] = computer.number(name)
     return Sampling(**values)
 
 
-def _input(table: Table, name: str) -> Any:
+def _read_input(table: Table, name: str) -> Any:
     if not isinstance(table.content[name], dict):
         return table.number(name)
     entry = table.table(name)
     offset = entry.number("offset") if "offset" in entry.content else 0.0
-    return SineInput(**_sine(entry, "offset"), offset=offset)
+    return SineInput(**_read_sine(entry, "offset"), offset=offset)
 
 
-def _sine(table: Table, *more: str) -> dict[str, float]:
+def _read_sine(table: Table, *more: str) -> dict[str, float]:
     table.allow(("amplitude", "frequency", "phase", *more))
     phase = table.number("phase") if "phase" in table.content else 0.0
     frequency = table.number("frequency", above=0.0)
     return {"amplitude": table.number("amplitude"), "frequency": frequency, "phase": phase}
 
 
-def _measures(table: Table) -> dict[str, Measure]:
+def _read_measures(table: Table) -> dict[str, Measure]:
     """Name -> measure; its name is that of a measure, or its table says which."""
     measures: dict[str, Measure] = {}
     for name in table.content:
@@ -283,7 +197,7 @@ def _measures(table: Table) -> dict[str, Measure]:
             if isinstance(default, float | int):
                 options[option] = entry.number(option)
                 if isinstance(default, int):
-                    options[option] = _read_whole(entry, option)
+                    options[option] = read_whole(entry, option)
             elif isinstance(default, str):
                 options[option] = entry.text(option)
             elif not isinstance(content, str | int | float | list) or isinstance(content, bool):
@@ -296,24 +210,3 @@ def _measures(table: Table) -> dict[str, Measure]:
         except ModelError as error:
             raise ExperimentError(f"{entry.where()}: {error}") from error
     return measures
-
-
-def _scale(table: Table) -> str:
-    scale = table.text("scale", default="linear")
-    if scale not in _SCALES:
-        raise ExperimentError(
-            f"{table.where('scale')}: found {quote(scale)}, expected {' or '.join(_SCALES)}"
-            f"{did_you_mean(scale, _SCALES)}"
-        )
-    return scale
-
-
-def _read_whole(table: Table, key: str) -> int:
-    number = table.number(key)
-    if number != int(number) or number < 0:
-        raise ExperimentError(f"{table.where(key)}: found {number:g}, expected a whole number")
-    return int(number)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

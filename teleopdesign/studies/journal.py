@@ -112,11 +112,11 @@ class Journal:
             if outcome.reason:
                 content["reason"] = outcome.reason
             else:
-                content |= {"form": self._known(outcome.form), "values": outcome.values}
+                content |= {"form": self._name_form(outcome.form), "values": outcome.values}
             self._write(content)
         self.outcomes.keep(outcome)
 
-    def _known(self, form: tuple[Any, ...]) -> str:
+    def _name_form(self, form: tuple[Any, ...]) -> str:
         """Name of a form, which is written before its first use."""
         name = f"{zlib.crc32(json.dumps(form).encode()):08x}"
         if name not in self._forms:
@@ -139,7 +139,7 @@ class Journal:
 
     def forget_failures(self) -> None:
         """Take failed points as not done: they may be computed again."""
-        for point in self.outcomes.failed():
+        for point in self.outcomes.failed_points():
             self.outcomes.drop(point)
 
     def close(self) -> None:

@@ -52,7 +52,10 @@ class TuningLimit(ByValue):
         return {**CLAIMS, **LOOP_MARGINS}.get(self.name, "")
 
     def excess(self, value: float) -> float:
-        """How far a value is within the bound; < 0: beyond it."""
+        """How far a value is within the bound, in the unit of both; < 0: beyond it.
+
+        -inf where the value is NaN: what could not be computed keeps no limit.
+        """
         excess = self.bound - value if self.from_above else value - self.bound
         return float(excess) if not np.isnan(excess) else -np.inf
 
@@ -123,7 +126,7 @@ def margin_function(
     whole = diagram if limited.name == "stable" else without_holding(diagram)
     kept = tuple(n for n in box.names if n in whole.values)
     if not nonlinear_parts(drop_absent_effects(whole)):
-        within = box.only(kept)
+        within = box.select(kept)
         middle = whole.with_values(within.named(within.centre))
         family = family_of(middle, within)
         if family is not None and (family.is_rational or limited.name != "stable"):

@@ -145,7 +145,7 @@ def _amounts_of_claim(claim: Any, name: str) -> dict[str, Amount]:
     margin, unit = getattr(verdict, "margin", float("nan")), getattr(verdict, "unit", "")
     holds = float("nan") if claim.holds is None else float(claim.holds)
     return {
-        f"{name}_status": Amount(claim.status, text="how the claim is settled"),
+        f"{name}_status": Amount(claim.status, text="verdict of the claim"),
         f"{name}_holds": Amount(holds, text="1: it holds, 0: it does not, NaN: unknown"),
         f"{name}_margin": Amount(float(margin), unit, "how far the claim is from failing"),
     }

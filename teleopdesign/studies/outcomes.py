@@ -67,7 +67,7 @@ class Outcomes(Mapping[int, PointOutcome]):
             self._places[index] = _NOWHERE
         self._apart.pop(index, None)
 
-    def failed(self) -> list[int]:
+    def failed_points(self) -> list[int]:
         """Points that have a reason."""
         return [index for index, outcome in self._apart.items() if outcome.reason]
 

@@ -76,7 +76,7 @@ class Problem:
         new = [k for k in dict.fromkeys(keys) if k not in self.trials]
         excesses = {k: self._claims(k) for k in new}
         able = [k for k in new if all(x >= 0 for x in excesses[k] if not np.isnan(x))]
-        measured = self._measured(able)
+        measured = self._measure(able)
         for k in new:
             amounts = measured.get(k, {})
             objectives = tuple(amounts.get(m.name, np.nan) for m in self.objectives)
@@ -108,11 +108,11 @@ class Problem:
 
     def best(self, key: Callable[[TrialPoint], float] | None = None) -> TrialPoint:
         """Of all that keep the limits the least objective; where none does, the least violation."""
-        if kept := self.kept():
+        if kept := self.points_within_limits():
             return min(kept, key=key or (lambda t: t.objectives[0]))
         return min(self.trials.values(), key=lambda t: t.violation)
 
-    def kept(self) -> list[TrialPoint]:
+    def points_within_limits(self) -> list[TrialPoint]:
         """Points that keep all limits, claims by more than rounding where there are such points."""
         kept = [t for t in self.trials.values() if t.violation == 0]
         least = [
@@ -143,7 +143,7 @@ class Problem:
             excesses.append(excess)
         return tuple(excesses)
 
-    def _measured(
+    def _measure(
         self, keys: Sequence[tuple[float, ...]]
     ) -> dict[tuple[float, ...], dict[str, float]]:
         """Name of a measure -> its number, the worst over the scenarios of a limit on it."""

@@ -255,7 +255,9 @@ class _Pool:
         lost = worker.batch
         if not lost:
             if not worker.done and not self.each:
-                raise ModelError(f"study: a process ended before its first point, {_how(status)}")
+                raise ModelError(
+                    f"study: a process ended before its first point, {_describe_end(status)}"
+                )
             return
         first = lost.popleft()
         self.todo.extendleft(reversed(lost))
@@ -263,7 +265,7 @@ class _Pool:
         if self.deaths[first] < _MOST_DEATHS:
             self.todo.appendleft(first)
         elif len(first) == 1:
-            reason = f"its process ended twice, {_how(status)}"
+            reason = f"its process ended twice, {_describe_end(status)}"
             self._take([PointOutcome(first[0], reason=reason)])
         else:  # its points one by one
             self.todo.extendleft((index,) for index in reversed(first))
@@ -289,5 +291,5 @@ def _close(process: subprocess.Popen[bytes]) -> None:
             continue
 
 
-def _how(status: int) -> str:
+def _describe_end(status: int) -> str:
     return f"by signal {-status}" if status < 0 else f"with status {status}"

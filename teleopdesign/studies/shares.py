@@ -37,7 +37,7 @@ def unit_box(names: tuple[str, ...]) -> ValueBox:
     return ValueBox(names, (0.0,) * len(names), (1.0,) * len(names))
 
 
-def wide(box: ValueBox) -> np.ndarray:
+def is_logarithmic(box: ValueBox) -> np.ndarray:
     """Which parameters are searched in logarithms, (n,)."""
     low, high = np.array(box.low), np.array(box.high)
     return np.asarray((low > 0) & (high > _WIDE * low))
@@ -45,7 +45,7 @@ def wide(box: ValueBox) -> np.ndarray:
 
 def values_at(box: ValueBox, shares: np.ndarray) -> np.ndarray:
     """Values from shares of the intervals, (..., n)."""
-    low, high, logarithmic = np.array(box.low), np.array(box.high), wide(box)
+    low, high, logarithmic = np.array(box.low), np.array(box.high), is_logarithmic(box)
     safe = np.where(logarithmic, low, 1.0)
     ratio = np.where(logarithmic, high / safe, 1.0)
     share = np.clip(shares, 0, 1)
@@ -55,7 +55,7 @@ def values_at(box: ValueBox, shares: np.ndarray) -> np.ndarray:
 
 def shares_of(box: ValueBox, values: np.ndarray) -> np.ndarray:
     """The shares of the intervals that values are, (n,)."""
-    low, high, is_wide = np.array(box.low), np.array(box.high), wide(box)
+    low, high, is_wide = np.array(box.low), np.array(box.high), is_logarithmic(box)
     safe, x = np.where(is_wide, low, 1.0), np.clip(values, low, high)
     logarithmic = np.log(np.where(is_wide, x, 1.0) / safe) / np.log(
         np.where(is_wide, high / safe, 2)
@@ -65,6 +65,6 @@ def shares_of(box: ValueBox, values: np.ndarray) -> np.ndarray:
 
 def units_at(box: ValueBox, values: np.ndarray) -> np.ndarray:
     """How values change with their shares, (n,): the SI value of a whole interval."""
-    low, high, logarithmic = np.array(box.low), np.array(box.high), wide(box)
+    low, high, logarithmic = np.array(box.low), np.array(box.high), is_logarithmic(box)
     ratio = np.where(logarithmic, high / np.where(logarithmic, low, 1.0), 1.0)
     return np.asarray(np.where(logarithmic, values * np.log(ratio), high - low))

@@ -111,7 +111,7 @@ def trade_off(
     before = problem.start()
     for number in (0, 1):
         search(problem, round(_ENDS * evaluations), number=number)
-    kept = problem.kept()
+    kept = problem.points_within_limits()
     if not kept:
         raise ModelError(f"trade_off: none of {len(problem.trials)} points keeps all limits")
     at = np.array([t.objectives for t in kept])
@@ -124,7 +124,7 @@ def trade_off(
 
 
 def _front(problem: Problem, before: TrialPoint, points: int) -> ParetoFront:
-    kept = problem.kept()
+    kept = problem.points_within_limits()
     evaluated = np.array([t.objectives for t in kept])
     best = best_in_both(evaluated)
     chosen = _spread([kept[i] for i in best], points)

@@ -187,7 +187,7 @@ def _rest(part: BodyResidual, where: str) -> list[Finding]:
         said += ", which noise of the sensors would not"
     findings = [Finding("frequency", "note", f"{said}.", numbers, where, part.views["frequency"])]
     if part.at_rest > MOSTLY:
-        said = f"{100 * part.at_rest:.0f} % of what is left is there while no motion can be told."
+        said = f"{100 * part.at_rest:.0f} % of what is left is there while no motion can be seen."
         velocity = part.views["velocity"]
         findings.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
     floors = part.after / part.floor if part.floor else float("inf")

@@ -70,7 +70,7 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
     for _ in range(MOST):
         explained = beside.beside(_columns(rows, dependence.shape, chosen)) if chosen else beside
         search = _Search.beside(rows, explained)
-        ranked = search.ranked(terms, every)
+        ranked = search.rank(terms, every)
         # what has no number to search is simpler
         simple = [t for t in ranked if not t.is_searched]
         for term in dict.fromkeys((*simple[:1], ranked[0])):
@@ -119,7 +119,7 @@ class _Search:
         kept = size > 1e-8 * np.sum(columns**2, axis=0)
         return np.where(kept, (beyond_span.T @ self.left) ** 2 / np.where(kept, size, 1.0), 0.0)
 
-    def ranked(self, terms: list[FormulaTerm], columns: Array) -> list[FormulaTerm]:
+    def rank(self, terms: list[FormulaTerm], columns: Array) -> list[FormulaTerm]:
         """Those first whose columns take most away; a sinusoid's two are nearly orthogonal."""
         gains, at, each = self.gains(columns), 0, []
         for term in terms:

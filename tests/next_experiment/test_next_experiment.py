@@ -271,7 +271,7 @@ def proposed(case, number, folder):
     poor = POOR[case]
     rod, experiment = poor.experiment(folder, number)
     found = diagnosed(experiment, known_of(poor, number))
-    wider = {b: own.widened(poor.wider) for b, own in shown_limits(found.prepared).items()}
+    wider = {b: own.widen(poor.wider) for b, own in shown_limits(found.prepared).items()}
     return poor, rod, experiment, propose(found, limits=wider)
 
 

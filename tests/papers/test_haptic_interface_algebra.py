@@ -88,7 +88,7 @@ def test_the_passive_hand_must_push_against_the_motion():
 
 def test_what_a_hand_feels_in_free_space_is_the_apparent_impedance():
     """At R_D = 0: R_M = -Zhat_M L, and L = (Zhat_M + Z_H)^-1 R_V."""
-    diagram = ALL.opened("K")
+    diagram = ALL.open_at("K")
     assert proved_equal(transfer(diagram, "R_M", ("L",), given="L")["L"], -ZHAT_M)
     assert proved_equal(transfer(diagram, "L", ("R_V",))["R_V"], (ZHAT_M + Z_H) ** -1)
 
@@ -145,7 +145,7 @@ def test_force_feedback_stays_below_one_exactly_where_the_ratio_says():
 
 def test_loops_that_must_stay_stable():
     """Force feedback 1 + H (I + Z_M Z_H^-1)^-1; MBC is positive feedback, 1 - C Z_T^-1."""
-    force = ALL.opened("K")
+    force = ALL.open_at("K")
     assert proved_equal(
         return_difference(force.without("C"), "H"), 1 + H * (1 + Z_M * Z_H**-1) ** -1
     )
@@ -155,7 +155,7 @@ def test_loops_that_must_stay_stable():
 def test_two_masses_and_a_free_rod_give_the_loop_gain_of_the_mass_ratio():
     """Loop gain H m_H/(m + m_H) for two masses, 0 for a free rod."""
     s, m, m_hand = sp.symbols("s m m_H", positive=True)
-    loop = return_difference(ALL.opened("K").without("C"), "H")
+    loop = return_difference(ALL.open_at("K").without("C"), "H")
     scalar = loop.subs({Z_M: m * s**2, Z_H: m_hand * s**2})
     assert sp.simplify(scalar - (1 + H * m_hand / (m + m_hand))) == 0
     assert sp.limit(m_hand / (m + m_hand), m_hand, 0) == 0

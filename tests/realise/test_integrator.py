@@ -11,12 +11,12 @@ from teleopdesign.diagrams import haptic_interface
 from teleopdesign.realise import _free_mass as mass
 from teleopdesign.realise import integrator
 from teleopdesign.realise._codegen import Generator
-from teleopdesign.realise.equations import equations
+from teleopdesign.realise.equations import build_equations
 from teleopdesign.realise.private_names import private_names
 
 
 def test_the_laws_it_is_read_with_are_those_that_are_generated():
-    made = Generator(equations(private_names(haptic_interface(body(2.0))).diagram)).source()
+    made = Generator(build_equations(private_names(haptic_interface(body(2.0))).diagram)).source()
     made = ast.parse(made.replace(" * LANES", ""))
     read = ast.parse(Path(mass.__file__).read_text(encoding="utf-8"))
 

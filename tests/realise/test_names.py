@@ -29,7 +29,7 @@ from teleopdesign.diagrams import (
 from teleopdesign.errors import ModelError
 from teleopdesign.names import check_name
 from teleopdesign.realise._codegen import ANALOG, DIGITAL, Generator
-from teleopdesign.realise.equations import equations
+from teleopdesign.realise.equations import build_equations
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.private_names import private_names
 from teleopdesign.realise.simulated import prepare_for_simulation, realise_in_computer
@@ -257,7 +257,7 @@ def test_generated_source_holds_private_words_alone(name, sampled):
     """No name of an effect, a law or a parameter either: users write those too."""
     inner = prepare_for_simulation(DIAGRAMS[name], 1e-5)
     inner = realise_in_computer(inner, 1e-3) if sampled else inner
-    generator = Generator(equations(private_names(inner).diagram, sampled=sampled))
+    generator = Generator(build_equations(private_names(inner).diagram, sampled=sampled))
     tree = ast.parse(generator.source())
     words = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
     words |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)}

@@ -182,9 +182,9 @@ def test_in_discrete_time_several_signals_step_as_python_control_steps_them(name
 def test_transfer_functions_join_by_the_names_of_signals():
     """A loop closed by control.interconnect is the diagram's own closed transfer function."""
     diagram = one_rod(LEAD)
-    rod, _ = transfer_function(diagram.opened("C"), output="L", input="R_MBC")
+    rod, _ = transfer_function(diagram.open_at("C"), output="L", input="R_MBC")
     law = control.tf(LEAD, inputs=["L"], outputs=["R_MBC"])
-    push_to_rod, _ = transfer_function(diagram.opened("C"), output="L", input="R_V")
+    push_to_rod, _ = transfer_function(diagram.open_at("C"), output="L", input="R_V")
     assert (rod.input_labels, rod.output_labels) == (["R_MBC"], ["L"])
     loop = control.interconnect(
         [control.ss(rod, name="rod"), control.ss(law, name="law")],

@@ -45,7 +45,7 @@ def test_a_signal_times_a_factor_has_tangents_times_that_factor(one):
 @pytest.mark.parametrize("other", [None, (0,), ()])
 def test_sums_and_differences_are_those_of_values_and_tangents(one, other):
     more = signal(other)
-    for made, sign in ((one + more, 1.0), (one - more, -1.0), (one.less([more, more]), -2.0)):
+    for made, sign in ((one + more, 1.0), (one - more, -1.0), (one.subtract([more, more]), -2.0)):
         assert made.value == pytest.approx(one.value + sign * more.value)
         assert made.tangent == pytest.approx(one.tangent + sign * more.tangent)
         assert said_of(made)

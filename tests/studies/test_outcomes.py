@@ -32,7 +32,7 @@ def test_what_is_kept_is_what_a_dictionary_would_hold(listed):
     assert dict(kept) == expected and len(kept) == len(expected)
     for point, outcome in expected.items():
         assert list(map(type, kept[point].values)) == list(map(type, outcome.values))
-    for point in kept.failed():
+    for point in kept.failed_points():
         kept.drop(point)
     assert dict(kept) == {i: o for i, o in expected.items() if not o.reason}
     assert len(kept) == len(dict(kept)) and -1 not in kept and 21 not in kept and "a" not in kept

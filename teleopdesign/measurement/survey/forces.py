@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from typing import Any
 
 from ...errors import ExperimentError
-from ...quantity import is_unit, measures, si_factor, unit_of
-from ..column_names import is_wanted, likeness, unit_in_name
+from ...quantity import is_unit, measures, si_factor
+from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force
-from .acting import current_that_acted, names_current
+from .acting import current_that_acted
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .content import (
     NONE,
@@ -29,13 +27,11 @@ from .content import (
     rises,
     sample_time_of,
 )
+from .force_entry import describe_force, force_to_si
 from .position import unwrap_column, wrap_of
-from .remarks import torque_constant_in
 
 #: part that the motion explains by chance; a column with less needs a force's name or unit
 CHANCE = 0.1
-#: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
-PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
 #: what a column without a telling name may leave of the squares that the motion does not explain,
@@ -70,31 +66,31 @@ def describe_forces(
     }
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     scores = {
-        n: _force_score(c, physics[n])
+        n: _score_force(c, physics[n])
         + BESIDE * stand_together(n, position)
         - ANOTHER_AXIS * of_another_axis(n, position)
         for n, c in free.items()
     }
-    force, measured = _force_that_drives(survey, free, physics, scores, choices, file)
-    survey.channels["actuator_force"] = _force_entry(survey, force, "actuator_force", choices)
+    force, measured = _find_driving_force(survey, free, physics, scores, choices, file)
+    survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     if measured:
         survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
     motion = x * _position_to_si(survey), h
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
-    hand = _hand(same_axis, force, choices)
+    hand = _find_hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
-        hand = _hand_by_motion(survey, same_axis, force, motion)
+        hand = _find_hand_by_motion(survey, same_axis, force, motion)
     if hand is not None:
-        survey.channels["interaction_force"] = _force_entry(
+        survey.channels["interaction_force"] = describe_force(
             survey, hand, "interaction_force", choices
         )
-    _signs(survey, motion, force, hand)
+    _choose_signs(survey, motion, force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
 
-def _force_that_drives(
+def _find_driving_force(
     survey: Survey,
     free: Mapping[str, SurveyedColumn],
     physics: Mapping[str, FirstGuess],
@@ -139,7 +135,7 @@ def _force_that_drives(
     return force, acted is not None
 
 
-def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
+def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
     # the command is wanted, not what a drive says that it reached
@@ -147,7 +143,7 @@ def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
 
 
-def _hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:
+def _find_hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:
     if choices.interaction_force is not None:
         return None if choices.interaction_force == NONE else choices.interaction_force
     scores = {n: likeness(n, "interaction_force") for n in free if n != force}
@@ -155,45 +151,7 @@ def _hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> s
     return best if best is not None and scores[best] >= SURE_NAME else None
 
 
-def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
-    """A force with its unit, and the constant that a current needs."""
-    axis = survey.axis
-    # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
-    unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
-    entry: dict[str, Any] = {"column": name}
-    if unit is None and choices.torque_constant is not None and key == "actuator_force":
-        unit = choices.torque_constant[1].rpartition("/")[2]
-    if unit is None and names_current(name):
-        unit = "A"
-        survey.guesses[f"channels.{key}.unit"] = f"A: {name!r} is a current by its name"
-    if unit in ("A", "mA", "V"):
-        entry["unit"] = unit
-        base = "V" if unit == "V" else "A"
-        constant = choices.torque_constant
-        if constant is None:
-            constant = (1.0, f"{unit_of('force', axis)}/{base}")
-            why = (
-                f"1 {constant[1]} stands for the motor's constant: fill it in, forces and "
-                "parameters follow in proportion"
-            )
-            if (stated := torque_constant_in(survey.remarks)) and measures(
-                stated[1].rpartition("/")[0], "force", axis
-            ):
-                constant = stated[:2]
-                why = f"{constant[0]:g} {constant[1]}: the log says {stated[2]!r}"
-            survey.guesses[f"channels.{key}.torque_constant"] = why
-        entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
-        return entry
-    if unit is None or not measures(unit, "force", axis):
-        unit = unit_of("force", axis)
-        why = f"the name {name!r} says no unit"
-        if PER_CENT.search(name):
-            why = f"{name!r} counts parts of a rated force: `scale` is one part in {unit}"
-        survey.guesses[f"channels.{key}.unit"] = f"{unit}: {why}"
-    return {**entry, "unit": unit}
-
-
-def _hand_by_motion(
+def _find_hand_by_motion(
     survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
 ) -> str | None:
     """A column whose name does not say so, but that balances with the command: the hand's force.
@@ -202,7 +160,7 @@ def _hand_by_motion(
     command alone, the column takes a good part away, with a factor of one.
     """
     x, h = motion
-    u = survey.columns[force].values * _si_factor(survey, "actuator_force")
+    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
     alone = explain_force(u, x, h)
     best: tuple[float, str] | None = None
     for name, column in free.items():
@@ -245,14 +203,16 @@ def _position_to_si(survey: Survey) -> float:
     return scale / float(position.get("gear_ratio", 1.0))
 
 
-def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | None) -> None:
+def _choose_signs(
+    survey: Survey, motion: tuple[Array, float], force: str, hand: str | None
+) -> None:
     """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
     x, h = motion
-    u = survey.columns[force].values * _si_factor(survey, "actuator_force")
+    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
     whole = explain_force(u, x, h)
     with_hand = whole
     if hand is not None:
-        f = survey.columns[hand].values * _si_factor(survey, "interaction_force")
+        f = survey.columns[hand].values * force_to_si(survey, "interaction_force")
         by_sign = {s: explain_force(u + s * f, x, h) for s in (1.0, -1.0)}
         better = max(by_sign, key=lambda s: by_sign[s].explained)
         if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
@@ -286,17 +246,3 @@ def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | 
     ratio = float(survey.channels["position"].get("gear_ratio", 1.0))
     if ratio != 1.0:
         survey.notes.append(f"forces and positions are those behind the gear of {ratio:g}")
-
-
-def _si_factor(survey: Survey, key: str) -> float:
-    """Factor of a force from its column to SI, as proposed."""
-    from ..conversion import conversion_of
-    from ..toml_table import Table
-
-    entry = survey.channels[key]
-    if key == "actuator_force" and "gear_ratio" in survey.channels["position"]:
-        entry = {**entry, "gear_ratio": survey.channels["position"]["gear_ratio"]}
-    conversion, _ = conversion_of(
-        Table(entry, "log"), quantity=key, kind="force", axis=survey.axis, unit=entry["unit"]
-    )
-    return conversion.factor

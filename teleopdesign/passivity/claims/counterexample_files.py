@@ -12,7 +12,7 @@ import numpy as np
 import sympy as sp
 
 from ...diagrams.expressions import read_expression
-from ...diagrams.parts import position_symbol
+from ...diagrams.junctions import position_symbol
 from ...errors import ExperimentError, ModelError
 from ...plain_data import write_json
 from ...realise.lti import S

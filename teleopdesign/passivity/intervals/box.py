@@ -62,7 +62,7 @@ class ValueBox:
         """Value by name."""
         return dict(zip(self.names, map(float, point), strict=True))
 
-    def only(self, names: tuple[str, ...]) -> ValueBox:
+    def select(self, names: tuple[str, ...]) -> ValueBox:
         """The box of these values alone."""
         kept = [k for k, n in enumerate(self.names) if n in names]
         pick = [tuple(x[k] for k in kept) for x in (self.names, self.low, self.high)]

@@ -117,10 +117,10 @@ def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
         return False
     if not other_values:
         return True  # it is proved in the composed claim
-    family = family_of(rest, box.only(other_values))
+    family = family_of(rest, box.select(other_values))
     if family is None or not family.is_rational:
         return False
-    ask, z = Conditions.over(box.only(other_values), family.symbols), family.impedance()
+    ask, z = Conditions.over(box.select(other_values), family.symbols), family.impedance()
     one_port = np.shape(z) == (1, 1)
     passive = one_port_is_passive(ask, z[0, 0]) if one_port else two_port_is_passive(ask, z)
     return passive and hides_no_growth(ask, family, z)

@@ -80,7 +80,7 @@ def _late_terms(middle: Diagram, box: ValueBox) -> tuple[LateTerms, sp.Poly] | N
     plain, times = _with_marks(middle)
     if not times:
         return None
-    values = box.only(tuple(n for n in box.names if n not in times.values()))
+    values = box.select(tuple(n for n in box.names if n not in times.values()))
     # a mark stands for e^(-s T): its interval only gives it a name
     marks = tuple(times)
     named = ValueBox(

@@ -57,7 +57,7 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
         return parts_of(statement, "refuted", worst, box, "1/s", how)
     if not ask.is_hurwitz(polynomial):
         return parts_of(statement, "evidence", worst, box, "1/s", _explain_no_proof(ask))
-    how = _how(ask, "its characteristic polynomial is nowhere zero on the axis")
+    how = _describe_effort(ask, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
     bounds = (c for c in shifts if c > 0 and ask.is_hurwitz(_shift_roots(polynomial, c)))
@@ -111,7 +111,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         and _is_proved(ask, z, claim)
     ):
         bound = Fraction(0) if stable else _bound(ask, z, worst.margin)
-        how = _how(ask, "its conditions are polynomials of one sign")
+        how = _describe_effort(ask, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, float(bound)))
         kept = z - sp.Rational(str(bound)) * sp.eye(z.rows)
 
@@ -225,7 +225,7 @@ def _point_by_point(
         return linear_claims(there, ports(there))[-1 if claim == "absolutely stable" else 0].claim
 
     made = judge_at_points(alone, box, one, points, seed)
-    how = "its values are not in the linear forms as such: every point is settled by itself"
+    how = "its values are not in the linear forms as such: every point is decided by itself"
     refuted = made["status"] == "refuted"
     claim_there = one(alone.with_values(made["worst"]))
     return {
@@ -237,7 +237,7 @@ def _point_by_point(
     }
 
 
-def _how(ask: Conditions, what: str) -> str:
+def _describe_effort(ask: Conditions, what: str) -> str:
     return (
         f"{what}: {ask.effort.polynomials} shown by Bernstein coefficients on "
         f"{ask.effort.cells} parts of the box, in exact arithmetic"

@@ -30,6 +30,6 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
     apart, motion = linear_tips(diagram), led_motion(diagram, "L")
     motion = motion if motion in apart.signals else "L"
     linear = linear_blocks(apart, speed=speed)
-    form = transfer(apart.opened("K"), "E", (motion,), given=motion)[motion]
+    form = transfer(apart.open_at("K"), "E", (motion,), given=motion)[motion]
     z = impedance(sp.sympify(form).subs(symbol_values(linear)), motion="position")
     return z, (*linear.left_out, *falsely_linear(apart))

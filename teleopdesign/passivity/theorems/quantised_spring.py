@@ -50,11 +50,11 @@ class Flip:
     def replay(self) -> float:
         """Energy released in two samples, J, each at constant speed."""
         edge, a = self.step / 2, self.distance
-        high, low = (self._held(edge + side * a) for side in (1, -1))
+        high, low = (self._spring_force(edge + side * a) for side in (1, -1))
         lost = 2 * (self.damping / self.sample_time * (2 * a) ** 2 + self.friction * 2 * a)
         return (high - low) * 2 * a - lost
 
-    def _held(self, position: float) -> float:
+    def _spring_force(self, position: float) -> float:
         """Force of the spring at that sample, from the rounded position, N."""
         if self.step == 0:
             return self.stiffness * position

@@ -106,7 +106,7 @@ def _check_at_zero(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Itera
             yield f"{name} has a multiple pole at s = 0"
             return
     k = [c.get(-1, Fraction(0)) for c in series]
-    if not _is_allowed([complex(x) for x in k], criterion, 0.0) or not _exactly(k, criterion):
+    if not _is_allowed([complex(x) for x in k], criterion, 0.0) or not _holds_exactly(k, criterion):
         yield "the residues at s = 0 do not meet the criterion"
     for margin in _low_frequency(series, criterion):
         first = next((c for c in margin if c), Fraction(0))
@@ -115,7 +115,7 @@ def _check_at_zero(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Itera
             return
 
 
-def _exactly(k: Sequence[Fraction], criterion: Criterion) -> bool:
+def _holds_exactly(k: Sequence[Fraction], criterion: Criterion) -> bool:
     if min(k[0], k[3]) < 0:
         return False
     if criterion == "passive":
@@ -246,7 +246,11 @@ def _far_out(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[st
     k = [sum((_slope(t) for t in terms if not t.delay), Fraction(0)) for terms in z]
     late = [sum((abs(_slope(t)) for t in terms if t.delay), Fraction(0)) for terms in z]
     crossed = bool(late[1] * (abs(k[2]) + late[2]) or late[2] * abs(k[1]))
-    if crossed or (criterion == "passive" and (late[1] or late[2])) or not _exactly(k, criterion):
+    if (
+        crossed
+        or (criterion == "passive" and (late[1] or late[2]))
+        or not _holds_exactly(k, criterion)
+    ):
         yield "the growth like s at high frequency does not meet the criterion"
         return
     if not _fades(z, criterion):

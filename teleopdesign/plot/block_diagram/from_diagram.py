@@ -16,7 +16,7 @@ from ...blocks import Body
 from ...controllers import Controller
 from ...derive import has_actuation
 from ...diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
-from ...diagrams.parts import Weight
+from ...diagrams.junctions import Weight
 from .formulas import formula
 from .network import MINUS, Net, Network, Node, join_names
 from .shapes import Run, symbol
@@ -98,16 +98,14 @@ class _Making:
                 name, "box", (*title, *symbol(block.name)), (row, *_kinds(block, i))
             )
             self.wire(name, force)
-            self.gathered(
-                name, [self.net(s) for s in _drop_repeats(block.motions[j] for j in read)]
-            )
+            self.gather(name, [self.net(s) for s in _drop_repeats(block.motions[j] for j in read)])
 
     def kinematics(self, part: Kinematics) -> None:
         name = f"block {part.name}"
         said = formula(sp.sympify(part.expression, strict=True), short="kinematics")
         self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
         self.wire(name, part.output)
-        self.gathered(name, [self.net(s) for s in part.inputs])
+        self.gather(name, [self.net(s) for s in part.inputs])
 
     def junction(self, part: Junction) -> None:
         """A circle; weights that depend on positions are one box before it or in its place."""
@@ -129,16 +127,16 @@ class _Making:
         said = formula(sp.expand_mul(whole), short=f"lever arms of {', '.join(part.arms)}")
         self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
         self.wire(name, signal)
-        self.gathered(name, [self.net(s) for s in levered])
+        self.gather(name, [self.net(s) for s in levered])
         return name
 
-    def gathered(self, node: str, nets: list[str]) -> None:
+    def gather(self, node: str, nets: list[str]) -> None:
         """Lead nets to a box, through bars where there are more of them than sides."""
         if len(nets) > MOST_INPUTS:
             bar = f"bar before {node}"
             self.made.nodes[bar] = Node(bar, "bar")
             self.wire(bar)
-            self.gathered(bar, nets[: -(MOST_INPUTS - 1)])
+            self.gather(bar, nets[: -(MOST_INPUTS - 1)])
             nets = [bar, *nets[-(MOST_INPUTS - 1) :]]
         for net in nets:
             self.join(net, node)

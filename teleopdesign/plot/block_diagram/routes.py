@@ -103,7 +103,7 @@ def route(network: Network, cells: Cells) -> tuple[RoutingGrid, list[Route], flo
     jobs = [(net, t, w) for net in network.nets.values() for t, w in net.targets]
     for tracks in TRACKS:
         grid = RoutingGrid(cells, tracks)
-        jobs.sort(key=lambda job: _far(job[0], job[1], grid))
+        jobs.sort(key=lambda job: _measure_distance(job[0], job[1], grid))
         for _ in range(TRIALS):
             grid = RoutingGrid(cells, tracks)
             routes, total, failed = _routes(network, grid, jobs)
@@ -131,7 +131,7 @@ def _routes(
     return routes, total, None
 
 
-def _far(net: Net, target: str, grid: RoutingGrid) -> tuple[bool, int]:
+def _measure_distance(net: Net, target: str, grid: RoutingGrid) -> tuple[bool, int]:
     (x0, y0), (x, y) = grid.vertex(net.source), grid.vertex(target)
     ahead = (x - x0) * grid.cells.heading[net.source] > 0
     return not (y == y0 and ahead), abs(x - x0) + abs(y - y0)
@@ -145,7 +145,7 @@ def _steps_out(network: Network, grid: RoutingGrid, node: str) -> dict[int, floa
     return {d: (0.0 if d == ahead else BESIDE_RIGHT) for d in range(4)}
 
 
-def _into(network: Network, grid: RoutingGrid, node: str) -> set[int]:
+def _allowed_ends(network: Network, grid: RoutingGrid, node: str) -> set[int]:
     """Steps by which a wire may come to a node."""
     kind = network.nodes[node].kind
     ahead = 2 if grid.cells.heading[node] == LEFT else 0
@@ -159,7 +159,7 @@ def _into(network: Network, grid: RoutingGrid, node: str) -> set[int]:
 def _cheapest(
     network: Network, grid: RoutingGrid, net: Net, target: str
 ) -> tuple[tuple[Vertex, ...], float] | None:
-    goal, entries = grid.vertex(target), _into(network, grid, target)
+    goal, entries = grid.vertex(target), _allowed_ends(network, grid, target)
     heap: list[tuple[float, float, Vertex, int]] = []
     costs: dict[tuple[Vertex, int], float] = {}
     before: dict[tuple[Vertex, int], tuple[Vertex, int] | None] = {}
@@ -182,7 +182,7 @@ def _cheapest(
             continue
         cost += grid.between(vertex, after)
         if after == goal and d in entries:
-            return _way(before, (vertex, d), after), cost
+            return _trace_back(before, (vertex, d), after), cost
         if after in grid.blocked:
             continue
         nets_here = grid.used.get(after, {})
@@ -214,7 +214,7 @@ def _starts(network: Network, grid: RoutingGrid, net: Net) -> Iterator[tuple[Ver
                 yield vertex, d, TAKE_OFF if len(nets[net.name]) == 2 else AGAIN
 
 
-def _way(
+def _trace_back(
     before: dict[tuple[Vertex, int], tuple[Vertex, int] | None],
     last: tuple[Vertex, int],
     goal: Vertex,

@@ -1,0 +1,89 @@
+"""Source of functions on the memory of the loop: where a symbol is read, and how results are put.
+
+Every function takes the lane that it works on last. Quantities of one group lie in rows one behind
+the other, each row with an entry for each lane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from .laws import Names, assignments, indent
+
+
+def needed_steps(
+    results: Iterable[sp.Expr], joined: Mapping[sp.Symbol, sp.Expr]
+) -> dict[sp.Symbol, sp.Expr]:
+    """Those of the named steps that the results are written in, in their order."""
+    wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
+    needed = {}
+    for symbol, expression in reversed(list(joined.items())):
+        if symbol in wanted:
+            needed[symbol] = expression
+            wanted |= expression.free_symbols
+    return dict(reversed(list(needed.items())))
+
+
+#: symbol -> the text that reads it
+Places = Mapping[sp.Symbol, str]
+
+
+def locate_entry(first: str, i: int) -> str:
+    """Entry of a lane in the row i of a group."""
+    return f"memory[{first} + {f'{i} * LANES + ' if i else ''}lane]"
+
+
+def locate_symbols(rows: Mapping[str, Iterable[sp.Symbol]]) -> dict[sp.Symbol, str]:
+    """Where each symbol is read, by the beginning of its group in the memory."""
+    return {x: locate_entry(row, i) for row, symbols in rows.items() for i, x in enumerate(symbols)}
+
+
+def write_function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
+    """Source of a function with these lines; the lane is its last argument."""
+    body = indent(list(lines) or ["pass"], 4)
+    return f"@jitted\ndef {name}({', '.join([*arguments, 'lane'])}):\n{body}\n\n\n"
+
+
+def write_reader(name: str, many: int) -> str:
+    """Source of a function that returns a column of a table as numbers: see `integrator.py`.
+
+    Behind the last column the table stays as it is there: one column is what is held throughout.
+    """
+    numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
+    held = "    column = min(column, table.shape[1] - 1)\n" if many else ""
+    return f"@jitted\ndef {name}(table, column):\n{held}    return ({', '.join(numbers)},)\n\n\n"
+
+
+@dataclass(frozen=True)
+class LawWriter:
+    """What the source of some laws is written with: arguments, and names of what they hold."""
+
+    arguments: tuple[str, ...]
+    places: Places
+    names: Names
+    joined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def lines(self, results: Mapping[str, sp.Expr]) -> list[str]:
+        """Lines that compute the results under their private names, common parts once."""
+        needed = needed_steps(results.values(), self.joined)
+        expressions = (*results.values(), *needed.values())
+        used = set().union(*(x.free_symbols for x in expressions))
+        return [
+            *(f"{self.names[x]} = {place}" for x, place in self.places.items() if x in used),
+            *assignments({self.names[s]: e for s, e in needed.items()}, self.names),
+            *assignments(results, self.names, shared="k"),
+        ]
+
+    def function(self, name: str, **rows: Iterable[sp.Expr]) -> str:
+        """Source of a function that puts these into the memory, each group from a row on."""
+        places = {
+            locate_entry(to, i): sp.sympify(x, strict=True)
+            for to in rows
+            for i, x in enumerate(rows[to])
+        }
+        results = {f"out{i}": x for i, x in enumerate(places.values())}
+        lines = [*self.lines(results), *map(" = ".join, zip(places, results, strict=True))]
+        return write_function(name, (*self.arguments, *rows), lines)

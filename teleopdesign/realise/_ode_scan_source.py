@@ -1,0 +1,257 @@
+"""Source of the loop that carries an effect's coupled hidden states along a measured motion.
+
+Written from the rates, corrections and dry friction that the effect declares, each with its slopes
+by states and parameters; `ode_scan.py` says what the loop does, and runs it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import sympy as sp
+
+from ..effects import SIGNALS, UNEXPLAINED, Effect
+from .exponentials import head
+from .laws import Names, assignments, indent, source_of
+
+
+@lru_cache(maxsize=256)
+def list_drivers(effect: Effect) -> list[str]:
+    """Names of the measured signals that drive the effect's states."""
+    laws = [*effect.rates().values(), *effect.dry_bounds().values()]
+    if corrections := effect.corrections():
+        laws += [*corrections.values(), effect.expression()]
+    return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
+
+
+@lru_cache(maxsize=256)
+def list_parameters(effect: Effect) -> tuple[sp.Symbol, ...]:
+    """The effect's parameters, and others that its rates hold: an inertia, an environment's."""
+    of_effect = effect.symbols().values()
+    laws = (
+        *effect.rates().values(),
+        *effect.corrections().values(),
+        *effect.dry_bounds().values(),
+    )
+    known = {*of_effect, *SIGNALS.values(), *effect.state_symbols().values(), UNEXPLAINED}
+    others = set().union(*(law.free_symbols for law in laws)) - known
+    return (*of_effect, *sorted(others, key=str))
+
+
+def _write_tangents(
+    name: str,
+    law: sp.Expr,
+    states: Sequence[sp.Symbol],
+    parameters: Sequence[sp.Symbol],
+    names: Names,
+) -> tuple[list[str], str, dict[int, str]]:
+    """Code of a law's tangents: slopes once for all columns, then what each column makes of them.
+
+    name: of the law in the code
+    returns: lines that compute slopes; the sum over states in one column, from theirs, d_j; place
+        of a parameter -> its slope
+    """
+    lines, terms, by_parameter = [], [], {}
+    for j, symbol in enumerate((*states, *parameters)):
+        slope = sp.diff(law, symbol)
+        if slope == 0:
+            continue
+        lines += assignments({f"{name}_{j}": slope}, names)
+        if j < len(states):
+            terms.append(f"{name}_{j} * d_{j}")
+        else:
+            by_parameter[j - len(states)] = f"{name}_{j}"
+    return lines, " + ".join(terms) or "0.0", by_parameter
+
+
+#: private name of the force that is left unexplained
+_LEFT = "left"
+
+
+def _name_symbols(effect: Effect) -> dict[sp.Symbol, str]:
+    """States, parameters and signals as local numbers: what does not change is computed once."""
+    states = {s: f"z_{i}" for i, s in enumerate(effect.state_symbols().values())}
+    parameters = {s: f"p_{i}" for i, s in enumerate(list_parameters(effect))}
+    signals = {SIGNALS[d]: f"u_{i}" for i, d in enumerate(list_drivers(effect))}
+    return states | parameters | signals | {UNEXPLAINED: _LEFT}
+
+
+def _write_stage_signals(effect: Effect) -> list[str]:
+    """Code of the signals u and the states z in a stage; those of corrections after the drivers."""
+    drivers = len(list_drivers(effect)) + (3 if effect.corrections() else 0)
+    lines = []
+    for i in range(drivers):
+        lines += [
+            f"bend = (1.0 - here) * bends[0, {i}, k] - here * bends[1, {i}, k]",
+            f"chord = drive[{i}, k + 1] - drive[{i}, k]",
+            f"u_{i} = drive[{i}, k] + here * (chord + (1.0 - here) * bend)",
+        ]
+    return [
+        *lines,
+        *(f"z_{i} = z[{i}] + ahead * f[before, {i}]" for i in range(len(effect.states))),
+    ]
+
+
+def _write_left(effect: Effect) -> list[str]:
+    """Code of what is left unexplained beyond the bounds of friction.
+
+    bound: 1 or 2 for the one that it is beyond, 0 for neither
+    """
+    law, names, first = effect.expression(), _name_symbols(effect), len(list_drivers(effect))
+    needed, low, high = (f"u_{first + i}" for i in range(3))
+    return [
+        f"{_LEFT} = {needed} - ({source_of(law, names)})",
+        f"bound = 1 if {_LEFT} < {low} else 2 if {_LEFT} > {high} else 0",
+        f"{_LEFT} = {_LEFT} - ({low} if bound == 1 else {high}) if bound else 0.0",
+    ]
+
+
+def _write_rates(effect: Effect) -> list[str]:
+    """Code of f, the rates of the states, and of g, their tangents, in one stage."""
+    states = list(effect.state_symbols().values())
+    parameters, names = list_parameters(effect), _name_symbols(effect)
+    corrections = effect.corrections()
+    lines: list[str] = []
+    each = [f"d_{i} = d[{i}, c] + ahead * g[before, {i}, c]" for i in range(len(states))]
+    ends: list[str] = []
+    if corrections:
+        before, moved, law_slopes = _write_tangents(
+            "by_law", effect.expression(), states, parameters, names
+        )
+        lines += [*_write_left(effect), *before]
+        each += [
+            f"d{_LEFT} = 0.0",
+            "if bound:",
+            "    needed = ddrive[0, k, c] + here * (ddrive[0, k + 1, c] - ddrive[0, k, c])",
+            "    step_of = ddrive[bound, k + 1, c] - ddrive[bound, k, c]",
+            f"    d{_LEFT} = needed - (ddrive[bound, k, c] + here * step_of) - ({moved})",
+        ]
+    for i, (name, rate) in enumerate(effect.rates().items()):
+        whole = rate + corrections.get(name, sp.S(0))
+        lines += assignments({f"f[stage, {i}]": whole}, names)
+        before, moved, by_parameter = _write_tangents(f"by_{i}", whole, states, parameters, names)
+        lines += before
+        by_left = sp.diff(whole, UNEXPLAINED)
+        here = f"g[stage, {i}, columns"
+        ends += [f"if columns[{j}] >= 0:\n    {here}[{j}]] += {k}" for j, k in by_parameter.items()]
+        if by_left != 0:
+            lines += assignments({f"by_{i}_left": by_left}, names)
+            moved += f" + by_{i}_left * d{_LEFT}"
+            ends += [
+                f"if bound and columns[{j}] >= 0:\n    {here}[{j}]] -= by_{i}_left * {k}"
+                for j, k in law_slopes.items()
+            ]
+        each.append(f"g_{i} = {moved}")
+    # a stage may follow itself, so slopes are stored when all of them are known
+    each += [f"g[stage, {i}, c] = g_{i}" for i in range(len(states))]
+    lines.append("for c in range(q + 1):")
+    lines += [f"    {line}" for line in each]
+    return [*lines, *(line for end in ends for line in end.split("\n"))]
+
+
+def _write_dry(effect: Effect) -> list[str]:
+    """Code of hold, the rates by which dry friction slows the states, and their tangents."""
+    states = list(effect.state_symbols().values())
+    places = {n: i for i, n in enumerate(effect.states)}
+    parameters, names = list_parameters(effect), _name_symbols(effect)
+    lines: list[str] = []
+    for name, bound in effect.dry_bounds().items():
+        i = places[name]
+        before, moved, by_parameter = _write_tangents(f"dry_{i}", bound, states, parameters, names)
+        lines += [*assignments({f"most_{i}": bound}, names), *before]
+        lines += [
+            # half a step on, for what drives it changes on the way: else a stuck state creeps
+            f"wanted = z_{i} / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
+            f"within = abs(wanted) <= most_{i}",
+            f"hold[{i}] = wanted if within else copysign(most_{i}, wanted)",
+            "for c in range(q + 1):",
+            *(f"    d_{j} = d[{j}, c]" for j in range(len(states))),
+            "    if within:",
+            f"        dhold[{i}, c] = d_{i} / w + 1.5 * g[0, {i}, c] - 0.5 * before_g[{i}, c]",
+            "    else:",
+            f"        dhold[{i}, c] = copysign(1.0, wanted) * ({moved})",
+        ]
+        for j, slope in by_parameter.items():
+            lines += [
+                f"if not within and columns[{j}] >= 0:",
+                f"    dhold[{i}, columns[{j}]] += copysign(1.0, wanted) * {slope}",
+            ]
+    return lines
+
+
+def _write_friction_of_stage(effect: Effect) -> list[str]:
+    """Code that takes the rates of dry friction from those of a stage."""
+    if not effect.dry_bounds():
+        return []
+    first = [
+        "if step == 0 and k == 0:",
+        "    before_f[:] = f[0]",
+        "    before_g[:] = g[0]",
+        *_write_dry(effect),
+        "before_f[:] = f[0]",
+        "before_g[:] = g[0]",
+    ]
+    first = ["if stage == 0:", *(f"    {line}" for line in first)]
+    return [*first, "f[stage] -= hold", "g[stage] -= dhold"]
+
+
+@lru_cache(maxsize=32)
+def write_scan(effect: Effect) -> str:
+    """Source of the scan: states `out` (s, n) and tangents `dout` (s, q, n) at the rows.
+
+    drive: signals (m, n), those that corrections need behind them;  bends: how they leave their
+    chords (2, m, n);  ddrive: tangents of the latter;  size, growth: when tangents begin anew
+    """
+    parameters = [f"p_{i} = p[{i}]" for i in range(len(list_parameters(effect)))]
+    stage = [
+        *_write_stage_signals(effect),
+        *_write_rates(effect),
+        *_write_friction_of_stage(effect),
+    ]
+    return f"""{head("Generated from an effect's rates; do not edit.")}
+
+@jitted
+def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
+    n = drive.shape[1]
+    s, q = {len(effect.states)}, dout.shape[1]
+{indent(parameters, 4)}
+    # the last column is a difference that nothing drives: how much it grows
+    d = np.zeros((s, q + 1))
+    d[:, q] = size
+    f = np.zeros((4, s))
+    g = np.zeros((4, s, q + 1))
+    w = h / steps
+    hold = np.zeros(s)
+    dhold = np.zeros((s, q + 1))
+    before_f = np.zeros(s)
+    before_g = np.zeros((s, q + 1))
+    for k in range(n):
+        grown = 0.0
+        for i in range(s):
+            grown = max(grown, abs(d[i, q] / size[i]))
+        if grown > growth:
+            d[:] = 0.0
+            d[:, q] = size
+        elif 0.0 < grown < 1.0:  # what was forgotten since does not count
+            d[:, q] /= grown
+        for i in range(s):
+            out[i, k] = z[i]
+            for c in range(q):
+                dout[i, c, k] = d[i, c]
+        if k == n - 1:
+            break
+        for step in range(steps):
+            for stage in range(4):
+                part = 0.0 if stage == 0 else 1.0 if stage == 3 else 0.5
+                here = (step + part) / steps
+                ahead = part * w
+                before = max(stage - 1, 0)
+{indent(stage, 16)}
+            for i in range(s):
+                z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
+                for c in range(q + 1):
+                    d[i, c] += w / 6 * (
+                        g[0, i, c] + 2 * g[1, i, c] + 2 * g[2, i, c] + g[3, i, c]
+                    )
+"""
