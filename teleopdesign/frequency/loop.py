@@ -16,13 +16,15 @@ from ..diagrams import Control, Diagram
 from ..errors import ModelError, UnstableLoop
 from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
+from . import sampled_margins
 from .late_loop import LateRatio, count_growing, crossings, late_ratio
 from .measured_loop import measured_crossings
+from .sampled_loop import SampledLoop, sampled_loop
 
 if TYPE_CHECKING:
     import control
 
-#: order of the Pade approximation by which a sampled loop without further delay is shown stable
+#: order of the Pade approximation by which a loop with several that sample is shown stable
 _PADE = 8
 #: rad/s; crossings are sought between these on a grid of so many points, then refined
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 20001
@@ -37,6 +39,8 @@ class LoopGain:
     held: controllers in discrete time, taken as H(e^(j w T)) and the hold of a sample
     fastest: rad/s, half the sampling rate of what is held; inf where nothing is
     growing: poles of the controller itself in the right half plane
+    sampled: the loop in discrete time, where this controller alone samples: its margins are exact.
+        None where others sample too: those of `held` then count as their response over frequency
     """
 
     expression: sp.Expr
@@ -45,6 +49,7 @@ class LoopGain:
     held: tuple[str, ...]
     fastest: float
     growing: int = 0
+    sampled: SampledLoop | None = None
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
@@ -67,6 +72,7 @@ class LoopGain:
     def __repr__(self) -> str:
         held = f"; sampled and held: {', '.join(self.held)}" if self.held else ""
         gone = ", ".join(self.left_out) or "nothing"
+        held += ", margins by an approximation" if self.held and self.sampled is None else ""
         return f"Gain round the loop of {self.controller}; left out: {gone}{held}"
 
 
@@ -94,7 +100,8 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]
     fastest = np.pi / max(periods) if periods else float("inf")
     growing = _count_growing_poles(linear.blocks[controller])
-    return LoopGain(gain, controller, linear.left_out, linear.held, fastest, growing)
+    sampled = sampled_loop(diagram, part, linear) if linear.held else None
+    return LoopGain(gain, controller, linear.left_out, linear.held, fastest, growing, sampled)
 
 
 def _count_growing_poles(form: sp.Expr) -> int:
@@ -110,12 +117,15 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
 
     0 where the gain does not fall below 1 at high frequency: there the least dead time makes motion
     grow, the faster the shorter. A loop with a measured response is judged between its frequencies,
-    see `measured_crossings`.
+    see `measured_crossings`. A controller that alone samples is in it as it is, in discrete time;
+    where others sample too, by their response over frequency (`LoopGain.sampled`).
     raises ModelError: the loop is unstable without any delay (`UnstableLoop`); a controller was
         left out of it; its gain is above 1 where its samples no longer tell a frequency from
         others, or at the highest frequency that was measured
     """
     phase, w, fades = unity_crossings(loop)
+    if isinstance(loop, LoopGain) and loop.sampled is not None:
+        return sampled_margins.delay_margin(loop.sampled)
     return _smallest_delay(phase, w) if fades else 0.0
 
 
@@ -135,6 +145,11 @@ def unity_crossings(
             )
         if loop.expression.atoms(AppliedUndef):
             return *measured_crossings(loop.expression, growing=loop.growing), True
+        if loop.sampled is not None:
+            if loop.sampled.grows():
+                raise _unstable()
+            phase, angles = sampled_margins.unity_crossings(loop.sampled)
+            return phase, angles / float(loop.sampled.period), True
         if loop.held:
             if _grows_by_pade(loop):
                 raise _unstable()

@@ -7,6 +7,7 @@ from sympy.core.function import AppliedUndef
 
 from ..errors import ModelError
 from ..realise.lti import numerical
+from . import sampled_margins
 from .late_loop import late_ratio
 from .loop import LoopGain, unity_crossings
 
@@ -41,6 +42,8 @@ def gain_margin(loop: LoopGain) -> float:
     from scipy.optimize import brentq
 
     unity_crossings(loop)
+    if loop.sampled is not None:
+        return sampled_margins.gain_margin(loop.sampled)
     if loop.expression.atoms(AppliedUndef):
         raise ModelError("gain margin: expected a loop without a measured response")
     call = numerical(loop.expression)

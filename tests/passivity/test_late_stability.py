@@ -1,5 +1,7 @@
 """Stability over intervals of dead times: proved up to the exact limit, refuted beyond it."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from devices import body
@@ -9,8 +11,10 @@ from realise.test_delay_blocks import held
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
-from teleopdesign.passivity.intervals.late_cells import LateTerms, is_zero_free
+from teleopdesign.passivity.intervals import late_cells
+from teleopdesign.passivity.intervals.late_cells import is_zero_free
 from teleopdesign.passivity.intervals.late_roots import holds_root, rightmost_root
+from teleopdesign.passivity.intervals.late_terms import LateTerms
 
 TIME = "T_1.delay.time"
 DAMPING, STIFFNESS, MASS = 5.0, 20.0, 0.1
@@ -25,15 +29,18 @@ def limit(stiffness):
 
 def terms(rows, values=(), times=((0.0, 1.0),)):
     """rows: coefficient, then powers of s, values and late factors."""
-    made = np.array(rows, dtype=float)
     return LateTerms(
-        made[:, 0],
-        made[:, 1:].astype(int),
-        np.array(values, dtype=float).reshape(-1, 2),
-        np.array(times, dtype=float),
+        tuple(Fraction(row[0]) for row in rows),
+        np.array([row[1:] for row in rows]),
+        tuple((Fraction(a), Fraction(b)) for a, b in values),
+        tuple((Fraction(a), Fraction(b)) for a, b in times),
         tuple(range(len(values))),
         tuple(range(len(values), len(values) + len(times))),
     )
+
+
+def exact(late):
+    return {Fraction(t): [Fraction(c) for c in p] for t, p in late.items()}
 
 
 @pytest.mark.parametrize(("share", "status"), [(0.999, "proved"), (1.02, "refuted")])
@@ -93,17 +100,17 @@ def test_terms_as_strong_as_the_first_at_high_frequency_are_not_called_free_of_z
 def test_a_root_is_shown_only_where_there_is_one():
     late = {0.0: np.array([1.0, 0.0]), 1.0: np.array([2.0])}  # s + 2 e^(-s): grows, 2 > pi/2
     root = rightmost_root(late)
-    radius = holds_root(late, root)
+    radius = holds_root(exact(late), root)
     assert root.real > 0 and radius is not None and radius < root.real
     assert abs(root + 2 * np.exp(-root)) < 1e-12
-    assert holds_root(late, root + 0.5) is None
+    assert holds_root(exact(late), root + 0.5) is None
 
 
 def test_a_root_is_followed_from_where_there_is_no_dead_time():
     """A spring of 291 N/m that is 0.076 s late, beside what damps: at T = 0 its roots decay."""
     late = {0.0: np.array([1.0, 3.452, 2.443, 0.3395]), 0.07643: np.array([291.1, 209.3])}
     root = rightmost_root(late)
-    assert root.real > 1 and holds_root(late, root) is not None
+    assert root.real > 1 and holds_root(exact(late), root) is not None
 
 
 def test_a_dead_time_of_an_actuator_is_refused_in_one_line():
@@ -112,3 +119,44 @@ def test_a_dead_time_of_an_actuator_is_refused_in_one_line():
         claim_over_intervals(
             haptic_interface(device), {"Z_M.inertia": (0.1, 0.2)}, claim="stable", points=2
         )
+
+
+def test_a_part_with_a_zero_on_a_corner_is_never_shown_and_one_beside_it_is():
+    """s^2 + v + c (e^(-s T) - 1), zero at w = 3/2, v = 9/4, T = 0: parts of any size about it."""
+    rng = np.random.default_rng(8)
+    for share in (Fraction(0), Fraction(1, 3), Fraction(7)):
+        rows = [(1, 2, 0, 0), (1, 0, 1, 0), (-share, 0, 0, 0), (share, 0, 0, 1)]
+        groups = late_cells._groups(terms(rows, [(2, 3)]), False)
+        zero = np.array([1.5, 2.25, 0.0])
+        sizes = 10 ** rng.uniform(-17, 0, (500, 3))
+        side = rng.integers(0, 2, (500, 3)) * [1, 1, 0]
+        low, high = zero - side * sizes, zero + (1 - side) * sizes
+        assert not late_cells._is_shown(groups, low, high, False).any()
+        low[:, 1], high[:, 1] = zero[1] + 1e-6, zero[1] + 2e-6
+        low[:, 0], high[:, 0] = zero[0], zero[0] + 1e-9 * rng.random(500)
+        high[:, 2] = low[:, 2] + 1e-9 * rng.random(500)
+        assert late_cells._is_shown(groups, low, high, False).all()
+
+
+def test_zeros_on_edges_of_parts_and_beyond_the_range_of_floats_are_not_passed_over():
+    """s^2 + w^2 for each w that halving meets, and coefficients of 10^200 and 10^-320."""
+    for w in (Fraction(1, 2), Fraction(1), Fraction(3, 8), Fraction(12345, 1024)):
+        for size in (Fraction(1), Fraction(10) ** 200, Fraction(1, 10**320)):
+            rows = [(size, 2, 0), (size * w * w, 0, 0), (size / 1000, 0, 1), (-size / 1000, 0, 0)]
+            assert is_zero_free(terms(rows), most=3000) is None  # at T = 0
+
+
+def test_what_is_large_beyond_floats_is_counted_as_others():
+    """The same polynomial in another unit of its value is shown as well, from 1e-320 to 1e320."""
+    plain = [(1, 1, 0), (1, 0, 0), (Fraction(9, 10), 0, 1)]
+    shown = is_zero_free(terms(plain))
+    assert shown is not None
+    for size in (Fraction(10) ** 320, Fraction(1, 10**320)):
+        assert is_zero_free(terms([(c * size, *rest) for c, *rest in plain])) == shown
+
+
+def test_a_zero_a_hair_beyond_the_axis_is_never_called_stable():
+    """s^2 + a s + b with a from 1e-9 down to minus that: floats alone lose the sign."""
+    for damping in (Fraction(1, 10**17), Fraction(0), Fraction(-1, 10**17)):
+        rows = [(1, 2, 0), (damping, 1, 0), (1, 0, 0), (Fraction(1, 10**18), 0, 1)]
+        assert is_zero_free(terms(rows), most=20_000) is None

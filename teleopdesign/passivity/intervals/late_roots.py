@@ -5,9 +5,15 @@ f(s) = sum_k p_k(s) e^(-s T_k),   as dead time (s) -> coefficients in s, highest
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 
 import numpy as np
+import sympy as sp
+
+from ...realise.enclosure import enclosure_of, ends
+from .late_terms import ExactTerms
 
 Terms = Mapping[float, np.ndarray]
 
@@ -15,8 +21,6 @@ Terms = Mapping[float, np.ndarray]
 _STEPS, _NEWTON = 20, 3
 #: minima of abs(f) along the axis from which zeros are sought
 _LOWEST = 12
-#: of the sizes of all terms: more than floating point loses in them
-_ROUNDING = 1e-11
 
 
 def rightmost_root(terms: Terms) -> complex:
@@ -46,26 +50,74 @@ def rightmost_root(terms: Terms) -> complex:
     return complex(max(s, key=lambda x: x.real)) if len(s) else complex(-np.inf)
 
 
-def holds_root(terms: Terms, at: complex) -> float | None:
+def holds_root(terms: ExactTerms, at: complex) -> float | None:
     """Radius of a disc about `at` in which f has a zero, by Rouche's theorem; None: not shown.
 
     On its edge f - f'(at) (s - at) is smaller than f'(at) (s - at): the rest of the series is
-    bounded by that of the same series with all its terms positive.
+    bounded by that of the same series with all its terms positive. In intervals, rounded outward.
     """
-    value, slope, _ = (x[0] for x in _values(terms, np.array([at])))
-    for radius in abs(at) * 10.0 ** np.arange(-10.0, -1.0):
-        rest, edge = 0.0, 0.0
-        for t, p in terms.items():
-            growth = np.exp(-t * at.real)
-            sizes, base = np.abs(p), abs(at)
-            first = np.polyval(sizes, base)
-            bent = np.polyval(np.polyder(sizes), base) + t * first
-            whole = np.polyval(sizes, base + radius) * np.exp(t * radius)
-            edge += growth * whole
-            rest += growth * (whole - first - bent * radius)
-        if abs(value) + rest + _ROUNDING * edge < abs(slope) * radius * (1 - 1e-9):
-            return float(radius)
+    x, y = Fraction(at.real), Fraction(at.imag)
+    # not below the size of `at`
+    base = Fraction(abs(at)) * Fraction(1 + 2**-50)
+    value, slope = _enclose_at(terms, x, y)
+    least_slope, most_value = math.sqrt(slope[0]) * (1 - 1e-15), math.sqrt(value[1]) * (1 + 1e-15)
+    for power in range(-10, -1):
+        radius = base * Fraction(10) ** power
+        rest = sp.Add(*(_further(p, t, x, base, radius) for t, p in terms.items()))
+        most = ends(enclosure_of(rest, ())(()))[1]
+        edge = float(radius) * (1 - 1e-15)
+        if (most_value + most) * (1 + 1e-15) < least_slope * edge * (1 - 1e-15):
+            return float(radius) * (1 + 1e-15)
     return None
+
+
+def _further(
+    coefficients: Sequence[Fraction], time: Fraction, x: Fraction, base: Fraction, radius: Fraction
+) -> sp.Expr:
+    """What p e^(-s T) may move beyond its tangent within a disc about a point not beyond `base`."""
+    sizes = [abs(c) for c in coefficients]
+    first = _value(sizes, (base, Fraction(0)))[0]
+    bent = _value(_slopes(sizes), (base, Fraction(0)))[0] + time * first
+    whole = _value(sizes, (base + radius, Fraction(0)))[0]
+    turned = _number(whole) * sp.exp(_number(time * radius)) - _number(first + bent * radius)
+    return sp.exp(_number(-time * x)) * turned
+
+
+def _enclose_at(
+    terms: ExactTerms, x: Fraction, y: Fraction
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Bounds of abs(f)^2 and of abs(f')^2 at x + j y."""
+    value, slope = [sp.S(0), sp.S(0)], [sp.S(0), sp.S(0)]
+    for t, p in terms.items():
+        a, b = _value(p, (x, y))
+        c, d = _value(_slopes(p), (x, y))
+        size, turn = sp.exp(_number(-t * x)), _number(t * y)
+        for total, (real, imaginary) in ((value, (a, b)), (slope, (c - t * a, d - t * b))):
+            real, imaginary = _number(real), _number(imaginary)
+            total[0] += size * (real * sp.cos(turn) + imaginary * sp.sin(turn))
+            total[1] += size * (imaginary * sp.cos(turn) - real * sp.sin(turn))
+    first, second = (ends(enclosure_of(r**2 + i**2, ())(())) for r, i in (value, slope))
+    return first, second
+
+
+def _value(
+    coefficients: Sequence[Fraction], at: tuple[Fraction, Fraction]
+) -> tuple[Fraction, Fraction]:
+    """Real and imaginary part of a polynomial, exactly."""
+    a, b = Fraction(0), Fraction(0)
+    for c in coefficients:
+        a, b = a * at[0] - b * at[1] + c, a * at[1] + b * at[0]
+    return a, b
+
+
+def _slopes(coefficients: Sequence[Fraction]) -> list[Fraction]:
+    """Of the derivative."""
+    n = len(coefficients) - 1
+    return [c * (n - i) for i, c in enumerate(coefficients[:-1])]
+
+
+def _number(value: Fraction) -> sp.Rational:
+    return sp.Rational(value.numerator, value.denominator)
 
 
 def _improve(terms: Terms, s: np.ndarray, steps: int) -> np.ndarray:

@@ -12,7 +12,8 @@ largest, where
 For in Re s >= 0 no e^(-s tau) is larger than 1, so that by 2 in its limit zeros there are bounded;
 they move continuously with v and T, and by 2 and 3 none is ever on the axis. Zero exclusion and
 continuity: Stepan, Retarded Dynamical Systems (1989); Gu, Kharitonov, Chen (2003), section 1.3.
-2 and 3 are shown part by part of the box (`late_cells`); 1 is exact.
+2 and 3 are shown part by part of the box (`late_cells`), by intervals of floats that are rounded
+outward; 1 is exact. f holds all modes, those that no signal shows included (`Family`).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...controllers import Controller, Stage, controller
+from ...controllers import Controller, Stage, controller, exact_decimal
 from ...diagrams import Control, Diagram
 from ...frequency.late_loop import count_growing
 from ...realise.lti import S
@@ -32,8 +33,9 @@ from .box import ValueBox
 from .conditions import Conditions
 from .family import family_of
 from .interval_claim import Parts, Status, parts_of
-from .late_cells import LateTerms, is_zero_free
+from .late_cells import is_zero_free
 from .late_roots import holds_root, rightmost_root
+from .late_terms import LateTerms
 from .worst import search_worst
 
 _STATEMENT = "every pole has a negative real part"
@@ -55,9 +57,8 @@ def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int)
 
     worst = search_worst(margin, box, points=points, seed=seed)
     if worst.margin <= 0:
-        there = terms.at(worst.point)
-        root = rightmost_root(there)
-        radius = holds_root(there, root)
+        root = rightmost_root(terms.at(worst.point))
+        radius = holds_root(terms.exactly_at(worst.point), root) if root.real > 0 else None
         if radius is not None and root.real > radius:
             how = f"a pole at {root:.6g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
             return parts_of(_STATEMENT, "refuted", worst, box, "1/s", how)
@@ -68,8 +69,8 @@ def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int)
     how = "no proof over the whole box: not stable from no dead time on, or not shown part by part"
     if cells is not None:
         how = (
-            f"no pole is on the axis for any dead time from 0 on, on {cells} parts of the box: in "
-            "floating point with a bound of its rounding, without a certificate"
+            f"no pole is on the axis for any dead time from 0 on, on {cells} parts of the box: by "
+            "intervals of floats that are rounded outward, without a certificate"
         )
     bound = {"proved_margin": 0.0} if cells is not None else {}
     return parts_of(_STATEMENT, status, worst, box, "1/s", how, **bound)
@@ -93,8 +94,8 @@ def _late_terms(middle: Diagram, box: ValueBox) -> tuple[LateTerms, sp.Poly] | N
         return None
     ask = Conditions.over(named, family.symbols)
     polynomial = ask.poly(family.characteristic())
-    ends = dict(zip(box.names, zip(box.low, box.high, strict=True), strict=True))
-    late = [ends.get(n, (middle.values[n],) * 2) for n in times.values()]
+    ends = dict(zip(box.names, box.exact, strict=True))
+    late = [ends.get(n, (_exact(middle.values[n]),) * 2) for n in times.values()]
     centre = {
         family.symbols[n]: sp.Rational(str((a + b) / 2))
         for n, (a, b) in zip(values.names, values.exact, strict=True)
@@ -103,14 +104,18 @@ def _late_terms(middle: Diagram, box: ValueBox) -> tuple[LateTerms, sp.Poly] | N
     start = sp.Poly(polynomial.as_expr().subs(centre | at_once), S, domain="QQ")
     monomials, coefficients = zip(*polynomial.terms(), strict=True)
     terms = LateTerms(
-        np.array([float(Fraction(int(c.p), int(c.q))) for c in coefficients]),
+        tuple(Fraction(int(c.p), int(c.q)) for c in coefficients),
         np.array(monomials),
-        np.array(list(zip(values.low, values.high, strict=True))).reshape(-1, 2),
-        np.array(late),
+        values.exact,
+        tuple(late),
         tuple(box.names.index(n) for n in values.names),
         tuple(box.names.index(n) if n in box.names else -1 for n in times.values()),
     )
     return terms, start
+
+
+def _exact(value: float) -> Fraction:
+    return Fraction(str(exact_decimal(value)))
 
 
 def _with_marks(diagram: Diagram) -> tuple[Diagram, dict[str, str]]:

@@ -38,7 +38,7 @@ def claim_over_intervals(
         it holds) or a `Claim`
     points: looked at beside the vertices and the middle;  seed: of these
     returns: proved over the whole box where exact reasoning shows it (linear; with dead
-        times "stable" alone, from no dead time on, in floats with a bound of their rounding;
+        times "stable" alone, from no dead time on, in floats that are rounded outward;
         friction with its cancellation by the theorems on them), refuted at a point, or checked
         numerically. Controllers act in continuous time
     raises ModelError: an unknown value or claim, an interval that is none, no port

@@ -1,0 +1,137 @@
+"""What lies between two samples, for inputs that are held and late: its matrices, in many digits.
+
+    x' = A x + sum_k B_k u(t - T_k),   y = C x + sum_k D_k u(t - T_k)
+
+Time counts in samples. Numbers are exact before `mpmath` takes them, with the digits that are set.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+
+
+@dataclass(frozen=True)
+class HeldPlant:
+    """The part between two samples in `mpmath`: matrices of one sample, in units of it."""
+
+    step: mpmath.matrix  # e^(A h)
+    grown: mpmath.matrix  # e^(A h) - I, as A times its integral
+    output: mpmath.matrix
+    #: for each dead time: samples m, B0, B1, D
+    inputs: tuple[tuple[int, mpmath.matrix, mpmath.matrix, mpmath.mpf], ...]
+
+    @classmethod
+    def of(
+        cls,
+        period: Fraction,
+        below: Sequence[Fraction],
+        above: Sequence[tuple[Fraction, Sequence[Fraction]]],
+    ) -> HeldPlant:
+        """Of numerators, each with its dead time (s), over one denominator, highest power first."""
+        lead, n = below[0], len(below) - 1
+        # time in samples: s h = q, so that the coefficient of q^k is that of s^k over h^k
+        monic = [c / lead * period**k for k, c in enumerate(below)]
+        a = mpmath.matrix(n, n)
+        for i in range(n):
+            a[i, 0] = as_mpf(-monic[i + 1])
+            if i + 1 < n:
+                a[i, i + 1] = mpmath.mpf(1)
+        whole = _integral(a, mpmath.mpf(1))
+        inputs = []
+        for time, numerator in above:
+            padded = [Fraction(0)] * (n + 1 - len(numerator)) + list(numerator)
+            scaled = [c / lead * period**k for k, c in enumerate(padded)]
+            straight = scaled[0]
+            b = mpmath.matrix([as_mpf(c - straight * m) for c, m in
+                               zip(scaled[1:], monic[1:], strict=True)] or [0])  # fmt: skip
+            m = int(time // period)
+            share = as_mpf(time / period - m)
+            if not n:
+                inputs.append((m, mpmath.matrix(0, 1), mpmath.matrix(0, 1), as_mpf(straight)))
+                continue
+            late = _integral(a, 1 - share)
+            inputs.append((m, late * b, (whole - late) * b, as_mpf(straight)))
+        output = mpmath.matrix(1, n)
+        if n:
+            output[0, 0] = mpmath.mpf(1)
+        grown = a * whole if n else a
+        return cls(mpmath.eye(n) + grown if n else a, grown, output, tuple(inputs))
+
+    def polynomials(
+        self,
+    ) -> tuple[list[mpmath.mpf], list[tuple[int, list[mpmath.mpf], list[mpmath.mpf]]]]:
+        """det(z I - e^(A h)), and m, C adj B0, C adj B1 + D det of each input, highest first."""
+        n, f = self.step.rows, self.step
+        below, adjoint = [mpmath.mpf(1)], list[mpmath.matrix]()
+        power = mpmath.eye(n) if n else f
+        for k in range(1, n + 1):
+            adjoint.append(power)
+            moved = f * power
+            c = -sum((moved[i, i] for i in range(n)), mpmath.mpf(0)) / k
+            below.append(c)
+            power = moved + c * mpmath.eye(n)
+        shares = []
+        for m, now, before, straight in self.inputs:
+            first = [(self.output * p * now)[0, 0] for p in adjoint]
+            second = [(self.output * p * before)[0, 0] for p in adjoint]
+            shares.append((m, first, add(second, [straight * c for c in below])))
+        return below, shares
+
+    def as_floats(self) -> tuple[np.ndarray, ...]:
+        """e^(A h) - I, B0 and B1 (n, inputs), D and m (inputs,), C (n,)."""
+        from scipy.linalg import matrix_balance
+
+        n = self.step.rows
+        step = np.array([[float(self.grown[i, j]) for j in range(n)] for i in range(n)])
+        columns = [
+            np.array([[float(x[i]) for x in one] for i in range(n)])
+            for one in ([e[1] for e in self.inputs], [e[2] for e in self.inputs])
+        ]
+        now, before = (x.reshape(n, len(self.inputs)) for x in columns)
+        straight = np.array([float(d) for *_, d in self.inputs])
+        whole = np.array([m for m, *_ in self.inputs], dtype=float)
+        c = np.array([float(self.output[0, i]) for i in range(n)])
+        if not n:
+            return np.zeros((0, 0)), now, before, straight, whole, c
+        # units of the states: their sizes spread as the powers of the slowest pole
+        _, (scale, _) = matrix_balance(step, permute=False, separate=True)
+        beside = scale[:, None]
+        return step * scale / beside, now / beside, before / beside, straight, whole, c * scale
+
+
+def _integral(a: mpmath.matrix, time: mpmath.mpf) -> mpmath.matrix:
+    """Of e^(A t) from 0 to that time: a corner of the exponential of a larger matrix."""
+    n = a.rows
+    if not n:
+        return a
+    whole = mpmath.matrix(2 * n, 2 * n)
+    for i in range(n):
+        for j in range(n):
+            whole[i, j] = a[i, j] * time
+        whole[i, n + i] = time
+    made = mpmath.expm(whole, method="taylor")
+    return made[:n, n:]
+
+
+def as_mpf(value: Fraction) -> mpmath.mpf:
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+def add(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
+    """Of polynomials, highest first."""
+    n = max(len(p), len(q))
+    p, q = ([mpmath.mpf(0)] * (n - len(x)) + x for x in (p, q))
+    return [a + b for a, b in zip(p, q, strict=True)]
+
+
+def multiply(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
+    out = [mpmath.mpf(0)] * (len(p) + len(q) - 1)
+    for i, a in enumerate(p):
+        for j, b in enumerate(q):
+            out[i + j] += a * b
+    return out

@@ -1,0 +1,230 @@
+"""The loop of a controller that samples and holds: exact, as a system in discrete time.
+
+    x' = A x + sum_k B_k u(t - T_k),   y = C x + sum_k D_k u(t - T_k),   u held over each sample h
+
+A dead time T = m h + d, 0 <= d < h, takes the held value of m + 1 samples before for its first part
+d of each sample, and that of m before for the rest (Astrom and Wittenmark, Computer-Controlled
+Systems, 3.2). A sample is read just before the output that it gives: what passes straight through
+is that of the sample before. So y = P(z) u with
+
+    P(z) = sum_k z^-m_k (C (z I - e^(A h))^-1 (B0_k + B1_k/z) + D_k/z)
+
+Whether the closed loop grows is decided by its characteristic polynomial, in fifty digits. Values
+on the unit circle are computed in floats about z = 1, where slow poles crowd.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import mpmath
+import numpy as np
+import sympy as sp
+
+from ..controllers import Controller, exact_decimal
+from ..derive import symbol_values
+from ..derive.elimination import transfer
+from ..diagrams import Control, Diagram
+from ..errors import ModelError
+from ..realise.lti import LinearBlocks, S
+from .held_plant import HeldPlant, add, as_mpf, multiply
+from .late_loop import LateRatio
+
+#: rational numbers, highest power first
+Coefficients = tuple[Fraction, ...]
+_DIGITS = 50
+#: of the size of a root: nearer to the unit circle it counts as growing
+_NEAR = 1e-20
+#: samples of dead time in all: the polynomial has as many powers
+MOST_SAMPLES = 1000
+
+
+@dataclass(frozen=True)
+class SampledLoop:
+    """Stable feedback is > 0, as in `LoopGain`: u = -(law) y.
+
+    period: h, s;  law: numerator and denominator in z
+    below: denominator of what lies between, in s;  above: dead time (s) -> its numerators
+    """
+
+    period: Fraction
+    law: tuple[Coefficients, Coefficients]
+    below: Coefficients
+    above: tuple[tuple[Fraction, Coefficients], ...]
+
+    def with_delay(self, time: float) -> SampledLoop:
+        """The loop with so much more dead time (s) in it."""
+        more = Fraction(time)
+        return SampledLoop(
+            self.period, self.law, self.below, tuple((t + more, p) for t, p in self.above)
+        )
+
+    def with_gain(self, factor: float) -> SampledLoop:
+        """The loop with its gain times a factor."""
+        above, below = self.law
+        law = tuple(c * Fraction(factor) for c in above), below
+        return SampledLoop(self.period, law, self.below, self.above)
+
+    @property
+    def samples(self) -> int:
+        """Whole samples of its longest dead time."""
+        return max((int(t // self.period) for t, _ in self.above), default=0)
+
+    def corners(self) -> np.ndarray:
+        """Angles w h at which a pole or a zero turns the phase, narrow resonances among them."""
+        numerators = {float(t): _floats(p) for t, p in self.above}
+        slow = LateRatio(numerators, {0.0: _floats(self.below)}).corners() * float(self.period)
+        roots = np.concatenate([_roots_in_z(p) for p in self.law])
+        roots = roots[np.abs(roots) > 0]
+        near = np.maximum(np.abs(np.log(np.abs(roots)))[:, None], 1e-9)
+        across = np.abs(np.angle(roots))[:, None] + near * np.linspace(-3, 3, 25)
+        angles = np.concatenate([slow, across.ravel()])
+        return np.asarray(np.unique(angles[(angles > 0) & (angles < np.pi)]))
+
+    def grows(self) -> bool:
+        """Whether the closed loop has a mode that does not decay.
+
+        raises ModelError: dead times of more than `MOST_SAMPLES`
+        """
+        if self.samples > MOST_SAMPLES:
+            raise ModelError(
+                f"sampled loop: a dead time of {self.samples} samples, expected at most "
+                f"{MOST_SAMPLES}"
+            )
+        with mpmath.workdps(_DIGITS):
+            return not _decays(self._characteristic())
+
+    def _characteristic(self) -> list[mpmath.mpf]:
+        """The closed loop's polynomial in z, highest first, in `_DIGITS` digits."""
+        plant = HeldPlant.of(self.period, self.below, self.above)
+        below, shares = plant.polynomials()
+        most = max((m for m, *_ in shares), default=0) + 1
+        above = [mpmath.mpf(0)]
+        for m, now, before in shares:
+            # (z now + before) z^(most - 1 - m)
+            both = add(now + [mpmath.mpf(0)], before)
+            above = add(above, both + [mpmath.mpf(0)] * (most - 1 - m))
+        law = [[as_mpf(c) for c in side] for side in self.law]
+        return add(multiply(law[1], below + [mpmath.mpf(0)] * most), multiply(law[0], above))
+
+    @cached_property
+    def _floats(self) -> tuple[np.ndarray, ...]:
+        """A h/h of the states in floats and what the inputs do, with e^(A h) - I kept small."""
+        with mpmath.workdps(_DIGITS):
+            return HeldPlant.of(self.period, self.below, self.above).as_floats()
+
+    def __call__(self, angle: np.ndarray) -> np.ndarray:
+        """Gain once round the loop at z = e^(j angle), (n,)."""
+        step, now, before, straight, whole, c = self._floats
+        less = np.expm1(1j * np.asarray(angle, dtype=float))  # z - 1
+        z = 1 + less
+        total = np.zeros(len(z), dtype=complex)
+        n = len(step)
+        late = z[:, None] ** -whole
+        inputs = (late @ now.T) + (late / z[:, None]) @ before.T
+        if n:
+            matrices = less[:, None, None] * np.eye(n) - step
+            total += np.linalg.solve(matrices, inputs[:, :, None])[:, :, 0] @ c
+        total += (late / z[:, None]) @ straight
+        law = [np.polyval(_about_one(side), less) for side in self.law]
+        return np.asarray(total * law[0] / law[1])
+
+
+def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> SampledLoop | None:
+    """The loop opened at a controller that samples and holds, everything else linear.
+
+    None where it is no such system: another controller samples too, laws in continuous time stand
+    beside the discrete one in the controller, or a dead time lies within another loop
+    diagram: bodies with a structure apart;  linear: its blocks
+    """
+    law = part.controller
+    if linear.held != (part.name,) or not isinstance(law, Controller):
+        return None
+    if any(stage.law.shift is None for stage in law.stages):
+        return None
+    periods = {exact_decimal(stage.values["period"]) for stage in law.stages}
+    if len(periods) != 1 or 0 in periods:
+        return None
+    z = sp.Symbol("z")
+    whole = sp.Mul(*(stage.law.shift(stage.values, z) for stage in law.stages if stage.law.shift))
+    sides = sp.fraction(sp.cancel(sp.together(whole)))
+    opened = diagram.opened(part.name)
+    if part.input not in opened.signals:
+        return None
+    path = transfer(opened, part.input, (part.output,))[part.output]
+    plant = _plant(-sp.sympify(path).subs(symbol_values(linear)))
+    period = periods.pop()
+    if plant is None:
+        return None
+    law_in_z = _rationals(sides[0], z), _rationals(sides[1], z)
+    return SampledLoop(Fraction(int(period.p), int(period.q)), law_in_z, *plant)
+
+
+def _plant(
+    path: sp.Expr,
+) -> tuple[Coefficients, tuple[tuple[Fraction, Coefficients], ...]] | None:
+    """Denominator and numerators by their dead time; None: no such sum, or one that is improper."""
+    powers = sorted(path.atoms(sp.exp), key=str)
+    marks = [sp.Dummy(f"late_{k}") for k in range(len(powers))]
+    times = [-power.args[0].coeff(S) for power in powers]
+    plain = path.xreplace(dict(zip(powers, marks, strict=True)))
+    above, below = sp.fraction(sp.cancel(sp.together(plain)))
+    if not (
+        all(t.is_Rational and t >= 0 for t in times)
+        and below.is_polynomial(S)
+        and above.is_polynomial(S, *marks)
+        and not below.free_symbols & set(marks)
+        and path.free_symbols <= {S}
+    ):
+        return None
+    low = sp.Poly(below, S)
+    made: dict[Fraction, dict[int, Fraction]] = {}
+    for (degree, *exponents), c in sp.Poly(above, S, *marks).terms():
+        if not c.is_Rational or degree > low.degree():
+            return None
+        late = sum((n * t for n, t in zip(exponents, times, strict=True)), sp.S(0))
+        of_this = made.setdefault(Fraction(int(late.p), int(late.q)), {})
+        of_this[degree] = of_this.get(degree, Fraction(0)) + Fraction(int(c.p), int(c.q))
+    numerators = tuple(
+        (t, tuple(p.get(k, Fraction(0)) for k in range(max(p), -1, -1)))
+        for t, p in sorted(made.items())
+    )
+    return _rationals(below, S), numerators
+
+
+def _rationals(polynomial: sp.Expr, variable: sp.Symbol) -> Coefficients:
+    return tuple(Fraction(int(c.p), int(c.q)) for c in sp.Poly(polynomial, variable).all_coeffs())
+
+
+def _decays(polynomial: list[mpmath.mpf]) -> bool:
+    """Whether all roots lie within the unit circle (Schur, Cohn, Jury)."""
+    p = list(polynomial)
+    while p and p[0] == 0:
+        p = p[1:]
+    while len(p) > 1:
+        lead, last = p[0], p[-1]
+        if abs(last) >= abs(lead) * (1 - _NEAR):
+            return False
+        share = last / lead
+        p = [a - share * b for a, b in zip(p[:-1], p[:0:-1], strict=True)]
+    return bool(p)
+
+
+def _about_one(coefficients: Coefficients) -> np.ndarray:
+    """Coefficients in z - 1 of a polynomial in z, exact until the last step."""
+    left, made = list(coefficients), []
+    for _ in coefficients:  # Horner's scheme, again and again
+        for i in range(1, len(left)):
+            left[i] += left[i - 1]
+        made.append(left.pop())
+    return np.array([float(c) for c in reversed(made)])
+
+
+def _roots_in_z(coefficients: Coefficients) -> np.ndarray:
+    return np.asarray(np.roots(_about_one(coefficients)) + 1)
+
+
+def _floats(coefficients: Coefficients) -> np.ndarray:
+    return np.array([float(c) for c in coefficients])

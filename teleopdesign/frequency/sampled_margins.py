@@ -1,0 +1,152 @@
+"""Margins of a loop that samples and holds, from its gain on the unit circle.
+
+A dead time changes with every part of a sample what the loop lets pass between two samples. So the
+delay margin is sought over the part d of a sample: where the gain is 1 at the angle a and its phase
+lies p ahead of -180 degrees, m = p/a samples more turn it there, and m is to be whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .sampled_loop import MOST_SAMPLES, SampledLoop
+
+#: from slow to the fastest that samples tell, angles w h on the grid
+_SLOWEST, _POINTS = 1e-9, 6001
+#: rad; the grid is as fine as whole samples of dead time turn the phase by this
+_STEP = 0.2
+#: parts of a sample at which crossings are looked for, before they are followed
+_PARTS = 8
+#: shares of the margin, and samples where there is none, at which the loop is to decay
+_BEFORE, _SAMPLES = (0.25, 0.5, 0.75, 0.99), (0.5, 1.0, 3.0, 10.0, 30.0)
+#: samples; more dead time than this is not looked at
+_MOST = 1e6
+#: share and rad, as in `margins`
+_LEVEL = 1e-3
+
+
+def grid_of(loop: SampledLoop) -> np.ndarray:
+    """Angles w h up to half the sampling rate, corners and narrow resonances among them."""
+    number = int(np.pi * (loop.samples + 2) / _STEP) + 2
+    angles = np.concatenate(
+        [np.geomspace(_SLOWEST, np.pi, _POINTS), np.linspace(0, np.pi, number), loop.corners()]
+    )
+    return np.unique(angles[(angles >= _SLOWEST) & (angles <= np.pi)])
+
+
+def unity_crossings(loop: SampledLoop) -> tuple[np.ndarray, np.ndarray]:
+    """Phase ahead of -180 degrees and angle w h where the gain is 1."""
+    angles = grid_of(loop)
+    at = _zeros(lambda a: np.log(np.abs(loop(a))), angles, np.abs(loop(angles)) > 1)
+    return np.degrees(np.angle(loop(at))) + 180, at
+
+
+def gain_margin(loop: SampledLoop) -> float:
+    """Factor, at least 1, by which the gain of a stable loop may rise or fall; inf: none limits."""
+    angles = grid_of(loop)
+    gain = loop(angles)
+    at = _zeros(lambda a: loop(a).imag, angles, gain.imag > 0)
+    values = loop(at)
+    real = values.real[values.real < 0]
+    # half the sampling rate, where it is real, and the slow end where it is level
+    ends = [gain[-1].real] if gain[-1].real < 0 else []
+    level = abs(abs(gain[1] / gain[0]) - 1) <= _LEVEL
+    if level and abs(np.angle(-gain[0])) <= _LEVEL:
+        ends.append(gain[0].real)
+    sizes = np.abs(np.concatenate([real, ends]))
+    sizes = sizes[sizes > 0]
+    return float(np.maximum(sizes, 1 / sizes).min()) if len(sizes) else np.inf
+
+
+def delay_margin(loop: SampledLoop) -> float:
+    """Dead time (s) from which on a stable loop grows; inf: none was found.
+
+    Where something passes straight through, the loop changes by steps, from one whole sample of
+    dead time to the next. What is found is held against the modes at a few shorter dead times.
+    """
+    period = float(loop.period)
+    longest = MOST_SAMPLES * period
+    exact, near = _candidates(loop)
+    best, low = np.inf, 0.0
+    for time in sorted({*exact, *near}):
+        if time > longest or loop.with_delay(time * (1 + 1e-9)).grows():
+            if time <= longest and time not in exact:
+                time = _bisect(loop, max(low, time - period / _PARTS), time)
+            best = time
+            break
+        low = time
+    times = [s * best for s in _BEFORE] if np.isfinite(best) else [n * period for n in _SAMPLES]
+    decays = 0.0
+    for time in (t for t in times if t <= longest):
+        if loop.with_delay(time).grows():
+            return _bisect(loop, decays, time)
+        decays = time
+    return best
+
+
+def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
+    """Dead times (s) at which a mode is on the circle, and whole samples later than it would be."""
+    period = float(loop.period)
+    exact, near = set[float](), set[float]()
+    for part in np.arange(_PARTS) / _PARTS:
+        phase, at = unity_crossings(loop.with_delay(part * period))
+        for angle, whole in zip(at, np.radians(phase % 360) / at, strict=True):
+            if whole > _MOST:
+                continue
+            near.add((float(np.ceil(whole)) + part) * period)
+            on_circle = _follow(loop, float(angle), (float(whole) + part) * period)
+            if on_circle is not None:
+                exact.add(on_circle)
+    return exact, {t for t in near if t > 0}
+
+
+def _bisect(loop: SampledLoop, low: float, high: float) -> float:
+    """A dead time at which a loop that decays at `low` begins to grow."""
+    while high - low > 1e-9 * high:
+        middle = (low + high) / 2
+        low, high = (low, middle) if loop.with_delay(middle).grows() else (middle, high)
+    return high
+
+
+def _follow(loop: SampledLoop, angle: float, time: float) -> float | None:
+    """The dead time near this one at which 1 + gain is 0 on the circle, by Newton's method."""
+    period = float(loop.period)
+
+    def wrong(time: float, angle: float) -> complex:
+        turned = loop.with_delay(time % period)(np.array([angle]))[0]
+        return complex(1 + turned * np.exp(-1j * angle * (time // period)))
+
+    for _ in range(30):
+        value = wrong(time, angle)
+        if abs(value) < 1e-11:
+            return time if time > 0 else None
+        small = 1e-7 * period, 1e-7 * angle
+        slopes = (
+            (wrong(time + small[0], angle) - value) / small[0],
+            (wrong(time, angle + small[1]) - value) / small[1],
+        )
+        matrix = np.array([[d.real for d in slopes], [d.imag for d in slopes]])
+        try:
+            step = np.linalg.solve(matrix, [-value.real, -value.imag])
+        except np.linalg.LinAlgError:
+            return None
+        time += float(np.clip(step[0], -0.5 * period, 0.5 * period))
+        angle += float(np.clip(step[1], -0.2 * angle, 0.2 * angle))
+        if time < 0 or not 0 < angle <= np.pi:
+            return None
+    return None
+
+
+def _zeros(
+    function: Callable[[np.ndarray], np.ndarray], angles: np.ndarray, above: np.ndarray
+) -> np.ndarray:
+    """Where a function changes sign between two angles, by bisection and secants."""
+    from scipy.optimize import brentq
+
+    def one(angle: float) -> float:
+        return float(function(np.array([angle]))[0])
+
+    turns = np.flatnonzero(above[1:] != above[:-1])
+    return np.array([brentq(one, angles[k], angles[k + 1], rtol=1e-13) for k in turns])
