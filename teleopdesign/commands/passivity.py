@@ -16,7 +16,7 @@ from ._arms import add_body
 from ._claims import WIDTH, claim_data, claim_lines
 from ._diagnosis import add_answer, body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
-from ._options import add_effect_files, check_output
+from ._options import add_effect_files, check_output, say_written
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -49,14 +49,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs=2,
         type=float,
         metavar=("LEVEL", "STIFFNESS"),
-        help="Dahl compensator, N and N/m",
+        help="Dahl compensator, N and N/m (of an axis that turns N*m and N*m/rad)",
     )
     law.add_argument(
         "--smoothed-coulomb",
         nargs=2,
         type=float,
         metavar=("LEVEL", "A"),
-        help="smoothed Coulomb, N and m/s",
+        help="smoothed Coulomb, N and m/s (N*m and rad/s)",
     )
     parser.add_argument("--period", type=float, metavar="S", help="sample period, s")
     parser.add_argument("--delay", type=float, default=0.0, metavar="S", help="computing delay, s")
@@ -68,7 +68,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs=2,
         type=float,
         metavar=("K", "B"),
-        help="virtual wall, N/m and N s/m; needs --period",
+        help="virtual wall, N/m and N s/m (N*m/rad and N*m*s/rad); needs --period",
     )
     parser.add_argument(
         "--stroke", type=float, default=0.01, metavar="M", help="of a search in a diagram, m or rad"
@@ -105,6 +105,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json is not None:
         content = {"claims": [claim_data(s) for s in claims], "margins": [vars(m) for m in limits]}
         write_json(options.json, content)
+    say_written(options.json)
     return 0
 
 

@@ -14,6 +14,7 @@ from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force
 from .acting import current_that_acted, names_current
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
+from .balance import PLACEHOLDER, force_to_si, hand_by_balance, scale_by_balance
 from .content import (
     NONE,
     SURE_NAME,
@@ -38,11 +39,6 @@ CHANCE = 0.1
 PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
-#: what a column without a telling name may leave of the squares that the motion does not explain,
-#: to be taken for the hand's force: with more, chance finds one among many columns. And how far its
-#: factor may lie off one: a sensor's calibration error of a quarter still passes
-BALANCES = 2.0 / 3.0
-FACTOR_OF_ONE = 1.25
 
 
 def describe_forces(
@@ -85,12 +81,13 @@ def describe_forces(
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
     hand = _hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
-        hand = _hand_by_motion(survey, same_axis, force, motion)
+        hand = hand_by_balance(survey, same_axis, force, motion)
     if hand is not None:
         survey.channels["interaction_force"] = _force_entry(
             survey, hand, "interaction_force", choices
         )
-    _signs(survey, motion, force, hand)
+    scale_by_balance(survey, motion, choices)
+    _signs(survey, (x * _position_to_si(survey), h), force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
 
@@ -171,10 +168,10 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
         base = "V" if unit == "V" else "A"
         constant = choices.torque_constant
         if constant is None:
-            constant = (1.0, f"{unit_of('force', axis)}/{base}")
+            constant = (PLACEHOLDER, f"{unit_of('force', axis)}/{base}")
             why = (
-                f"1 {constant[1]} stands for the motor's constant: fill it in, forces and "
-                "parameters follow in proportion"
+                f"{constant[0]:g} {constant[1]} stands for the motor's constant: fill it in, "
+                "forces and parameters follow in proportion"
             )
             if (stated := torque_constant_in(survey.remarks)) and measures(
                 stated[1].rpartition("/")[0], "force", axis
@@ -193,48 +190,6 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
     return {**entry, "unit": unit}
 
 
-def _hand_by_motion(
-    survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
-) -> str | None:
-    """A column whose name does not say so, but that balances with the command: the hand's force.
-
-    The motion asks for `command + hand`, both in the unit of forces: of what it leaves of the
-    command alone, the column takes a good part away, with a factor of one.
-    """
-    x, h = motion
-    u = survey.columns[force].values * _si_factor(survey, "actuator_force")
-    alone = explain_force(u, x, h)
-    best: tuple[float, str] | None = None
-    for name, column in free.items():
-        unit = column.unit
-        if name == force or is_wanted(name) or likeness(name, "position") >= SURE_NAME:
-            continue
-        if unit is not None and not measures(unit, "force", survey.axis):
-            continue
-        factor = si_factor(unit, quantity="force", axis=survey.axis) if unit else 1.0
-        more, less = (explain_force(u + s * factor * column.values, x, h) for s in (1.0, -1.0))
-        whole = min(more, less, key=lambda guess: guess.left)
-        left = whole.left**2
-        # what is left is a square in the column's factor: three values tell where it is least
-        bend = 0.5 * (more.left**2 + less.left**2) - alone.left**2
-        at = abs(0.25 * (more.left**2 - less.left**2) / bend) if bend > 0 else 0.0
-        if left > BALANCES * alone.left**2 or not 1 / FACTOR_OF_ONE < at < FACTOR_OF_ONE:
-            continue
-        # the command logged twice takes itself away, and no more of what remains is explained
-        if 1 - whole.explained > BALANCES * (1 - alone.explained):
-            continue
-        if best is None or left < best[0]:
-            best = left, name
-    if best is None:
-        return None
-    left, name = best
-    survey.guesses["channels.interaction_force.column"] = (
-        f"{name!r} is taken for the hand's force: added to {force!r}, it takes away "
-        f"{1 - left / alone.left**2:.0%} of what the motion does not explain"
-    )
-    return name
-
-
 def _position_to_si(survey: Survey) -> float:
     """Factor of the position from its column to SI, behind the gear."""
     position = survey.channels["position"]
@@ -248,11 +203,11 @@ def _position_to_si(survey: Survey) -> float:
 def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | None) -> None:
     """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
     x, h = motion
-    u = survey.columns[force].values * _si_factor(survey, "actuator_force")
+    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
     whole = explain_force(u, x, h)
     with_hand = whole
     if hand is not None:
-        f = survey.columns[hand].values * _si_factor(survey, "interaction_force")
+        f = survey.columns[hand].values * force_to_si(survey, "interaction_force")
         by_sign = {s: explain_force(u + s * f, x, h) for s in (1.0, -1.0)}
         better = max(by_sign, key=lambda s: by_sign[s].explained)
         if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
@@ -286,17 +241,3 @@ def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | 
     ratio = float(survey.channels["position"].get("gear_ratio", 1.0))
     if ratio != 1.0:
         survey.notes.append(f"forces and positions are those behind the gear of {ratio:g}")
-
-
-def _si_factor(survey: Survey, key: str) -> float:
-    """Factor of a force from its column to SI, as proposed."""
-    from ..conversion import conversion_of
-    from ..toml_table import Table
-
-    entry = survey.channels[key]
-    if key == "actuator_force" and "gear_ratio" in survey.channels["position"]:
-        entry = {**entry, "gear_ratio": survey.channels["position"]["gear_ratio"]}
-    conversion, _ = conversion_of(
-        Table(entry, "log"), quantity=key, kind="force", axis=survey.axis, unit=entry["unit"]
-    )
-    return conversion.factor
