@@ -115,6 +115,7 @@ def run(options: argparse.Namespace) -> int:
         return _run_arm(experiment, options)
     diagnosis = diagnose_experiment(experiment, options)
     print_diagnosis(diagnosis)
+    print(f"\n{diagnosis.model}")
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
         write_answer(diagnosis, options.json, simulation=simulation)
