@@ -143,7 +143,7 @@ def _list_waiting_effects(model: Model, place: str) -> list[str]:
 
 
 def _describe_smallest(v: Visibility, model: Model, share: float | None = None) -> str:
-    """An effect in words, with its smallest visible strength and the force at that strength."""
+    """An effect, the parameter that makes it visible and from which value, and its force there."""
     effect = v.candidate.effect
     name, value = next(iter(v.strength.items()))
     unit = unit_of(effect.parameters[name].quantity, model.body(v.candidate.at).axis)
@@ -151,7 +151,7 @@ def _describe_smallest(v: Visibility, model: Model, share: float | None = None) 
     word, size = ("below", value) if math.isinf(off) else ("from", abs(value - off))
     number = f"{size:.2g}{'' if unit == '1' else ' ' + unit}"
     force = "" if share is None else f", {100 * share:.2g} % of the force"
-    return f"{effect.name} ({word} {number}{force})"
+    return f"{effect.name} ({name} {word} {number}{force})"
 
 
 def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:

@@ -17,6 +17,13 @@ from ._home import no_home_is_made
 from ._paths import check_paths
 from ._terminal import plain_warnings, printable_streams
 
+EXAMPLES = """\
+  teleopdesign new log.csv --output joint
+  teleopdesign check joint
+  teleopdesign diagnose joint --json answer.json --report report.html
+  teleopdesign design answer.json --output design
+`teleopdesign COMMAND --help` says more"""
+
 
 def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda: False) -> int:
     """Run the command; returns the exit status, but of what is stopped.
@@ -36,6 +43,9 @@ def _run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool]) -> int
     options = None
     try:
         try:
+            if not (sys.argv[1:] if arguments is None else arguments):
+                parser().print_help()
+                return 2
             options = parser().parse_args(arguments)
         finally:  # also where help was shown, or a wrong argument refused
             _flush()
@@ -78,6 +88,8 @@ def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="teleopdesign",
         description="Friction in haptic interfaces and teleoperators: find what a model lacks.",
+        epilog=f"from a log to a compensation:\n{EXAMPLES}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"teleopdesign {__version__}")
     parser.add_argument(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..plain_data import write_json
 from ._claims import claim_data, claim_lines
+from ._options import say_written
 from .derive import diagram_of
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
             "claims": [claim_data(s) for s in claims.claims],
         }
         write_json(options.json, content)
+    say_written(options.json)
     return 0
 
 

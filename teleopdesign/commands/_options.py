@@ -49,6 +49,12 @@ def count_argument(text: str) -> int:
     return number
 
 
+def say_written(*paths: Path | None) -> None:
+    """Name the files that were written, in one line; no line where there are none."""
+    if written := [str(path) for path in paths if path is not None]:
+        print(f"\nwritten: {', '.join(written)}")
+
+
 def make_folder(path: Path) -> Path:
     """The folder, made where it is not there; raises ExperimentError where nothing can be written.
 

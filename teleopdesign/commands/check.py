@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ExperimentError
 from ..plain_data import write_json
 from ._diagnosis import experiment_of, stated_model
-from ._options import add_experiment, check_output
+from ._options import add_experiment, check_output, say_written
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json is not None:
         check_output(options.json, (".json",))
     from ..check.soundness_check import check_experiment
+    from ..measurement.experiment import describe_content
 
     try:
         experiment = experiment_of(options.folder)
@@ -49,13 +50,14 @@ def run(options: argparse.Namespace) -> int:
         if not findings:
             raise
     else:
-        print(experiment)
+        print(describe_content(experiment))  # how the logs were read is among the findings
         print()
         findings = check_experiment(experiment, _model_of(experiment, options))
     print(text_of(findings))
     if options.json is not None:
         content = {"findings": [finding_data(f) for f in findings]}
         write_json(options.json, content)
+    say_written(options.json)
     return 0
 
 

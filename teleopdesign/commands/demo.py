@@ -38,7 +38,4 @@ def run(options: argparse.Namespace) -> int:
     parser = argparse.ArgumentParser()
     diagnose.add(parser)
     arguments = [f"--{name}={path}" for name, path in written.items()]
-    status = diagnose.run(parser.parse_args([str(example("rod")), *arguments]))
-    if status == 0:
-        print("\nwritten: " + ", ".join(map(str, written.values())))
-    return status
+    return diagnose.run(parser.parse_args([str(example("rod")), *arguments]))

@@ -1,4 +1,4 @@
-"""derive every transfer function of a diagram"""
+"""derive every transfer function of a diagram, or of the device that a diagnosis identified"""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError, did_you_mean
 from ..plain_data import write_json
-from ._options import add_effect_files, check_output
+from ._arms import add_body
+from ._diagnosis import body_of_source
+from ._options import add_answer, add_effect_files, check_output, say_written
 
 if TYPE_CHECKING:
     from ..derive import Transfers
@@ -19,14 +21,19 @@ if TYPE_CHECKING:
 EXAMPLES = """
   teleopdesign derive haptic-interface
   teleopdesign derive interface.toml --latex --figure interface.svg
+  teleopdesign derive answer.json                   the identified device in a hand
 """
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "diagram", help="a TOML file, or a shipped one: haptic-interface, world-haptics-2005, ..."
+        "diagram",
+        help="a TOML file, or a shipped one: haptic-interface, world-haptics-2005, ...; or a "
+        "diagnosis's answer (.json), or a folder with experiment.toml, which is diagnosed",
     )
+    add_answer(parser)
+    add_body(parser, pose=True)
     parser.add_argument("--latex", action="store_true", help="print LaTeX, an align's body")
     parser.add_argument("--json", type=Path, metavar="F", help="write expressions and numbers")
     parser.add_argument(
@@ -50,14 +57,29 @@ def run(options: argparse.Namespace) -> int:
     from ..derive import all_transfers
     from ..realise.tips import linear_tips
 
-    diagram = diagram_of(options.diagram, options.effect)
+    diagram = _diagram(options)
     transfers = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
     print(transfers.latex() if options.latex else _page(transfers, options.speed))
     if options.json is not None:
         write_json(options.json, transfers.as_data(speed=options.speed))
     if options.figure is not None:
         _draw(diagram, options.figure)
+    say_written(options.json, options.figure)
     return 0
+
+
+def _diagram(options: argparse.Namespace) -> Diagram:
+    """The diagram that is named, or the haptic interface of an identified device."""
+    from ..diagrams import SHIPPED, haptic_interface
+
+    source = Path(options.diagram)
+    is_experiment = source.name == "experiment.toml" or source.is_dir()
+    if options.diagram not in SHIPPED and (is_experiment or source.suffix == ".json"):
+        return haptic_interface(body_of_source(source, options)[0])
+    for option in ("answer", "body", "pose"):
+        if getattr(options, option):
+            raise ModelError(f"--{option}: found beside a diagram, which brings its own blocks")
+    return diagram_of(options.diagram, options.effect)
 
 
 def diagram_of(name: str, effects: Sequence[Path] = ()) -> Diagram:

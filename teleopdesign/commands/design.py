@@ -11,7 +11,8 @@ from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_json, write_text
 from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import diagnosis_of, effects_by_name, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, check_output, make_folder, say
+from ._options import add_experiment, check_output, make_folder, say, say_written
+from ._paths import shell_word
 
 if TYPE_CHECKING:
     from ..design import Assumptions, Design, DiagnosedModel
@@ -134,6 +135,7 @@ def _design(diagnosis: DiagnosedModel, place: str, assumptions: Assumptions) -> 
 def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
     from ..plot import save_figure
 
+    written: list[Path | None] = [options.json, options.figure]
     content = {"bodies": {place: d.as_dict() for place, d in designs.items()}}
     if options.json is not None:
         write_json(options.json, content)
@@ -141,11 +143,15 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
         save_figure(
             next(iter(designs.values())).plot(), options.figure, suffixes=(options.figure.suffix,)
         )
-    if options.output is None:
-        return
-    for place, proposal in designs.items():
+    diagrams: list[Path] = []
+    for place, proposal in designs.items() if options.output is not None else ():
         files = save_figure(proposal.plot(), options.output / f"{place}_design")
-        proposal.to_json(options.output / f"{place}_design.json")
-        diagram = options.output / f"{place}_interface.toml"
-        write_text(diagram, proposal.to_toml())
-        print(f"written: {', '.join(map(str, files))}, {diagram}")
+        data = options.output / f"{place}_design.json"
+        proposal.to_json(data)
+        diagrams.append(options.output / f"{place}_interface.toml")
+        write_text(diagrams[-1], proposal.to_toml())
+        written += [*files, data, diagrams[-1]]
+    say_written(*written)
+    for diagram in diagrams:
+        print(f"its transfer functions: teleopdesign derive {shell_word(diagram)}")
+        print(f"its passivity: teleopdesign passivity {shell_word(diagram)}")

@@ -11,7 +11,7 @@ from ..errors import ModelError
 from ..plain_data import write_beside
 from ._diagnosis import diagnose_experiment, experiment_of, print_diagnosis, search_missing
 from ._folders import diagnose_all
-from ._options import add_effect_files, add_search, check_output, count_argument, say
+from ._options import add_effect_files, add_search, check_output, count_argument, say, say_written
 from ._paths import shell_word
 from ._report import write_arm_page, write_page
 
@@ -109,6 +109,7 @@ def run(options: argparse.Namespace) -> int:
         return _run_arm(experiment, options)
     diagnosis = diagnose_experiment(experiment, options)
     print_diagnosis(diagnosis)
+    print(f"\n{diagnosis.model}")
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
         write_answer(diagnosis, options.json, simulation=simulation)
@@ -119,7 +120,8 @@ def run(options: argparse.Namespace) -> int:
             diagnosis.plot().savefig(part)
     if options.report is not None:
         write_page(diagnosis, options.report)
-    for line in _suggest_commands(diagnosis, folder):
+    say_written(options.report, options.json, options.predictions, options.figure)
+    for line in _suggest_commands(diagnosis, folder, options.json):
         print(line)
     return 0
 
@@ -141,6 +143,7 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
             diagnosis.plot().savefig(part)
     if options.report is not None:
         write_arm_page(diagnosis, options.report)
+    say_written(options.report, options.json, options.predictions, options.figure)
     source = shell_word(options.folder[0] if options.json is None else options.json)
     for line in _suggest_for_joints(diagnosis, source):
         print(line)
@@ -194,11 +197,13 @@ def _simulate(
     return comparison
 
 
-def _suggest_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
-    """What helps on from here: nothing where all is explained."""
+def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -> list[str]:
+    """What helps on from here; with the answer that was written nothing is diagnosed again."""
+    source = shell_word(answer or folder)
     lines = []
     if diagnosis.groups:
-        lines.append(f"what to measure to tell them: teleopdesign next {shell_word(folder)}")
+        lines.append(f"what to measure to tell them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
-        lines.append(f"where it fails: teleopdesign describe {shell_word(folder)}")
-    return ["", *lines] if lines else []
+        lines.append(f"where it fails: teleopdesign describe {source}")
+    lines.append(f"a compensation: teleopdesign design {source} --output design")
+    return ["", *lines]

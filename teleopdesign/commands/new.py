@@ -37,6 +37,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         "one is the check record",
     )
     parser.add_argument("--output", type=Path, metavar="FOLDER", help="folder of the experiment")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="write an experiment.toml that is there anew"
+    )
     parser.add_argument("--yes", action="store_true", help="take every guess, ask nothing")
     parser.add_argument("--title", help="of the experiment; default: the log's name")
     parser.add_argument("--axis", choices=("prismatic", "revolute"))
@@ -74,13 +77,17 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Look at the logs, ask, write the folder and a picture of what was understood."""
     from ..measurement import load_experiment
-    from ..measurement.new_folder import make_folder
+    from ..measurement.new_folder import make_folder, require_new
     from ..measurement.survey import require_same_columns, survey_log
     from ..measurement.tables import open_log
 
     for path in options.logs:
         if not path.exists():
             raise ExperimentError(f"{path}: no such file")
+    stem = options.logs[0].name.split(".")[0] or "experiment"
+    folder = options.output or Path(f"{stem}_experiment")
+    if not options.overwrite:
+        require_new(folder)
     logs = [open_log(path, path.name) for path in options.logs]
     require_same_columns(logs, [path.name for path in options.logs])
     choices = _choices(options)
@@ -89,11 +96,6 @@ def run(options: argparse.Namespace) -> int:
     if ask:
         choices = _ask_about(survey, choices, input)
         survey = survey_log(logs[0], options.logs[0].name, choices)
-    print(survey_text(survey, options.logs[0].name))
-    if survey.guesses and not options.yes and not ask:
-        print("\nno terminal to ask on: every guess is taken, as with --yes")
-    stem = options.logs[0].name.split(".")[0] or "experiment"
-    folder = options.output or Path(f"{stem}_experiment")
     make_folder(
         survey,
         options.logs,
@@ -101,7 +103,11 @@ def run(options: argparse.Namespace) -> int:
         title=options.title or stem,
         inertia=options.inertia,
         spans=_spans(options),
+        overwrite=options.overwrite,
     )
+    print(survey_text(survey, options.logs[0].name))
+    if survey.guesses and not options.yes and not ask:
+        print("\nno terminal to ask on: every guess is taken, as with --yes")
     experiment = load_experiment(folder)
     print()
     print(experiment)
@@ -113,6 +119,8 @@ def run(options: argparse.Namespace) -> int:
     print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
     if boxes := explain_boxes(survey.columns):
         print(boxes)
+    if survey.guesses:
+        print("where a guess is wrong: the same command with the option below it, and --overwrite")
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
     return 0
@@ -162,6 +170,8 @@ def _option_of(key: str, survey: Survey) -> str:
     if part == "unit":
         column = survey.channels.get(quantity, {}).get("column", "COLUMN")
         return f"--unit {shell_word(f'{column}=UNIT')}"
+    if part == "gear_ratio":
+        return "--gear-ratio N (1: none)"
     if part == "torque_constant":
         unit = survey.channels[quantity][part]["unit"]
         return f'--torque-constant "VALUE {unit}"'
@@ -220,7 +230,13 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
     units = dict(choices.units)
     for key, why in list(survey.guesses.items()):
         _, quantity, part = (*key.split("."), "", "")[:3]
-        if part not in ("unit", "column", "torque_constant", "counts_per_turn") and key not in (
+        if part not in (
+            "unit",
+            "column",
+            "torque_constant",
+            "counts_per_turn",
+            "gear_ratio",
+        ) and key not in (
             "model.device.axis",
             "sample_rate",
         ):
@@ -237,6 +253,8 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
             choices = replace(choices, torque_constant=_constant(answer))
         elif part == "counts_per_turn":
             choices = replace(choices, counts_per_turn=float(answer))
+        elif part == "gear_ratio":
+            choices = replace(choices, gear_ratio=float(answer))
         elif key == "model.device.axis":
             choices = replace(choices, axis=answer)
         else:

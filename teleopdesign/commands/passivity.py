@@ -16,7 +16,7 @@ from ._arms import add_body
 from ._claims import WIDTH, claim_data, claim_lines
 from ._diagnosis import body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
-from ._options import add_answer, add_effect_files, check_output
+from ._options import add_answer, add_effect_files, check_output, say_written
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -140,6 +140,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json is not None:
         content = {"claims": [claim_data(s) for s in claims], "margins": [vars(m) for m in limits]}
         write_json(options.json, content)
+    say_written(options.json)
     return 0
 
 

@@ -150,7 +150,7 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     z = sp.Symbol("z")
     whole = sp.Mul(*(stage.law.shift(stage.values, z) for stage in law.stages if stage.law.shift))
     sides = sp.fraction(sp.cancel(sp.together(whole)))
-    opened = diagram.opened(part.name)
+    opened = diagram.open_at(part.name)
     if part.input not in opened.signals:
         return None
     path = transfer(opened, part.input, (part.output,))[part.output]

@@ -89,20 +89,24 @@ class Experiment(ByValue):
         return html_table(title, ("body or record", "axis or use", "", ""), rows)
 
     def __repr__(self) -> str:
-        lines = [f"Experiment {quote(self.title)} ({self.folder.name})"]
-        for name, body in self.bodies.items():
-            effects = ", ".join(body.effects) or "no effects"
-            lines.append(f"  {name}: {body.axis}, {effects}")
-            for quantity in BODY_QUANTITIES:
-                channel = self.channels.get(f"{name}.{quantity}")
-                if channel is not None:
-                    unit = unit_of(BODY_QUANTITIES[quantity], body.axis)
-                    lines.append(f"    {quantity} in {unit}{_exactness(channel, unit)}")
-        if self.arm is not None:
-            lines += [f"  {line}" for line in repr(self.arm).splitlines()]
-        lines += [f"  {record!r}" for record in self.records]
-        lines += reading_table(self.reading)
-        return "\n".join(lines)
+        return "\n".join([describe_content(self), *reading_table(self.reading)])
+
+
+def describe_content(experiment: Experiment) -> str:
+    """Bodies, channels and records, a line each, without what was done to read the logs."""
+    lines = [f"Experiment {quote(experiment.title)} ({experiment.folder.name})"]
+    for name, body in experiment.bodies.items():
+        effects = ", ".join(body.effects) or "no effects"
+        lines.append(f"  {name}: {body.axis}, {effects}")
+        for quantity in BODY_QUANTITIES:
+            channel = experiment.channels.get(f"{name}.{quantity}")
+            if channel is not None:
+                unit = unit_of(BODY_QUANTITIES[quantity], body.axis)
+                lines.append(f"    {quantity} in {unit}{_exactness(channel, unit)}")
+    if experiment.arm is not None:
+        lines += [f"  {line}" for line in repr(experiment.arm).splitlines()]
+    lines += [f"  {record!r}" for record in experiment.records]
+    return "\n".join(lines)
 
 
 def load_experiment(folder: str | Path) -> Experiment:

@@ -257,7 +257,8 @@ def _stamps(
             ("longest", float(steps.max())),
         )
         effect = _effect_of_even_stamps(clock, positions)
-        return True, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
+        done = ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)
+        return True, [replace(done, interpolates=True)]
     slope, error = stamps_are_true(clock, positions)
     text = f"stamps {100 * clock.jitter / h:.2g} % of a row off an even clock"
     share = f"{slope:.2f} +- {error:.1g} of what they say"
@@ -274,7 +275,8 @@ def _stamps(
     if not sure:
         effect = "the position hardly tells, so that it makes little difference"
     numbers = (("jitter", clock.jitter), ("rate", 1.0 / h), ("followed", slope))
-    return stamped, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
+    done = ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)
+    return stamped, [replace(done, interpolates=stamped)]
 
 
 def _effect_of_even_stamps(clock: RecordClock, positions: list[Array]) -> str:

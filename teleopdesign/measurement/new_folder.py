@@ -34,19 +34,21 @@ def make_folder(
     inertia: float | None = None,
     effects: Sequence[str] = ("coulomb", "viscous"),
     spans: FitAndCheck | None = None,
+    overwrite: bool = False,
 ) -> Path:
     """Copy the logs into a folder and write experiment.toml beside them.
 
     One log is cut into a fit and a check record, at `spans` (s from its first row) if any; of
     several the last is the check record.
+    overwrite: write an experiment.toml that is there anew
     raises ExperimentError: the folder holds an experiment already, or cannot be written; spans that
         overlap, lie outside of the log or belong to several logs
     """
     names = [log.name for log in logs]
     if spans is not None:
         check_spans(spans, survey.duration, names)
-    if (folder / _FILE).exists():
-        raise ExperimentError(f"{folder.name}/{_FILE}: is there already: choose another --output")
+    if not overwrite:
+        require_new(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for log in logs:
@@ -71,6 +73,15 @@ def make_folder(
     )
     write_text(folder / _FILE, text)
     return folder
+
+
+def require_new(folder: Path) -> None:
+    """Raise an ExperimentError where a folder holds an experiment."""
+    if (folder / _FILE).exists():
+        raise ExperimentError(
+            f"{folder.name}/{_FILE}: is there already: --overwrite writes it anew, --output FOLDER "
+            "beside it"
+        )
 
 
 def check_spans(spans: FitAndCheck, duration: float, names: Sequence[str]) -> None:

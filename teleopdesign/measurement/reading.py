@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -10,6 +11,8 @@ from typing import Any
 
 #: characters of a line, and of the columns before the last
 WIDTH, WIDEST = 100, 34
+#: the end of the name of a record that is a part of a log: "log.csv 0-14.4 s"
+_SPAN = re.compile(r" [-+.\de]+-[-+.\de]+ s$")
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,7 @@ class ReadingStep:
     size: part of the measured force that it may add to the force error; NaN: not a number of that
     kind
     topic: of the finding that it makes;  numbers: name -> value in SI
+    interpolates: values then lie between the steps of an encoder
     """
 
     file: str
@@ -31,17 +35,28 @@ class ReadingStep:
     size: float = float("nan")
     topic: str = "reading"
     numbers: tuple[tuple[str, float], ...] = ()
+    interpolates: bool = False
+
+
+def log_name(file: str) -> str:
+    """The name of the log that a record was cut from; of an uncut record its name."""
+    return _SPAN.sub("", file)
 
 
 def reading_table(steps: Sequence[ReadingStep]) -> list[str]:
-    """The steps as lines of a table; empty where every file was used as it is."""
+    """The steps as lines of a table; empty where every file was used as it is.
+
+    Records that are all cut from one log are named by their spans.
+    """
     if not steps:
         return []
     rows = [("record", "in the log", "how it was read, and what that does to the answer")]
+    logs = {log_name(s.file) for s in steps}
+    log = f"{logs.pop()} " if len(logs) == 1 else ""
     alike: dict[tuple[str, str], list[str]] = {}
     for s in steps:
         text = s.rule if s.effect == "none" else f"{s.rule}; {s.effect}"
-        alike.setdefault((s.observed, text), []).append(s.file)
+        alike.setdefault((s.observed, text), []).append(s.file.removeprefix(log))
     rows += [(", ".join(files), observed, text) for (observed, text), files in alike.items()]
     first = min(WIDEST, max(len(row[0]) for row in rows))
     second = min(WIDEST, max(len(row[1]) for row in rows))

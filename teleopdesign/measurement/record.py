@@ -1,6 +1,5 @@
 """One recording: signals in SI units on a uniform time, and what was done to the log for that."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,8 +18,6 @@ from .signals_of_log import signals_of_log
 from .spans import cut_to
 from .tables import LogColumns, read_columns
 
-#: the end of the name of a record that is a part of a log: "log.csv 0-14.4 s"
-_SPAN = re.compile(r" [-+.\de]+-[-+.\de]+ s$")
 #: what a record need not share with others: "own" at these keys of [[records]]
 SEPARATE = ("position_zero", "bias", "friction_level")
 
@@ -101,11 +98,6 @@ def read_record(
         bodies=bodies,
         sample_rate=sample_rate,
     )
-
-
-def log_name(file: str) -> str:
-    """The name of the log that a record was cut from; of an uncut record its name."""
-    return _SPAN.sub("", file)
 
 
 def wanted_columns(channels: Mapping[str, Channel]) -> dict[str, str]:

@@ -166,7 +166,8 @@ def _resample_by_stamps(
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
     rate = (len(at) - 1) / max(float(at[-1] - at[0]), 1e-300)
     text = f"{name} has stamps of its own, {rate:.4g} Hz"
-    return _restore_steps(out, values, channel, step), ReadingStep(file, text, words[rule], "none")
+    done = ReadingStep(file, text, words[rule], "none", interpolates=rule == "position")
+    return _restore_steps(out, values, channel, step), done
 
 
 def _describe_lost_rows(

@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 
 from ..measurement.experiment import Experiment
-from ..measurement.record import log_name
+from ..measurement.reading import log_name
 from ..quantity import unit_of
 
 #: bytes that are read at once: a log may be larger than the memory

@@ -160,7 +160,7 @@ def test_a_rich_record_shows_what_is_tried_and_says_from_which_size(rod, few):
     found = shows(rod, few)
     numbers = found["what the record can show"].numbers
     assert all(numbers[n] < 0.1 for n in SOME if n not in ("coulomb", "viscous"))
-    assert "stribeck (from 0.0" in found["what the record can show"].sentence
+    assert "stribeck (extra_static_level from 0.0" in found["what the record can show"].sentence
     assert "bias and coulomb_asymmetry" in found["look-alikes"].sentence
     assert found["motion"].concern == "fine"
 

@@ -40,7 +40,8 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         if finite > 0.5:
             raw[name] = values
         else:
-            unread[name] = f"numbers in {finite:.0%} of its rows"
+            is_one = len(values) == 1
+            unread[name] = "one value" if is_one else f"numbers in {finite:.0%} of its rows"
     if not raw:
         raise ExperimentError(
             f"{file}: found no column of numbers among {join_names(log.names)}{reasons(unread)}"

@@ -13,6 +13,8 @@ from .acting import names_current
 from .content import Choices, Survey
 from .remarks import torque_constant_in
 
+#: N*m/A: of a motor whose constant nothing says
+PLACEHOLDER = 1.0
 #: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
 PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 
@@ -33,10 +35,10 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         base = "V" if unit == "V" else "A"
         constant = choices.torque_constant
         if constant is None:
-            constant = (1.0, f"{unit_of('force', axis)}/{base}")
+            constant = (PLACEHOLDER, f"{unit_of('force', axis)}/{base}")
             why = (
-                f"1 {constant[1]} stands for the motor's constant: fill it in, forces and "
-                "parameters follow in proportion"
+                f"{constant[0]:g} {constant[1]} stands for the motor's constant: fill it in, "
+                "forces and parameters follow in proportion"
             )
             if (stated := torque_constant_in(survey.remarks)) and measures(
                 stated[1].rpartition("/")[0], "force", axis

@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping
 
 from ...errors import ExperimentError
-from ...quantity import is_unit, measures, si_factor
+from ...quantity import is_unit, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force
 from .acting import current_that_acted
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
+from .balance import hand_by_balance, scale_by_balance
 from .content import (
     NONE,
     SURE_NAME,
@@ -34,11 +35,6 @@ from .position import unwrap_column, wrap_of
 CHANCE = 0.1
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
-#: what a column without a telling name may leave of the squares that the motion does not explain,
-#: to be taken for the hand's force: with more, chance finds one among many columns. And how far its
-#: factor may lie off one: a sensor's calibration error of a quarter still passes
-BALANCES = 2.0 / 3.0
-FACTOR_OF_ONE = 1.25
 
 
 def describe_forces(
@@ -81,11 +77,13 @@ def describe_forces(
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
     hand = _find_hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
-        hand = _find_hand_by_motion(survey, same_axis, force, motion)
+        hand = hand_by_balance(survey, same_axis, force, motion)
     if hand is not None:
         survey.channels["interaction_force"] = describe_force(
             survey, hand, "interaction_force", choices
         )
+    scale_by_balance(survey, motion, choices)
+    motion = x * _position_to_si(survey), h  # behind a gear that was guessed now
     _choose_signs(survey, motion, force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
@@ -149,48 +147,6 @@ def _find_hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices)
     scores = {n: likeness(n, "interaction_force") for n in free if n != force}
     best = max(scores, key=lambda n: scores[n], default=None)
     return best if best is not None and scores[best] >= SURE_NAME else None
-
-
-def _find_hand_by_motion(
-    survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
-) -> str | None:
-    """A column whose name does not say so, but that balances with the command: the hand's force.
-
-    The motion asks for `command + hand`, both in the unit of forces: of what it leaves of the
-    command alone, the column takes a good part away, with a factor of one.
-    """
-    x, h = motion
-    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
-    alone = explain_force(u, x, h)
-    best: tuple[float, str] | None = None
-    for name, column in free.items():
-        unit = column.unit
-        if name == force or is_wanted(name) or likeness(name, "position") >= SURE_NAME:
-            continue
-        if unit is not None and not measures(unit, "force", survey.axis):
-            continue
-        factor = si_factor(unit, quantity="force", axis=survey.axis) if unit else 1.0
-        more, less = (explain_force(u + s * factor * column.values, x, h) for s in (1.0, -1.0))
-        whole = min(more, less, key=lambda guess: guess.left)
-        left = whole.left**2
-        # what is left is a square in the column's factor: three values tell where it is least
-        bend = 0.5 * (more.left**2 + less.left**2) - alone.left**2
-        at = abs(0.25 * (more.left**2 - less.left**2) / bend) if bend > 0 else 0.0
-        if left > BALANCES * alone.left**2 or not 1 / FACTOR_OF_ONE < at < FACTOR_OF_ONE:
-            continue
-        # the command logged twice takes itself away, and no more of what remains is explained
-        if 1 - whole.explained > BALANCES * (1 - alone.explained):
-            continue
-        if best is None or left < best[0]:
-            best = left, name
-    if best is None:
-        return None
-    left, name = best
-    survey.guesses["channels.interaction_force.column"] = (
-        f"{name!r} is taken for the hand's force: added to {force!r}, it takes away "
-        f"{1 - left / alone.left**2:.0%} of what the motion does not explain"
-    )
-    return name
 
 
 def _position_to_si(survey: Survey) -> float:

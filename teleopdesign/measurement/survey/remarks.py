@@ -21,6 +21,12 @@ _TORQUE_CONSTANT = re.compile(
     r"(\d{1,9}(?:[.,]\d{1,9})?(?:e[-+]?\d{1,3})?)\s*([A-Za-z][A-Za-z*· ]{0,10})/\s*(m?A)\b",
     re.I,
 )
+#: "gear 50:1", "gear ratio = 50", "Getriebe i = 100"
+_GEAR_RATIO = re.compile(
+    r"(?:\bgear(?:box)?(?:[ _]?ratio)?\b|\bgetriebe\w*|\breduction\b|\buntersetzung\b)\D{0,12}?"
+    r"(\d{1,5}(?:[.,]\d{1,6})?)(?:\s*:\s*1\b)?(?!\s*[:\d])",
+    re.I,
+)
 
 
 def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:
@@ -40,4 +46,12 @@ def torque_constant_in(remarks: Sequence[str]) -> tuple[float, str, str] | None:
         unit = f"{unit_of_text(match[2]) or match[2].strip()}/{match[3]}"
         if is_unit(unit):
             return float(match[1].replace(",", ".")), unit, line[:100]
+    return None
+
+
+def gear_ratio_in(remarks: Sequence[str]) -> tuple[float, str] | None:
+    """Turns of the motor per turn of the joint, and the line that says so."""
+    for line in remarks:
+        if (match := _GEAR_RATIO.search(line[:500])) is not None:
+            return float(match[1].replace(",", ".")), line[:100].lstrip("#%; ")
     return None

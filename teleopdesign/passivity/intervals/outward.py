@@ -67,7 +67,7 @@ class Outward:
         most = np.maximum(np.maximum(first, second), np.maximum(third, fourth))
         return Outward(next_below(least), next_above(most))
 
-    def widened(self, by: np.ndarray) -> Outward:
+    def widen(self, by: np.ndarray) -> Outward:
         """With ends that lie further out by that much, >= 0."""
         return Outward(next_below(self.low - by), next_above(self.high + by))
 
@@ -134,8 +134,8 @@ def cosine_and_sine(angle: Outward) -> tuple[Outward, Outward]:
     x = Outward.exactly(rest)
     square = x * x
     known = np.abs(rest) <= 1.0  # else: an angle that is not known to a quarter turn
-    cosine = _hold(_series(square, 0).widened(wrong), known)
-    sine = _hold((x * _series(square, 1)).widened(wrong), known)
+    cosine = _hold(_series(square, 0).widen(wrong), known)
+    sine = _hold((x * _series(square, 1)).widen(wrong), known)
     return _turn_further(cosine, sine, np.mod(quarters, 4.0))
 
 

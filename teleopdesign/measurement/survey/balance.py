@@ -1,0 +1,176 @@
+"""How two logged forces balance along the motion: which is the hand's, and scales no name says.
+
+    k command + hand = m a + c sgn(v) + b v + constant
+
+k is one where both are forces at the joint, the motor's constant where the command is a current,
+and the ratio of a gear where the command is a torque of the motor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from ...quantity import measures, si_factor
+from ...standard_error import with_standard_error
+from ..column_names import is_wanted, likeness, words_of
+from ..first_guess import balance_factor, explain_force
+from .acting import names_current
+from .content import SURE_NAME, Array, Choices, Survey, SurveyedColumn
+from .force_entry import PLACEHOLDER, force_to_si
+from .remarks import gear_ratio_in
+
+#: what a column without a telling name may leave of the squares that the motion does not explain,
+#: to be taken for the hand's force: with more, chance finds one among many columns. And how far its
+#: factor may lie off one: a sensor's calibration error of a quarter still passes
+BALANCES = 2.0 / 3.0
+FACTOR_OF_ONE = 1.25
+#: standard error, of the factor, up to which a balance says a constant: what is printed then has
+#: more than one digit that holds
+KNOWN = 0.05
+#: beginnings of the words that say the motor's side of a gear
+MOTOR = ("motor", "moteur", "モータ", "电机", "мотор")
+
+
+def hand_by_balance(
+    survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
+) -> str | None:
+    """A column whose name does not say so, but that balances with the command: the hand's force.
+
+    The motion asks for `k command + hand`: of what it leaves of the command alone, the column takes
+    a good part away, with a factor of one where the command's scale is known.
+    """
+    x, h = motion
+    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
+    alone = explain_force(u, x, h)
+    is_free = _has_placeholder(survey)
+    best: tuple[float, str] | None = None
+    for name, column in free.items():
+        if name == force or not _may_balance(column, survey.axis, named=is_free):
+            continue
+        other = column.values
+        if column.unit:
+            other = other * si_factor(column.unit, quantity="force", axis=survey.axis)
+        factor, _ = balance_factor(u, other, x, h)
+        if not is_free and not 1 / FACTOR_OF_ONE < abs(factor) < FACTOR_OF_ONE:
+            continue
+        whole = explain_force(u + (factor if is_free else math.copysign(1.0, factor)) * other, x, h)
+        # the command logged twice takes itself away, and no more of what remains is explained
+        if (
+            whole.left**2 > BALANCES * alone.left**2
+            or 1 - whole.explained > BALANCES * (1 - alone.explained)
+            or best is not None
+            and best[0] < whole.left
+        ):
+            continue
+        best = whole.left, name
+    if best is None:
+        return None
+    left, name = best
+    survey.guesses["channels.interaction_force.column"] = (
+        f"{name!r} is taken for the hand's force: added to {force!r}, it takes away "
+        f"{1 - (left / alone.left) ** 2:.0%} of what the motion does not explain"
+    )
+    return name
+
+
+def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
+    """Whether a column may be the hand's force by its name and unit.
+
+    named: it must be called a force, or have the unit of one: with a factor that is free a voltage
+        or a speed balances a current too
+    """
+    name, unit = column.name, column.unit
+    if is_wanted(name) or likeness(name, "position") >= SURE_NAME:
+        return False
+    if unit is not None:
+        return measures(unit, "force", axis)
+    return not named or likeness(name, "actuator_force") >= SURE_NAME and not names_current(name)
+
+
+def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
+    """Guess the gear between motor and joint, and the motor's constant, where neither is said.
+
+    Both are what the command must be multiplied with to balance the hand's force. Where that is far
+    from one and neither is a guess, a note says so.
+    """
+    said = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
+    is_motors = choices.gear_ratio is None and all(
+        _is_motors(_column_of(survey, key)) for key in ("position", "actuator_force")
+    )
+    if said is not None and is_motors:
+        _guess_gear(survey, said[0], f"the log says {said[1]!r}")
+    elif said is not None:
+        survey.notes.append(
+            f"the log says {said[1]!r}: where position and force are the motor's, "
+            f"--gear-ratio {said[0]:g}"
+        )
+    if "interaction_force" not in survey.channels:
+        return
+    scale, error = _command_scale(survey, motion)
+    if error > KNOWN * scale:
+        return
+    if _has_placeholder(survey):
+        _guess_constant(survey, scale, error)
+    elif not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
+        factor = with_standard_error(scale, error)
+        force, hand = (_column_of(survey, f"{k}_force") for k in ("actuator", "interaction"))
+        if is_motors and said is None and scale > 1:
+            whole = float(round(scale))
+            ratio = whole if abs(scale - whole) < 2 * error else float(f"{scale:.3g}")
+            _guess_gear(survey, ratio, f"{force!r} balances with {hand!r} times {factor}")
+        else:
+            survey.notes.append(
+                f"{force!r} balances with {hand!r} only times {factor}: one of them is in another "
+                "unit (--unit), or a gear lies between them (--gear-ratio)"
+            )
+
+
+def _column_of(survey: Survey, key: str) -> str:
+    return str(survey.channels[key]["column"])
+
+
+def _has_placeholder(survey: Survey) -> bool:
+    """Whether the command is a current of a motor whose constant nothing says."""
+    constant = survey.channels["actuator_force"].get("torque_constant", {})
+    is_guess = "channels.actuator_force.torque_constant" in survey.guesses
+    return is_guess and constant.get("value") == PLACEHOLDER
+
+
+def _command_scale(survey: Survey, motion: tuple[Array, float]) -> tuple[float, float]:
+    """What the command must be multiplied with to balance the hand's force, and its error."""
+    u, hand = (
+        survey.columns[_column_of(survey, key)].values * force_to_si(survey, key)
+        for key in ("actuator_force", "interaction_force")
+    )
+    factor, error = balance_factor(u, hand, *motion)
+    if factor == 0:
+        return 1.0, math.inf
+    return 1 / abs(factor), error / factor**2
+
+
+def _is_motors(name: str) -> bool:
+    return any(word.startswith(MOTOR) for word in words_of(name))
+
+
+def _guess_constant(survey: Survey, ratio: float, error: float) -> None:
+    force, hand = (survey.channels[k] for k in ("actuator_force", "interaction_force"))
+    constant = force["torque_constant"]
+    per_base = si_factor(constant["unit"].rpartition("/")[0], quantity="force", axis=survey.axis)
+    value, error = ratio / per_base * PLACEHOLDER, error / per_base * PLACEHOLDER
+    constant["value"] = float(f"{value:.4g}")
+    doubt = "channels.interaction_force.unit" in survey.guesses
+    survey.guesses["channels.actuator_force.torque_constant"] = (
+        f"{with_standard_error(value, error)} {constant['unit']}: then {force['column']!r} "
+        f"balances with {hand['column']!r}" + (f", if that is in {hand['unit']}" if doubt else "")
+    )
+
+
+def _guess_gear(survey: Survey, ratio: float, why: str) -> None:
+    """Position, velocity and command are the motor's: behind the gear they are the joint's."""
+    for key in ("position", "velocity", "actuator_force"):
+        if key in survey.channels:
+            survey.channels[key]["gear_ratio"] = ratio
+    survey.guesses["channels.position.gear_ratio"] = (
+        f"{ratio:g}: position and force are the motor's by their names; {why}"
+    )
