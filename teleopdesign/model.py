@@ -24,8 +24,9 @@ from .standard_error import with_standard_error
 class Model:
     """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI).
 
-    record_shift: body -> s by which the log of its command is late: no physics, but what a logger
-        did to the records that the model was estimated on; none where that is unknown
+    record_shift: body -> s by which the log of its command is late, "BODY.interaction_force" -> s
+        by which that of the hand's force is: no physics, but what a logger or a sensor did to the
+        records that the model was estimated on; none where that is unknown
     links: base parameters (SI) of the arm whose joints the bodies are; (): none are estimated
     """
 
@@ -138,13 +139,13 @@ class Model:
                 model = model._with_body(place, body.with_values(of_body))
         return model
 
-    def command_late(self, at: str) -> float:
-        """Seconds by which the log of a body's command is late."""
-        shift = self.record_shift.get(at)
+    def log_late(self, log: str) -> float:
+        """Seconds by which a log is late: of a command "device", "device.interaction_force"."""
+        shift = self.record_shift.get(log)
         return 0.0 if shift is None else shift.value
 
     def with_record_shift(self, shifts: Mapping[str, Value]) -> Model:
-        """The model with other shifts of the records, by body; {}: with none."""
+        """The model with other shifts of the records, by what was logged; {}: with none."""
         instance(shifts, Mapping, "with_record_shift", expected='such as {"device": Value(0.001)}')
         return replace(self, record_shift=Frozen(shifts))
 

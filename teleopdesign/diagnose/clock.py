@@ -7,18 +7,30 @@ A shift that ends at its bound describes a part of a dead time that is longer th
 a dead time in its place surely leaves less on the check records, all of it is physics, and the
 shift is held at none: the candidates are held against the model without it. Otherwise what a shift
 at its bound leaves may be too little for a search, and a late actuator passes for an adequate one.
+
+The filter of a force sensor makes the hand's force late beside the command, and an `actuator_lag`
+stands in for it. So its shift is tried where more than noise is left, and taken where it explains
+surely more than chance and more than every effect does.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from ..blocks import Value
 from ..model import Model
+from .adequacy import is_adequate
 from .candidates import bodies_with_measured_force, make_starts
-from .criteria import CRITERIA
-from .evidence import check_score
+from .criteria import CRITERIA, Criteria
+from .decision import is_better
+from .evidence import check_score, check_squares
 from .fit import Fit, estimate, fit_squares, rough_fit
+from .noise_floor import NoiseFloor
 from .prepare import Prepared
-from .record_shift import CLOCK, shifts_of
+from .ranking import Ranked
+from .record_shift import CLOCK, name_of_hand, shifts_of
 from .search_plan import PLAN
 from .simulated_course import dead_times
 
@@ -58,6 +70,35 @@ def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
     return fit
 
 
+def with_late_hand(
+    fit: Fit,
+    supported: Sequence[Ranked],
+    floor: NoiseFloor,
+    prepared: Prepared,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> Fit | None:
+    """The fit with the log of a hand's force late; None where an effect, or nothing, is better.
+
+    supported: the effects that the records support beside the fit
+    """
+    least = min((check_squares(r.fit) for r in supported), default=float("inf"))
+    if is_adequate(fit, floor, criteria=criteria):
+        return None
+    touched = {
+        s.motion.body
+        for s in prepared.stretches
+        if np.ptp(s.motion.interaction) > 0.0 and s.motion.links is None
+    }
+    for hand in (name_of_hand(body) for body in sorted(touched)):
+        if hand in fit.model.record_shift:
+            continue
+        late = _with_shift(fit, hand, Value(0.0), prepared)
+        if check_squares(late) < least and is_better(fit, late, floor, criteria=criteria):
+            return late
+    return None
+
+
 def _with_shift(fit: Fit, place: str, shift: Value, prepared: Prepared) -> Fit:
     """The fit of the same model with another kind of shift of one body's records."""
     shifts = {**fit.model.record_shift, place: shift}
@@ -82,6 +123,6 @@ def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | Non
         names = dead_times(late.body(place))
         if len(names) == 1:
             shifts = {**model.record_shift, place: Value(0.0)}
-            dead_time = {f"{place}.{names[0]}": -model.command_late(place)}
+            dead_time = {f"{place}.{names[0]}": -model.log_late(place)}
             return late.with_values(dead_time).with_record_shift(shifts)
     return None

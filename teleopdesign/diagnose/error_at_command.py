@@ -59,7 +59,7 @@ def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
         bare = [(values[i], nothing.reshape(0, len(values[i]))) for i in group]
         for i, (residual, _) in zip(group, offsets.cleared(bare), strict=True):
             values[i] = residual
-    values = _scale_to_command(stretches, values, command_errors)
+    values = _scale_to_command(stretches, [m for _, m in along], values, command_errors)
     sighted = [~one.blind[s.keep] for s, one in zip(stretches, command_errors, strict=True)]
     left = whole = 0.0
     for s, r, sighted_rows in zip(stretches, values, sighted, strict=True):
@@ -88,13 +88,19 @@ def _map_back(body: Body, motion: Motion) -> SeenAtCommand:
 
 
 def _scale_to_command(
-    stretches: Sequence[Stretch], values: list[Array], command_errors: Sequence[SeenAtCommand]
+    stretches: Sequence[Stretch],
+    motions: Sequence[Motion],
+    values: list[Array],
+    command_errors: Sequence[SeenAtCommand],
 ) -> list[Array]:
-    """Residuals scaled as if all of the interaction force reached the body."""
+    """Residuals scaled as if all of the interaction force reached the body.
+
+    motions: those of the stretches, as logged
+    """
     values = list(values)
     for body in {s.motion.body for s in stretches}:
         mine = [i for i, s in enumerate(stretches) if s.motion.body == body]
-        if all(command_errors[i].passed is stretches[i].motion.interaction for i in mine):
+        if all(command_errors[i].passed is motions[i].interaction for i in mine):
             continue
         whole = sum(stretches[i].measured for i in mine)
         passed = 0.0

@@ -12,7 +12,7 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import Floors, allowed_floor, limit_noise_floor
 from .candidates import Candidate
-from .clock import with_late_starts, with_paying_shift
+from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .diagnosis import SetAside
@@ -167,6 +167,7 @@ def look(
     """Draw the noise floor of the last rung and rank every candidate beside it.
 
     before: the state that a move led to; None: the ladder begins
+    Where a late log of a hand's force explains more than every effect, the rung is fitted with it.
     """
     prepared, criteria = search.prepared, search.criteria
     here = with_paying_shift(rungs[-1].fit, prepared)
@@ -186,6 +187,9 @@ def look(
         and is_supported(here, r, floors.allowed, criteria=criteria)
         and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
+    late = with_late_hand(here, supported, floors.allowed, prepared, criteria=criteria)
+    if late is not None:  # no effect: all of them are looked at again beside it
+        return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)
     if before is None:
         return LadderState(rungs, floors, first, ranking, tone, supported)
     state = replace(

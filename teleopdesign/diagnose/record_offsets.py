@@ -142,11 +142,15 @@ def offset_groups(
 
 
 def as_logged(model: Model, motion: Motion) -> Motion:
-    """A motion with the model's shift of its record, and with what its links need of the joint."""
-    late = model.command_late(motion.body)
+    """A motion with the model's shifts of its record, and with what its links need of the joint."""
+    late = model.log_late(motion.body)
     if motion.links is not None:
         carried = motion.links.carried(model.links, motion.acceleration)
         return replace(motion, command_late=late, carried=carried)
+    if sensed := model.log_late(f"{motion.body}.interaction_force"):
+        spectrum = motion.spectrum
+        earlier = spectrum.multiply(motion.interaction, np.asarray(spectrum.ahead(sensed)))
+        motion = replace(motion, interaction=earlier)
     return motion if late == motion.command_late else replace(motion, command_late=late)
 
 

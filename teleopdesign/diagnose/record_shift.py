@@ -1,4 +1,4 @@
-"""The clock of a logger: by how much the log of a body's command is later than its position's.
+"""The clock of a logger: by how much the log of a body's force is later than its position's.
 
 A controller may write a command with the position that it answers, or with the next: a shift of up
 to one row, either way, belongs to the record. It is no physics, but what is not explained by it
@@ -19,7 +19,8 @@ n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of t
 
 The log of a force may be late by more: buffers and batches hold commands back, sensors filter what
 was measured. No physics acts before its force, so that is no missing effect, but structures
-would imitate it.
+would imitate it. That of a hand's force, whose sensor filters, may be late beside that of the
+command: it is estimated only where `clock.py` says that it explains what is left.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from ..blocks import Value
 from ..measurement.filtering import Array
 from ..model import Model
 from ..plain_data import make_plain
-from ..realise.stages_along import RECORD_SHIFT
+from ..realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
 from ..standard_error import with_standard_error
 from .prepare import Stretch
 from .simulated_course import dead_times
@@ -70,13 +71,14 @@ CLOCK = LoggerClock()
 class RecordShifts:
     """The shifts that are estimated with a model on some stretches.
 
-    bodies: those with a command that changes;  row: s between samples, of each;  count: n above
+    logs: bodies with a command that changes, "BODY.interaction_force" of hands' forces that may be
+        late (k in all);  row: s between samples, of each;  count: n above
     held: (k,) whether the shift is held at none; what is left open of it stays in standard errors
     spread: (k,) samples, standard deviation of what is known beforehand;  latest: (k,) samples
     measured: (k,) whether the force was, not commanded
     """
 
-    bodies: tuple[str, ...]
+    logs: tuple[str, ...]
     row: Array
     count: int
     spread: Array
@@ -87,11 +89,20 @@ class RecordShifts:
     @property
     def names(self) -> tuple[str, ...]:
         """What their tangents are asked for by."""
-        return tuple(f"{body}.{RECORD_SHIFT}" for body in self.bodies)
+        parts = (log.partition(".") for log in self.logs)
+        return tuple(
+            f"{body}.{INTERACTION_SHIFT if hand else RECORD_SHIFT}" for body, _, hand in parts
+        )
+
+    @property
+    def bodies(self) -> frozenset[str]:
+        """The bodies whose forces were logged."""
+        return frozenset(log.partition(".")[0] for log in self.logs)
 
     def start(self, model: Model) -> Array:
         """The model's shifts, in samples (k,); none where one is held."""
-        late = np.array([model.command_late(body) for body in self.bodies])
+        shifts = (model.record_shift.get(log) for log in self.logs)
+        late = np.array([0.0 if shift is None else shift.value for shift in shifts])
         late = np.where(self.held, 0.0, late)
         return np.clip(late / self.row, -CLOCK.early, self.latest)
 
@@ -99,9 +110,9 @@ class RecordShifts:
         """The model with these shifts, in samples, and their standard errors."""
         stderr = np.full(len(samples), np.nan) if errors is None else errors
         shifts = {
-            body: Value(float(x * row), bool(held), float(e * row))
-            for body, x, row, e, held in zip(
-                self.bodies, samples, self.row, stderr, self.held, strict=True
+            log: Value(float(x * row), bool(held), float(e * row))
+            for log, x, row, e, held in zip(
+                self.logs, samples, self.row, stderr, self.held, strict=True
             )
         }
         return model.with_record_shift({**model.record_shift, **shifts})
@@ -124,7 +135,7 @@ class RecordShifts:
 
         Each is as far off as it is expected to be: so standard errors hold the prior's spread.
         """
-        k = len(self.bodies)
+        k = len(self.logs)
         size = float(np.linalg.norm(residual)) / np.sqrt(self.count)
         rows = np.zeros((k, jacobian.shape[1]))
         rows[:, jacobian.shape[1] - k :] = np.diag(size / self.spread)
@@ -141,16 +152,19 @@ def record_shifts(
 ) -> RecordShifts:
     """The shifts to estimate on these stretches; count: independent observations that they hold.
 
-    model: whose shifts that are fixed are held at none
+    model: its fixed shifts are held at none; a hand's force has a shift where it has one there
     """
     row: dict[str, float] = {}
     sensed: dict[str, bool] = {}
+    late = {} if model is None else model.record_shift
     for s in stretches:
+        hand = name_of_hand(s.motion.body)
         if np.ptp(s.motion.command) > 0.0:
             row[s.motion.body] = min(s.row, row.get(s.motion.body, np.inf))
             sensed[s.motion.body] = s.force_is_sensed
-    late = {} if model is None else model.record_shift
-    held = np.array([body in late and late[body].fixed for body in row], dtype=bool)
+        if hand in late:
+            row[hand], sensed[hand] = min(s.row, row.get(hand, np.inf)), True
+    held = np.array([log in late and late[log].fixed for log in row], dtype=bool)
     rows, measured = np.array(list(row.values())), np.array(list(sensed.values()), dtype=bool)
     return RecordShifts(
         tuple(row),
@@ -163,11 +177,17 @@ def record_shifts(
     )
 
 
+def name_of_hand(body: str) -> str:
+    """The log of the hand's force on a body, by which a model holds its shift."""
+    return f"{body}.interaction_force"
+
+
 @dataclass(frozen=True)
 class RecordShift:
-    """By how much the log of a body's command is late, as a fitted model has it.
+    """By how much the log of a body's force is late, as a fitted model has it.
 
-    late, stderr: s;  row: s between samples;  may_delay: whether the model has a dead time there
+    at: its body, or as `name_of_hand` says;  late, stderr: s;  row: s between samples
+    may_delay: whether the model has a dead time there
     latest: s by which the log of the force may be late;  measured: whether it was, not commanded
     """
 
@@ -197,7 +217,9 @@ class RecordShift:
         rows, error = self.late / self.row, self.stderr / self.row
         word = "late" if rows >= 0 else "early"
         size = with_standard_error(abs(rows), error) if error > 0.0 else f"{abs(rows):.2f}"
-        text = f"clock of the records: command at {self.at} {size} rows {word}"
+        body, _, hand = self.at.partition(".")
+        what = "force of the hand" if hand else "command"
+        text = f"clock of the records: {what} at {body} {size} rows {word}"
         text += f" ({1e3 * self.late:.3g} ms)"
         if self.at_bound and self.late < 0.0:
             return f"{text}, at its bound: what is beyond a row counts as physics"
@@ -213,26 +235,26 @@ class RecordShift:
 
 def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
     """The shift of each body's records that a fitted model has, but for those held at none."""
-    shifts = record_shifts(stretches, 1)
+    shifts = record_shifts(stretches, 1, model)
     return tuple(
         RecordShift(
-            at=body,
-            late=model.record_shift[body].value,
-            stderr=model.record_shift[body].stderr,
+            at=log,
+            late=model.record_shift[log].value,
+            stderr=model.record_shift[log].stderr,
             row=float(row),
-            may_delay=bool(dead_times(model.body(body))),
+            may_delay=log in model.bodies and bool(dead_times(model.body(log))),
             latest=float(row * latest),
             measured=bool(measured),
         )
-        for body, row, latest, measured in zip(
-            shifts.bodies, shifts.row, shifts.latest, shifts.measured, strict=True
+        for log, row, latest, measured in zip(
+            shifts.logs, shifts.row, shifts.latest, shifts.measured, strict=True
         )
-        if body in model.record_shift and not model.record_shift[body].fixed
+        if log in model.record_shift and not model.record_shift[log].fixed
     )
 
 
 def shift_data(model: Model, stretches: Sequence[Stretch]) -> dict[str, Any]:
-    """The shifts as an answer writes them, by body: seconds, and rows of the record."""
+    """The shifts as an answer writes them, by what was logged: seconds, and rows of the record."""
     return {
         shift.at: {
             "value": make_plain(shift.late),

@@ -97,7 +97,7 @@ def solve(
     space = _search_space(model, free, prepared)
     p, lasts = len(free), sum(s.weight * len(s.keep) * s.row for s in stretches)
     shifts = record_shifts(stretches, round(lasts / BLOCK), model)
-    lower = np.append(space.lower, np.full(len(shifts.bodies), -CLOCK.early))
+    lower = np.append(space.lower, np.full(len(shifts.logs), -CLOCK.early))
     upper = np.append(space.upper, shifts.latest)
     start = np.append(space.start, shifts.start(model))
     names = (*free, *shifts.names)
@@ -125,7 +125,7 @@ def solve(
             tolerance=effort.tolerance,
             evaluations=effort.evaluations,
         )
-        best, rows = minimum.values, len(minimum.residual) - len(shifts.bodies)
+        best, rows = minimum.values, len(minimum.residual) - len(shifts.logs)
         residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
     else:
         best, (residual, jacobian) = start, both(start)

@@ -14,9 +14,10 @@ from the same sympy law. Hidden states advance exactly where their rate is affin
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 
 from ..blocks import Body
 from ..effects import SIGNALS, UNEXPLAINED, Effect, make_rubbing_structure, make_touching_structure
@@ -25,7 +26,13 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
-from .stages_along import COMMAND_LATE, RECORD_SHIFT, acting_along
+from .stages_along import (
+    COMMAND_LATE,
+    INTERACTION_LATE,
+    INTERACTION_SHIFT,
+    RECORD_SHIFT,
+    acting_along,
+)
 from .traced import Along, LinkParameter, Probe, Traced, filter_traced
 
 #: signals of a law -> what a motion calls them, where they are known from the records alone
@@ -38,6 +45,11 @@ _MEASURED = {
     "command": "command",
     "interaction_force": "interaction",
 }
+
+
+#: rows by which a hand's force is read later to see what that makes of hidden states. They are
+#: linear in it but for a gap: far less than a row, and far more than rounding
+DRIVE_STEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -60,8 +72,8 @@ def residual_along(
 ) -> Residual:
     """Residual force of the body's model along the motion.
 
-    wrt: parameters ("coulomb.level"), `RECORD_SHIFT`, probes or base parameters of an arm, whose
-        tangents are carried along
+    wrt: parameters ("coulomb.level"), `RECORD_SHIFT`, `INTERACTION_SHIFT`, probes or base
+        parameters of an arm, whose tangents are carried along
     returns: n samples smoothed as the motion is, not yet through the comparison's low-pass
     """
     along = measured_along(body, motion, wrt)
@@ -111,7 +123,8 @@ def measured_along(
 
     wrt: as in `residual_along`
     """
-    symbols = {**body.symbols(), RECORD_SHIFT: COMMAND_LATE}
+    shifts = {RECORD_SHIFT: COMMAND_LATE, INTERACTION_SHIFT: INTERACTION_LATE}
+    symbols = {**body.symbols(), **shifts}
     columns = tuple(symbols[name] if isinstance(name, str) else name for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
     readings = {
@@ -123,7 +136,18 @@ def measured_along(
             raise ModelError(
                 f'{effect.name}: needs the channel "{missing[0]}", which {motion.file} has not'
             )
-    return along.with_signals({s: along.constant(reading) for s, reading in readings.items()})
+    signals = {s: along.constant(reading) for s, reading in readings.items()}
+    if INTERACTION_LATE in columns:
+        signals[SIGNALS["interaction_force"]] = _with_late_tangent(motion, columns)
+    return along.with_signals(signals)
+
+
+def _with_late_tangent(motion: Motion, columns: Sequence[object]) -> Traced:
+    """The hand's force, and what it changes by where its log is later."""
+    tangent = np.zeros((len(columns), len(motion.time)))
+    slope = motion.spectrum.multiply(motion.interaction, motion.spectrum.derivative(1))
+    tangent[columns.index(INTERACTION_LATE)] = slope
+    return Traced(motion.interaction, tangent)
 
 
 def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
@@ -132,8 +156,35 @@ def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
     rest: force needed without it and the bounds of friction, to correct its states by
     """
     if effect.states:
-        along = along.with_signals(ode_scan(effect, along, rest))
+        states = ode_scan(effect, along, rest)
+        along = along.with_signals(_with_late_drive(effect, along, rest, states))
     return along.evaluate(effect.expression())
+
+
+def _with_late_drive(
+    effect: Effect, along: Along, rest: Sequence[Traced], states: dict[sp.Symbol, Traced]
+) -> dict[sp.Symbol, Traced]:
+    """The states with what a later log of the hand's force makes of them, by a difference.
+
+    A scan carries no tangents of the signals that drive it.
+    """
+    force = SIGNALS["interaction_force"]
+    if INTERACTION_LATE not in along.columns:
+        return states
+    if not any(rate.has(force) for rate in effect.rates().values()):
+        return states
+    place, step = along.columns.index(INTERACTION_LATE), DRIVE_STEP * along.step
+    signal = along.signals[force]
+    later = Traced(signal.value + step * signal.tangent[place], signal.tangent)
+    none = np.zeros((0, len(signal.value)))
+    bare = replace(along, columns=()).with_signals({force: later})
+    moved = ode_scan(effect, bare, [Traced(r.value, none) for r in rest])
+    changed = {}
+    for symbol, state in states.items():
+        tangent = np.array(state.tangent)
+        tangent[place] += (moved[symbol].value - state.value) / step
+        changed[symbol] = Traced(state.value, tangent)
+    return changed
 
 
 def _leading_force(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> Traced:

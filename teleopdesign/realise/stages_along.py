@@ -28,8 +28,11 @@ _COMMAND = SIGNALS["command"]
 PARTS, MOST_PARTS = 4, 16
 #: name, beside a body's parameters, of the time by which the log of its command is late
 RECORD_SHIFT = "record_shift"
-#: stands for it among the columns of tangents; no law holds it
+#: the same of the time by which the log of the hand's force is late
+INTERACTION_SHIFT = "interaction_shift"
+#: stand for them among the columns of tangents; no law holds them
 COMMAND_LATE = sp.Symbol(RECORD_SHIFT, real=True)
+INTERACTION_LATE = sp.Symbol(INTERACTION_SHIFT, real=True)
 
 
 @dataclass(frozen=True)

@@ -206,8 +206,10 @@ class NumericLaw:
 
 _SIGNALS = tuple(SIGNALS.values())
 _KNOWN = frozenset(_SIGNALS)
-#: signals that depend on parameters themselves
-TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"]})
+#: signals that depend on parameters themselves, or on shifts of their logs
+TRACED = frozenset(
+    {SIGNALS[name] for name in ("command", "acting_force", "interaction_force", "level")}
+)
 
 
 def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

@@ -243,7 +243,7 @@ def test_a_delay_of_little_more_than_a_row_is_named(adequate):
     delay = diagnosis.model.parameters[f"{place}.actuation_delay.delay"]
     # a row more or less may be the logger's, whether its shift is held or not
     assert 0.3 < delay.stderr / late.records[0].sample_time < 0.7
-    whole = delay.value - diagnosis.model.command_late(place)
+    whole = delay.value - diagnosis.model.log_late(place)
     assert whole == pytest.approx(1.36 * late.records[0].sample_time, rel=0.02)
 
 

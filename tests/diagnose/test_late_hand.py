@@ -1,0 +1,126 @@
+"""A hand's force that its sensor filters is late beside the command: of the record, not physics."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.own_cases import FEW, write_own
+from scipy.signal import lfilter
+
+import teleopdesign as td
+from teleopdesign.diagnose.answer import answer
+from teleopdesign.diagnose.answers.bodies import model_data, model_from
+from teleopdesign.diagnose.clock import with_late_hand
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.record_shift import name_of_hand, shifts_of
+from teleopdesign.diagnose.residual import residuals
+from teleopdesign.effects import EFFECTS
+
+HAND = name_of_hand("device")
+#: the first one whose device is held by a hand of measured force
+SEED = 1
+#: a late force of the hand was named one of these
+KNOWN = {n: EFFECTS[n] for n in (*FEW, "actuator_lag", "actuation_delay")}
+
+
+def filtered(experiment, seconds):
+    """The experiment with a hand's force that a first-order low-pass filtered."""
+
+    def logged(record):
+        late = 1.0 - np.exp(-record.sample_time / seconds)
+        force = record.signals[HAND]
+        return replace(
+            record,
+            signals={**record.signals, HAND: lfilter([late], [1.0, late - 1.0], force)},
+        )
+
+    return replace(experiment, records=tuple(logged(r) for r in experiment.records))
+
+
+@pytest.fixture(scope="module")
+def adequate(tmp_path_factory):
+    """A simulated device whose model is right, with a hand whose force is measured."""
+    experiment = td.load_experiment(
+        write_own(tmp_path_factory.mktemp("own") / "null", None, seed=SEED)
+    )
+    assert HAND in experiment.channels
+    return experiment
+
+
+@pytest.fixture(scope="module")
+def late(adequate):
+    return filtered(adequate, 5e-3)
+
+
+@pytest.fixture(scope="module")
+def diagnosis(late):
+    return td.find_missing(late, td.Model.from_experiment(late, KNOWN))
+
+
+def test_the_filter_of_the_hands_sensor_is_told_and_nothing_is_missing(adequate, diagnosis):
+    assert diagnosis.verdict == "model_adequate"
+    told = answer(diagnosis)["record_shift"][HAND]
+    # what a low-pass does to slow signals is a delay by its time constant
+    assert told["value"] == pytest.approx(5e-3, rel=0.25)
+    assert told["stderr"] < 1e-3
+    assert "force of the hand at device" in ladder_text(diagnosis)
+    right = estimate(td.Model.from_experiment(adequate), prepare(adequate))
+    # a low-pass weakens what is fast as well, which no delay undoes
+    assert diagnosis.after.check_error < 2.0 * right.check_error
+    for name, value in right.model.parameters.items():
+        there = diagnosis.model.parameters[name].value
+        assert there == pytest.approx(value.value, rel=0.03, abs=5 * value.stderr)
+
+
+def test_a_force_that_is_in_time_gets_no_shift(adequate):
+    prepared = prepare(adequate)
+    fit = estimate(td.Model.from_experiment(adequate), prepared)
+    floor = noise_floor(fit.model, prepared, np.random.default_rng(0))
+    assert with_late_hand(fit, (), floor, prepared) is None
+    assert HAND not in fit.model.record_shift
+    assert {s.at for s in shifts_of(fit.model, prepared.stretches)} <= {"device"}
+
+
+@pytest.mark.parametrize("effect", [None, "transmission_compliance", "actuator_lag"])
+def test_the_slope_by_the_shift_is_that_of_the_residual(late, effect):
+    """Where a tip follows the hand too, and behind an actuation that does not."""
+    model = td.Model.from_experiment(late)
+    if effect is not None:
+        model = model.with_effect(effect, at="device")
+        start = {"tip_inertia": 0.2, "stiffness": 3e3, "damping": 3.0, "time_constant": 2e-3}
+        values = {f"device.{effect}.{n}": td.Value(start[n]) for n in EFFECTS[effect].parameters}
+        model = model.with_values(values)
+    stretches = prepare(late).of("fit")
+
+    def at(seconds):
+        there = model.with_record_shift({HAND: td.Value(seconds)})
+        return residuals(there, stretches, ["device.interaction_shift"])
+
+    step = 1e-6
+    threes = zip(at(2e-3), at(2e-3 + step), at(2e-3 - step), strict=True)
+    for (_, slope), (more, _), (less, _) in threes:
+        # where friction holds the residual is no smooth function of the force
+        error = np.abs((more - less) / (2 * step) - slope[0])
+        assert np.quantile(error, 0.9) < 1e-2 * np.abs(slope).max()
+
+
+def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
+    data = json.loads(json.dumps(model_data(diagnosis.model)))
+    back = model_from(data, EFFECTS, file="answer.json", key="models")
+    assert back.record_shift[HAND] == diagnosis.model.record_shift[HAND]
+    assert back.log_late(HAND) == diagnosis.model.record_shift[HAND].value
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", ["actuator_lag", "stribeck"])
+def test_what_is_missing_keeps_its_name_beside_a_hand_in_time_or_late(tmp_path, effect):
+    """A lag of the command is no lag of the sensor: the motion tells which force is late."""
+    experiment = td.load_experiment(write_own(tmp_path / "case", effect, seed=SEED))
+    for logged in (experiment, filtered(experiment, 5e-3)):
+        diagnosis = td.find_missing(logged, td.Model.from_experiment(logged, KNOWN))
+        assert [c.effect.name for c in diagnosis.missing] == [effect]
+        assert (HAND in diagnosis.model.record_shift) == (logged is not experiment)
