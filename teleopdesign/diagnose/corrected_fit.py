@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .adequacy import is_adequate, limit_noise_floor
 from .clock import with_paying_shift
+from .evidence import check_squares
 from .fit import Fit
 from .ladder_state import LadderSearch
 from .noise_floor import NoiseFloor, noise_floor
@@ -21,10 +22,15 @@ def corrected_fit(search: LadderSearch) -> Fit:
 
 
 def correct_fit(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
-    """A fit without its reading error if it leaves only noise; else with wider standard errors."""
-    return with_reading_error(
-        fit,
-        search.prepared,
-        search.generator(),
-        adequate=lambda other: is_adequate(other, floor, criteria=search.criteria),
-    )
+    """A fit without its reading error if it leaves only noise; else with wider standard errors.
+
+    So where the corrected fit leaves clearly more (`Criteria.of_floor`): what was simulated is not
+    what was recorded, then.
+    """
+    criteria = search.criteria
+    most = (1.0 + criteria.of_floor) * check_squares(fit)
+
+    def leaves_noise(other: Fit) -> bool:
+        return is_adequate(other, floor, criteria=criteria) and check_squares(other) <= most
+
+    return with_reading_error(fit, search.prepared, search.generator(), adequate=leaves_noise)

@@ -46,12 +46,16 @@ class Course:
 
 @dataclass(frozen=True)
 class LedBody:
-    """A body on X with its command U = F_led - (stiffness + damping s) X, ready to simulate."""
+    """A body on X with its command U = F_led - (stiffness + damping s) X, ready to simulate.
+
+    bristle: length (m or rad) of the bristle of ideal friction, of the body and of its tip
+    """
 
     diagram: Diagram
     stiffness: float
     damping: float
     has_tip: bool
+    bristle: float
 
 
 def grid(motion: Motion) -> float:
@@ -90,7 +94,8 @@ def led_body(
     """
     body = with_bristle(without_absent(body), bristle, damping_ratio=damping_ratio)
     has_tip = any(e.role == "structure" for e in body.effects)
-    return LedBody(_wire_led_body(body, stiffness, damping), stiffness, damping, has_tip)
+    diagram = _wire_led_body(body, stiffness, damping)
+    return LedBody(diagram, stiffness, damping, has_tip, bristle)
 
 
 def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course:
@@ -119,6 +124,7 @@ def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course
         initial=start,
         computer=Sampling(period=motion.sample_time),
         step=step,
+        give=led.bristle,
     )
     rate, _ = fastest_rate(prepared.program, prepared.diagram.values)
     finer = int(np.ceil(rate * step / FASTEST))
