@@ -65,7 +65,7 @@ def check_types(target: Target) -> Target:
         parameters = inspect.signature(function).parameters.values()
         by_parameter = {p.name: check_of(_resolve(p.annotation, names)) for p in parameters}
         checks = {
-            p.name: _or_default(check, p.default)
+            p.name: _allow_default(check, p.default)
             for p in parameters
             if (check := by_parameter[p.name]) is not None
         }
@@ -147,14 +147,14 @@ def _resolve(annotation: Any, names: Mapping[str, Any]) -> Any:
             return eval(annotation, known)  # the package's annotation, not a user's text
         except NameError as missing:
             name = missing.name or ""
-            known[name] = _for_type_checkers(names["__name__"], name)
+            known[name] = _find_type_import(names["__name__"], name)
     return Any
 
 
 _MOST_NAMES = 9  # names in one annotation
 
 
-def _for_type_checkers(module: str, name: str) -> Any:
+def _find_type_import(module: str, name: str) -> Any:
     """What a module imports under that name in `if TYPE_CHECKING`.
 
     A class of the package itself, or what stands for one that takes long to import.
@@ -189,7 +189,7 @@ class _Outside:
         return type(name, (), {"__module__": package, "_is_outside": True})
 
 
-def _or_default(check: TypeCheck, default: Any) -> TypeCheck:
+def _allow_default(check: TypeCheck, default: Any) -> TypeCheck:
     """A default is right, whatever its type."""
     if default is inspect.Parameter.empty:
         return check

@@ -86,7 +86,7 @@ def _make_check(expected: str, accepts: Callable[[Any], bool]) -> TypeCheck:
     return lambda value: None if accepts(value) else WrongValue("", value, expected)
 
 
-def _isnumber_check(value: Any) -> bool:
+def _is_real_number(value: Any) -> bool:
     """A real number: of Python, numpy or sympy; no text, no truth value."""
     if isinstance(value, bool | str | bytes) or value is None:
         return False
@@ -103,13 +103,13 @@ def number_check(value: Any) -> WrongValue | None:
     """A finite or infinite number; quick for floats, which most are."""
     if type(value) is float and value == value:
         return None
-    if not _isnumber_check(value):
+    if not _is_real_number(value):
         return WrongValue("", value, "a number (SI)")
     return WrongValue("", value, "a number (SI), not NaN") if math.isnan(float(value)) else None
 
 
 def _check_whole(value: Any) -> WrongValue | None:
-    whole = _isnumber_check(value) and hasattr(value, "__index__")
+    whole = _is_real_number(value) and hasattr(value, "__index__")
     return None if whole else WrongValue("", value, "a whole number")
 
 
@@ -122,7 +122,7 @@ def _complex(value: Any) -> WrongValue | None:
     is_complex = (
         isinstance(value, complex) or getattr(getattr(value, "dtype", None), "kind", "") == "c"
     )
-    return None if is_complex or _isnumber_check(value) else WrongValue("", value, "a number")
+    return None if is_complex or _is_real_number(value) else WrongValue("", value, "a number")
 
 
 _SIMPLE: dict[Any, TypeCheck] = {

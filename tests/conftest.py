@@ -6,7 +6,9 @@ The truth simulator of tests/hidden can be imported everywhere.
 """
 
 import gc
+import gzip
 import os
+import shutil
 import sys
 from pathlib import Path
 
@@ -124,6 +126,19 @@ def choose_from(monkeypatch):
 def few(choose_from):
     """The commands choose from `FEW`: a diagnosis takes a second or two."""
     choose_from(FEW)
+
+
+@pytest.fixture(scope="session")
+def short_rod(tmp_path_factory):
+    """The shipped rod with the first third of each record: enough for its missing effect."""
+    from teleopdesign import example
+
+    folder = Path(shutil.copytree(example("rod"), tmp_path_factory.mktemp("short") / "rod"))
+    for name in ("fit.csv.gz", "check.csv.gz"):
+        path = folder / name
+        lines = gzip.decompress(path.read_bytes()).decode().splitlines(keepends=True)
+        path.write_bytes(gzip.compress("".join(lines[: 1 + len(lines) // 3]).encode(), mtime=0))
+    return folder
 
 
 @pytest.fixture(scope="session")

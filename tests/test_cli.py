@@ -263,7 +263,7 @@ def test_a_demo_folder_that_cannot_be_made_is_one_line(tmp_path, capsys):
 
 
 def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
-    rod, few, tmp_path, capsys, monkeypatch
+    short_rod, few, tmp_path, capsys, monkeypatch
 ):
     # a line of progress comes after a time, however fast the machine
     monkeypatch.setattr("teleopdesign.commands._progress.BETWEEN_LINES", float("inf"))
@@ -275,7 +275,7 @@ def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
         *("--figure", str(files[2])),
         *("--report", str(files[3])),
     ]
-    assert main(["diagnose", str(rod), *options]) == 0
+    assert main(["diagnose", str(short_rod), *options]) == 0
     out = capsys.readouterr()
     assert "verdict: " in out.out and "noise floor" in out.out
     assert out.err == "", "progress that changes in place is for terminals"
@@ -286,11 +286,11 @@ def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
     assert page.startswith("<!DOCTYPE html>") and "Rod of a one-axis haptic interface" in page
 
 
-def test_a_users_effect_takes_part_in_a_diagnosis(rod, few, tmp_path):
+def test_a_users_effect_takes_part_in_a_diagnosis(short_rod, few, tmp_path):
     file = tmp_path / "own_drag.py"
     file.write_text(OWN)
     result = tmp_path / "answer.json"
-    assert main(["diagnose", str(rod), "--effect", str(file), "--json", str(result)]) == 0
+    assert main(["diagnose", str(short_rod), "--effect", str(file), "--json", str(result)]) == 0
     tried = {c["effect"] for c in json.loads(result.read_text())["candidates"]}
     assert "own_drag" in tried
 

@@ -93,3 +93,10 @@ def test_the_picture_of_the_house_shows_every_folder():
     for folder in ROOT.iterdir():
         if folder.is_dir() and (folder / "__init__.py").is_file():
             assert f">{folder.name}<" in drawn, f"{folder.name}: run python docs/make_house.py"
+
+
+def test_tests_mirror_the_package():
+    """Each folder with code has a folder of tests with its name; `examples` holds data."""
+    folders = {p.parent.name for p in ROOT.glob("*/__init__.py")} - {"examples"}
+    tested = {p.parent.name for p in Path(__file__).parent.glob("*/test_*.py")}
+    assert len(folders) > 20 and folders <= tested

@@ -13,7 +13,7 @@ from importlib import import_module
 
 from .. import __version__, commands
 from ._failures import TRACEBACK, failure
-from ._home import no_home_is_made
+from ._home import keep_home_absent
 from ._paths import check_paths
 from ._terminal import plain_warnings, printable_streams
 
@@ -31,7 +31,7 @@ def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda
     is_stopped: whether Ctrl-C was heard: what is raised after it is no further error
     raises KeyboardInterrupt: the command is stopped
     """
-    with printable_streams(), plain_warnings(), no_home_is_made():
+    with printable_streams(), plain_warnings(), keep_home_absent():
         try:
             return _run(arguments, is_stopped)
         except BrokenPipeError:

@@ -13,7 +13,7 @@ PLACE = "MPLCONFIGDIR"
 
 
 @contextmanager
-def no_home_is_made() -> Iterator[None]:
+def keep_home_absent() -> Iterator[None]:
     """Within: matplotlib keeps its files in a folder that is removed, where there is no home.
 
     It would make the home otherwise. Whoever names none wants nothing to be kept there.

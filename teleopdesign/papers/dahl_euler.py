@@ -16,7 +16,7 @@ LEVELS = {ABOVE: INSIDE[0], BELOW: INSIDE[1]}
 FORWARD = f + T * dahl_rate(f, v, f_c, sigma)
 
 
-def upwards(step: sp.Expr) -> sp.Expr:
+def step_upwards(step: sp.Expr) -> sp.Expr:
     """The step at a speed v > 0 with T sigma v/f_c = q; downwards is its point mirror."""
     return step.subs(v, q * f_c / (T * sigma))
 
@@ -60,7 +60,7 @@ def called_backward_euler() -> Correction:
     (backward,) = sp.solve(implicit, new)
     shown = (f + T * sigma * v) / (1 + T * sigma * sp.Abs(v) / f_c)
     point = {f: 0, v: 1, T: 1, sigma: 1, f_c: 1}
-    step = upwards(shown)
+    step = step_upwards(shown)
     return Correction(
         proof(
             Equal("the printed step takes the rate at the old force", printed, FORWARD),
@@ -87,7 +87,7 @@ def called_backward_euler() -> Correction:
 )
 def pole_of_forward_euler() -> Correction:
     """Pole of the printed step, and the speed from which it is unstable."""
-    step = upwards(FORWARD)
+    step = step_upwards(FORWARD)
     slope = sp.diff(FORWARD.subs(v, d), f)
     point = {sigma: 1, d: 1, f_c: 1, T: 2}
     return Correction(
@@ -123,7 +123,7 @@ def pole_of_forward_euler() -> Correction:
 )
 def bound_of_forward_euler() -> ProofSteps:
     """The bound that passivity rests on fails at half the speed at which the step diverges."""
-    step = upwards(FORWARD)
+    step = step_upwards(FORWARD)
     slow = sp.Symbol("slow", nonnegative=True)  # 1 - q
     signs = {**LEVELS, slow: 1 - q}
     lowest = step.subs(f, -f_c)

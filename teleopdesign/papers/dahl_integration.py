@@ -17,7 +17,7 @@ from .dahl_euler import ABOVE, BELOW, INSIDE, LEVELS, T, d, e, f, f_c, sigma
 SHARE = sp.exp(-sigma * d / f_c)  # of the distance to the level that is left after the travel d
 
 
-def in_parts(direction: int) -> ProofStep:
+def integrate_in_parts(direction: int) -> ProofStep:
     """Travel in two parts is travel at once."""
     once = dahl_step(f, d + e, direction, f_c, sigma)
     twice = dahl_step(dahl_step(f, d, direction, f_c, sigma), e, direction, f_c, sigma)
@@ -76,7 +76,7 @@ def exact_step() -> ProofSteps:
                 sp.diff(step, d),
                 dahl_rate(step, sp.S(s), f_c, sigma),
             ),
-            in_parts(s),
+            integrate_in_parts(s),
             Equal("differences between two starts shrink by", sp.diff(step, f), SHARE),
         ]
     up = dahl_step(f, d, 1, f_c, sigma)

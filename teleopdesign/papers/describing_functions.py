@@ -164,7 +164,7 @@ def dahl_friction() -> ProofSteps:
 )
 def slope_over_frequency() -> ProofSteps:
     """Coulomb friction on a sweep of falling amplitude; at constant velocity amplitude it cannot
-    be distinguished from a damper.
+    be told from a damper.
     """
     freq, p, c, omega, B = sp.symbols("freq p c omega B", positive=True)
     size = first_harmonic(coulomb(v, F_C)) / (c * freq**-p)

@@ -258,7 +258,7 @@ def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
             x = data[data[limit].dims[-1]].values
             for force, colour in zip(data["cancelled"].values, colours, strict=True):
                 status = data[name].sel(cancelled=force).values
-                refuted = _ones_where(status == "proved")
+                refuted = _mask_all_but(status == "proved")
                 axis.pcolormesh(x, k, refuted, shading="nearest", cmap=ListedColormap([colour]))
                 axis.plot([], [], "s", color=colour, label=_describe_cancellation(float(force)))
                 axis.plot(x, data[limit].sel(cancelled=force).values, color=THEORY)
@@ -272,7 +272,7 @@ def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
     return figure
 
 
-def _ones_where(shown: np.ndarray) -> np.ma.MaskedArray[tuple[int, ...], np.dtype[np.float64]]:
+def _mask_all_but(shown: np.ndarray) -> np.ma.MaskedArray[tuple[int, ...], np.dtype[np.float64]]:
     """Ones where something is shown, masked elsewhere."""
     import numpy as np
 

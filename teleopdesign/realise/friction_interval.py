@@ -129,14 +129,14 @@ def lowest_of(
     """
     signals = _signals(body, reach, errors) | dict(ranges or {})
     exact = {s: (x, x) for s, x in body.numbers().items()}
-    estimate, point = _either_way(law, signals | exact)
+    estimate, point = _least_either_way(law, signals | exact)
     within = {s: r for s, r in parameter_box(body, errors=errors).items() if law.has(s)}
     if all(low == high for low, high in within.values()):
         return Interval(estimate.bound, estimate.bound, estimate.bound), point
-    low, worst = _either_way(law, signals | exact | within)
+    low, worst = _least_either_way(law, signals | exact | within)
     # with any parameters it is at most this where it is least at the estimates
     there = {s: (x, x) for s, x in point.items() if s in signals}
-    turned = -_one_way(law, point.get(DIRECTION, 1.0))
+    turned = -_fix_direction(law, point.get(DIRECTION, 1.0))
     high = -least_value(turned, signals | exact | within | there).bound
     if math.isinf(estimate.bound):
         high = estimate.bound
@@ -162,8 +162,8 @@ def stays_within(effect: Effect, state: sp.Symbol, ranges: Ranges) -> bool:
         if math.isinf(end):
             continue
         here = {**ranges, state: (end, end)}
-        slowest = _either_way(inward * rate, here)[0].bound
-        fastest = -_either_way(-inward * rate, here)[0].bound
+        slowest = _least_either_way(inward * rate, here)[0].bound
+        fastest = -_least_either_way(-inward * rate, here)[0].bound
         if not slowest >= -1e-9 * abs(fastest):  # rounding
             return False
     return True
@@ -186,12 +186,12 @@ def _signals(
     return known | dict.fromkeys(lagging, speeds)
 
 
-def _either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol, float]]:
+def _least_either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol, float]]:
     """The least of both directions, and where."""
     if not law.has(SIGNALS["velocity"], DIRECTION):
         least = least_value(law, ranges)
         return least, least.point
-    laws = {way: _one_way(law, way) for way in (-1.0, 1.0)}
+    laws = {way: _fix_direction(law, way) for way in (-1.0, 1.0)}
     if laws[-1.0] == laws[1.0]:
         least = least_value(laws[1.0], ranges)
         return least, least.point
@@ -200,7 +200,7 @@ def _either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol,
     return by_way[way], {DIRECTION: way, **by_way[way].point}
 
 
-def _one_way(law: sp.Expr, way: float) -> sp.Expr:
+def _fix_direction(law: sp.Expr, way: float) -> sp.Expr:
     sign = sp.Integer(int(way))
     return law.subs({SIGNALS["velocity"]: sign * SPEED, DIRECTION: sign})
 

@@ -79,7 +79,7 @@ def pack_task(task: StudyTask) -> bytes:
 
 
 @contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
+def _shield_from_ctrl_c() -> Iterator[None]:
     """A process started meanwhile never hears Ctrl-C, not even before its first line of Python.
 
     Ctrl-C goes to all processes of a terminal; the one that asked decides what happens. It hears
@@ -206,7 +206,7 @@ class _Pool:
             f"import sys; sys.path[:] = {sys.path!r}; "
             "from teleopdesign.studies.worker import main; main()"
         )
-        with _deaf_to_ctrl_c():
+        with _shield_from_ctrl_c():
             process = subprocess.Popen(
                 [sys.executable, "-c", code],
                 stdin=subprocess.PIPE,

@@ -126,7 +126,7 @@ def trade_off(
 def _front(problem: Problem, before: TrialPoint, points: int) -> ParetoFront:
     kept = problem.points_within_limits()
     evaluated = np.array([t.objectives for t in kept])
-    best = best_in_both(evaluated)
+    best = select_unbeaten(evaluated)
     chosen = _spread([kept[i] for i in best], points)
     results = []
     for trial in chosen:
@@ -148,7 +148,7 @@ def _front(problem: Problem, before: TrialPoint, points: int) -> ParetoFront:
     )
 
 
-def best_in_both(objectives: np.ndarray) -> list[int]:
+def select_unbeaten(objectives: np.ndarray) -> list[int]:
     """Rows of (m, 2) that no other one beats in both, by increasing first column."""
     front: list[int] = []
     lowest = np.inf

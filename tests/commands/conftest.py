@@ -1,15 +1,12 @@
-"""What tests of commands share: the shipped rod, cut short, and a catalogue of few effects."""
+"""What tests of commands share: a copy of the rod, cut short, and a catalogue of few effects."""
 
-import gzip
 import shutil
 from pathlib import Path
 
 import pytest
 
-import teleopdesign
 from teleopdesign import EFFECTS
 
-ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
 FEW = ("coulomb", "viscous", "stribeck", "presliding", "bias", "spring")
 
 
@@ -24,17 +21,6 @@ def few(monkeypatch):
         "catalogue",
         lambda extra=(): {n: e for n, e in known(extra).items() if n in FEW or n not in EFFECTS},
     )
-
-
-@pytest.fixture(scope="session")
-def short_rod(tmp_path_factory):
-    """The shipped rod with the first third of each record: enough for its missing effect."""
-    folder = Path(shutil.copytree(ROD, tmp_path_factory.mktemp("short") / "rod"))
-    for name in ("fit.csv.gz", "check.csv.gz"):
-        path = folder / name
-        lines = gzip.decompress(path.read_bytes()).decode().splitlines(keepends=True)
-        path.write_bytes(gzip.compress("".join(lines[: 1 + len(lines) // 3]).encode(), mtime=0))
-    return folder
 
 
 @pytest.fixture

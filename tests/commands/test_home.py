@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from teleopdesign.commands._home import PLACE, no_home_is_made
+from teleopdesign.commands._home import PLACE, keep_home_absent
 
 
 def place_within(monkeypatch, home, **places):
@@ -14,7 +14,7 @@ def place_within(monkeypatch, home, **places):
     monkeypatch.setenv("HOME", str(home))
     for name, path in places.items():
         monkeypatch.setenv(name, str(path))
-    with no_home_is_made():
+    with keep_home_absent():
         path = os.environ.get(PLACE)
         return path, path is not None and Path(path).is_dir()
 
@@ -32,6 +32,6 @@ def test_a_home_or_a_stated_place_is_left_to_matplotlib(monkeypatch, tmp_path):
     assert place_within(monkeypatch, tmp_path) == (None, False)
     monkeypatch.setenv(PLACE, str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path / "nobody"))
-    with no_home_is_made():
+    with keep_home_absent():
         assert os.environ[PLACE] == str(tmp_path)
     assert os.environ[PLACE] == str(tmp_path)

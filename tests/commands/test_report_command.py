@@ -71,7 +71,8 @@ def test_an_answer_whose_records_are_gone_is_one_line(answer, rod, refused):
     shutil.move(rod, rod.with_name("elsewhere"))
     line = refused("report", answer)
     assert 'its experiment was in "../rod", found no such folder' in line
-    assert main(["report", str(rod.with_name("elsewhere")), "--answer", str(answer)]) == 0
+    elsewhere = str(rod.with_name("elsewhere"))
+    assert main(["describe", elsewhere, "--answer", str(answer), "--as-is"]) == 0
 
 
 def test_an_answer_of_other_records_is_one_line(answer, rod, refused):

@@ -15,6 +15,7 @@ from teleopdesign.design.quasi_static import quasi_static_error
 from teleopdesign.design.stated_motion import StatedMotion
 from teleopdesign.diagrams import haptic_interface, read_diagram, world_haptics_2005
 from teleopdesign.errors import ExperimentError, ModelError
+from teleopdesign.realise.friction_interval import friction_interval
 
 
 def with_effect(found, name, values):
@@ -96,6 +97,17 @@ def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
     assert made.other is None
 
 
+def test_no_law_cancels_friction_that_may_be_none(rod, designed):
+    """0.548 N +- 0.3 N: 1.96 standard errors reach zero, below which no level is."""
+    level = {"device.coulomb.level": Value(0.548, stderr=0.3)}
+    body, settings = rod.model.with_values(level).body("device"), designed.assumptions
+    friction = friction_interval(body, designed.reach, errors=settings.errors)
+    assert friction.lowest.low == 0
+    assert cancellations(body, friction, designed.reach, settings) == []
+    assert cancellations(designed.body, designed.friction, designed.reach, settings)
+
+
+@pytest.mark.slow
 def test_friction_that_may_be_none_is_not_cancelled(unsure):
     assert unsure.cancellation is None
     cases = unsure.prediction.cases

@@ -45,5 +45,9 @@ def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed)
     assert b * (1 + k) >= a * k * (1 - 1e-9)
 
 
-def test_a_design_without_cancellation_tunes_force_feedback_alone(unsure):
-    assert refine(unsure, simulations=6).cancellation is None
+def test_a_design_without_cancellation_tunes_force_feedback_alone(designed):
+    prediction = replace(designed.prediction, hybrid=designed.prediction.hybrid.without("C"))
+    bare = replace(designed, cancellation=None, prediction=prediction)
+    found = refine(bare, simulations=6)
+    assert found.cancellation is None
+    assert "velocity_schedule.gain" in found.force_feedback.names()

@@ -7,6 +7,8 @@ import subprocess
 import sys
 import types
 
+import pytest
+
 #: part of every text that would run: neither a file, nor the environment, nor compiled code may
 #: ever hold it
 MARK = "CANARY_7f3"
@@ -51,6 +53,24 @@ CODE = (
     f"{MARK * 20}",
     "",
 )
+
+
+def pairs(places, texts):
+    """Every text at every place, as parameters of a test.
+
+    Plain are as many as it takes for every place and every text to occur, the others are slow.
+    """
+    places, texts = list(places), list(texts)
+    return [
+        pytest.param(
+            place,
+            text,
+            id=f"{i}-{j}",
+            marks=() if i == j % len(places) or j == i % len(texts) else pytest.mark.slow,
+        )
+        for i, place in enumerate(places)
+        for j, text in enumerate(texts)
+    ]
 
 
 def quoted(text):

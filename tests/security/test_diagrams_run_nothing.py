@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from clock import in_time
 from security.diagram_file import NAMES, diagram_file, one_line
-from security.hostile import CODE, quoted
+from security.hostile import CODE, pairs, quoted
 
 from teleopdesign.cli import main
 from teleopdesign.controllers import from_control
@@ -32,8 +32,7 @@ def test_the_file_that_is_spoilt_below_is_good(guard, tmp_path):
     assert main(["derive", str(file)]) == 0
 
 
-@pytest.mark.parametrize("place", [p for p in NAMES if p != "title"])
-@pytest.mark.parametrize("text", CODE, ids=range(len(CODE)))
+@pytest.mark.parametrize(("place", "text"), pairs((p for p in NAMES if p != "title"), CODE))
 def test_a_name_in_a_diagrams_file_is_refused_in_one_line(guard, tmp_path, capsys, place, text):
     file = tmp_path / "loop.toml"
     file.write_text(diagram_file(**{place: text}), encoding="utf-8")
@@ -67,8 +66,7 @@ def test_a_command_takes_a_diagrams_title_for_a_text(guard, tmp_path, capsys, te
 KEYS = ("kind", "axis", "inertia", "law", "sign", "command", "effects", "series", "mass")
 
 
-@pytest.mark.parametrize("key", KEYS)
-@pytest.mark.parametrize("text", CODE[:10], ids=range(10))
+@pytest.mark.parametrize(("key", "text"), pairs(KEYS, CODE[:10]))
 def test_a_value_of_a_block_is_refused_in_one_line(guard, tmp_path, capsys, key, text):
     file = tmp_path / "loop.toml"
     block = "law" if key in ("law", "series") else "body"

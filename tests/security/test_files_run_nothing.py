@@ -12,7 +12,7 @@ import pytest
 from clock import in_time
 from measurement.rod_example import ROD, rod_columns, rows, write_rod
 from security.diagram_file import one_line
-from security.hostile import CODE, MARK, quoted
+from security.hostile import CODE, MARK, pairs, quoted
 
 from teleopdesign.cli import main
 from teleopdesign.effects import load_effect
@@ -45,8 +45,7 @@ ENTRIES = (
 TITLE = ENTRIES[0]
 
 
-@pytest.mark.parametrize("entry", ENTRIES)
-@pytest.mark.parametrize("text", CODE[:12], ids=range(12))
+@pytest.mark.parametrize(("entry", "text"), pairs(ENTRIES, CODE[:12]))
 def test_an_entry_of_an_experiment_is_refused_or_stays_a_text(guard, tmp_path, entry, text):
     folder = write_rod(tmp_path / "rod")
     file = folder / "experiment.toml"
@@ -154,8 +153,10 @@ def answer(**changed):
     }
 
 
-@pytest.mark.parametrize("key", ["effect", "at", "body", "parameter", "own", "value", "stderr"])
-@pytest.mark.parametrize("text", CODE[:12], ids=range(12))
+@pytest.mark.parametrize(
+    ("key", "text"),
+    pairs(("effect", "at", "body", "parameter", "own", "value", "stderr"), CODE[:12]),
+)
 def test_an_entry_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, key, text):
     from teleopdesign.design import read_answer
     from teleopdesign.diagnose import Diagnosis  # noqa: F401, loaded before what reads is watched

@@ -11,7 +11,7 @@ import h5py
 import pytest
 from clock import in_time, takes_less_than
 from security.diagram_file import one_line
-from security.hostile import CODE, MARK, quoted
+from security.hostile import CODE, MARK, pairs, quoted
 
 from teleopdesign.arms import read_urdf
 from teleopdesign.cli import main
@@ -45,8 +45,7 @@ def robot(**changed):
     return ROBOT.format(**quotes)
 
 
-@pytest.mark.parametrize("place", GOOD)
-@pytest.mark.parametrize("text", PRINTED, ids=range(len(PRINTED)))
+@pytest.mark.parametrize(("place", "text"), pairs(GOOD, PRINTED))
 def test_a_word_of_a_robot_is_a_text_or_refused_in_one_line(guard, tmp_path, place, text):
     path = tmp_path / "r.urdf"
     path.write_text(robot(**{place: text}), encoding="utf-8")
@@ -108,8 +107,7 @@ ENTRIES = ('"d.toml"', '"M.inertia"', "0.2,", "1.2", "3,", '"linear"', "= 0.2\n"
            "hand", '"peak"', '"x"')  # fmt: skip
 
 
-@pytest.mark.parametrize("entry", ENTRIES)
-@pytest.mark.parametrize("text", CODE[:14], ids=range(14))
+@pytest.mark.parametrize(("entry", "text"), pairs(ENTRIES, CODE[:14]))
 def test_an_entry_of_a_study_is_refused_in_one_line(guard, tmp_path, capsys, entry, text):
     from security.diagram_file import diagram_file
 
@@ -179,8 +177,13 @@ def result_file(path, size=3, **attributes):
     return path
 
 
-@pytest.mark.parametrize("key", ["axes", "study", "model", "units", "coordinates", "calendar"])
-@pytest.mark.parametrize("text", [t for t in CODE if "\x07" not in t][:14], ids=range(14))
+@pytest.mark.parametrize(
+    ("key", "text"),
+    pairs(
+        ("axes", "study", "model", "units", "coordinates", "calendar"),
+        [t for t in CODE if "\x07" not in t][:14],
+    ),
+)
 def test_an_attribute_of_a_result_is_a_text(guard_of_results, tmp_path, key, text):
     path = result_file(tmp_path / "s.nc", **{key: text})
     with in_time():

@@ -7,7 +7,7 @@ from devices import body
 import teleopdesign as td
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
-from teleopdesign.studies.trade_off import best_in_both
+from teleopdesign.studies.trade_off import select_unbeaten
 
 LAW = td.controller("low_pass", {"bandwidth": 20.0}).then(td.controller("gain", {"gain": 0.2}))
 LOOP = td.haptic_interface(body(0.15, viscous__damping=4.0), force_feedback=LAW)
@@ -113,7 +113,7 @@ def test_where_no_point_keeps_the_limits_the_answer_says_so():
 @pytest.mark.slow
 def test_trade_offs_are_points_that_no_other_one_beats_in_both():
     rows = np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 2.5], [3.0, 1.0], [3.5, 1.0]])
-    assert best_in_both(rows) == [0, 1, 3]
+    assert select_unbeaten(rows) == [0, 1, 3]
 
     def slow(diagram):
         return 1 / diagram.values["H.low_pass.bandwidth"]

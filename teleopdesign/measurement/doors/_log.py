@@ -61,7 +61,7 @@ def optional(module: str, file: str, extra: str = "io") -> ModuleType:
 
 
 @contextmanager
-def refusing_damage(kind: str, file: str) -> Iterator[None]:
+def refuse_damage(kind: str, file: str) -> Iterator[None]:
     """Where another package reads: whatever a damaged file makes it raise becomes one line.
 
     kind: what the file should be ("MAT file")

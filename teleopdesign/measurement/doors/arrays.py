@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError, quote
-from ._log import MOST_BYTES, Log, part, parts_of, refuse_size, refusing_damage
+from ._log import MOST_BYTES, Log, part, parts_of, refuse_damage, refuse_size
 
 _KIND = ".npz file"
 
@@ -18,7 +18,7 @@ _KIND = ".npz file"
 def open_arrays(path: Path, file: str) -> Log:
     """An .npz file; raises ExperimentError: none, or an array of objects where one is wanted."""
     columns: dict[str, tuple[str, int | None]] = {}
-    with refusing_damage(_KIND, file), zipfile.ZipFile(path) as packed:
+    with refuse_damage(_KIND, file), zipfile.ZipFile(path) as packed:
         for entry in packed.infolist():
             name = entry.filename.removesuffix(".npy")
             shape = _shape(packed, entry)
@@ -31,7 +31,7 @@ def open_arrays(path: Path, file: str) -> Log:
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         out: dict[str, Any] = {}
-        with refusing_damage(_KIND, file), np.load(path, allow_pickle=False) as content:
+        with refuse_damage(_KIND, file), np.load(path, allow_pickle=False) as content:
             for name in wanted:
                 array, column = columns[name]
                 try:

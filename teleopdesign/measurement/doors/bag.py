@@ -18,7 +18,7 @@ import numpy as np
 
 from ...errors import ExperimentError, quote
 from ...names import LONGEST
-from ._log import Array, Log, join_names, optional, refuse_size, refusing_damage
+from ._log import Array, Log, join_names, optional, refuse_damage, refuse_size
 
 #: numbers of one message that become columns: images and point clouds are no log
 MOST_FIELDS = 200
@@ -43,7 +43,7 @@ def open_bag(path: Path, file: str) -> Log:
     source = path
     if path.name.lower().endswith(".db3") and (path.parent / "metadata.yaml").is_file():
         source = path.parent
-    with refusing_damage("bag", file):
+    with refuse_damage("bag", file):
         _check_definitions(source, file)
         with anyreader.AnyReader([source]) as reader:
             refuse_size(reader.message_count, file)

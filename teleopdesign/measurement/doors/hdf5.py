@@ -12,7 +12,7 @@ from typing import Any
 
 from ...errors import ExperimentError, quote
 from ..column_names import unit_of_text
-from ._log import Log, how_to_save, optional, part, parts_of, refuse_size, refusing_damage
+from ._log import Log, how_to_save, optional, part, parts_of, refuse_damage, refuse_size
 
 _KIND = "HDF5 file"
 #: how MATLAB begins its files, in front of what HDF5 writes
@@ -35,7 +35,7 @@ def open_hdf5(path: Path, file: str) -> Log:
     with path.open("rb") as stream:
         turned = stream.read(len(_MATLAB)) == _MATLAB
     objects: list[str] = []
-    with refusing_damage(_KIND, file), h5py.File(path, "r") as content:
+    with refuse_damage(_KIND, file), h5py.File(path, "r") as content:
         names: list[str] = []
 
         def visit(name: str, item: Any) -> None:
@@ -68,7 +68,7 @@ def open_hdf5(path: Path, file: str) -> Log:
         raise ExperimentError(f"{file}: {how_to_save(objects[0])}")
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
-        with refusing_damage(_KIND, file), h5py.File(path, "r") as content:
+        with refuse_damage(_KIND, file), h5py.File(path, "r") as content:
             return {
                 name: _values(content[columns[name][0]], name, columns[name][1]) for name in wanted
             }

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
-from ._log import Log, how_to_save, part, parts_of, refuse_size, refusing_damage
+from ._log import Log, how_to_save, part, parts_of, refuse_damage, refuse_size
 from ._mat_elements import check_elements
 from .hdf5 import MOST_STRUCTS, open_hdf5
 
@@ -30,7 +30,7 @@ def open_matlab(path: Path, file: str) -> Log:
 
     if _is_hdf5(path):
         return open_hdf5(path, file)
-    with refusing_damage(_KIND, file):
+    with refuse_damage(_KIND, file):
         check_elements(path)
         try:
             listed = whosmat(path)
@@ -60,7 +60,7 @@ def open_matlab(path: Path, file: str) -> Log:
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         plain = [columns[n][0] for n in wanted if columns[n][0] not in arrays]
-        with refusing_damage(_KIND, file):
+        with refuse_damage(_KIND, file):
             contents = loadmat(path, variable_names=list(dict.fromkeys(plain))) if plain else {}
         out = {}
         for name in wanted:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ._log import Log, optional, refuse_size, refusing_damage
+from ._log import Log, optional, refuse_damage, refuse_size
 
 _KIND = "parquet file"
 
@@ -14,7 +14,7 @@ _KIND = "parquet file"
 def open_parquet(path: Path, file: str) -> Log:
     """A parquet file; raises ExperimentError: none, or without pyarrow."""
     parquet = optional("pyarrow.parquet", file)
-    with refusing_damage(_KIND, file):
+    with refuse_damage(_KIND, file):
         schema = parquet.read_schema(path)
         names = tuple(schema.names)
         # dates and durations are read in seconds, whatever their names say: "time_ms"
@@ -23,7 +23,7 @@ def open_parquet(path: Path, file: str) -> Log:
         refuse_size(parquet.read_metadata(path).num_rows, file)
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
-        with refusing_damage(_KIND, file):
+        with refuse_damage(_KIND, file):
             table = parquet.read_table(path, columns=list(wanted))
             return {name: table.column(name).to_numpy() for name in wanted}
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ._header import names_and_units
-from ._log import MOST_BYTES, Log, number_names, optional, refuse_size, refusing_damage
+from ._log import MOST_BYTES, Log, number_names, optional, refuse_damage, refuse_size
 
 #: rows above the first row of numbers that may be titles, names and units
 _TOP = 50
@@ -24,7 +24,7 @@ _TOP = 50
 def open_workbook(path: Path, file: str) -> Log:
     """A workbook; raises ExperimentError: none, too large unpacked, no row of numbers."""
     openpyxl = optional("openpyxl", file)
-    with refusing_damage("workbook", file):
+    with refuse_damage("workbook", file):
         with zipfile.ZipFile(path) as packed:
             size = sum(entry.file_size for entry in packed.infolist())
         if size > MOST_BYTES // 4:
