@@ -52,6 +52,8 @@ def as_expression(weight: Weight, *, where: str) -> sp.Expr:
 def _check_names(where: str, *names: str) -> None:
     for name in names:
         check_name(name, where=where)
+        if name == "pi":  # in an expression it would be the number, in silence
+            raise ModelError(f'{where}: found the name "pi", a number in expressions')
 
 
 @check_types
