@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ExperimentError, did_you_mean, quote
+from ..whole_files import read_whole
 from .chain import Array, Chain, Link, express_in_frame, inertia_about, rotation_of, tensor
 
 #: bytes of a file, and its elements and their depth: a hundred times what a large robot needs
@@ -97,7 +98,7 @@ def _root(path: Path, file: str) -> ET.Element:
     try:
         if path.stat().st_size > LARGEST:
             raise ExperimentError(f"{file}: found more than {LARGEST} bytes, expected a URDF")
-        data = path.read_bytes()
+        data = read_whole(path, largest=LARGEST)
     except OSError as problem:
         raise ExperimentError(f"{file}: cannot be read: {problem.strerror}") from None
     try:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ExperimentError
+from ..whole_files import read_whole
 
 #: options that name what a command reads, and what it writes: a file or a folder
 INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect")
@@ -78,7 +79,7 @@ def _texts_of(file: Path) -> Iterator[str]:
     from ..measurement.toml_table import parse_toml
 
     try:
-        content = parse_toml(file.read_bytes().decode("utf-8-sig"))
+        content = parse_toml(read_whole(file).decode("utf-8-sig"))
         yield from _texts(content)
     except (OSError, ValueError, RecursionError):
         return

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ..plain_data import write_json
+from ..whole_files import read_whole
 from ._arms import add_body
 from ._claims import WIDTH, claim_data, claim_lines
 from ._diagnosis import body_of_source
@@ -274,7 +275,7 @@ def _check_file(path: Path) -> int:
     from ..passivity.checker import Refused, check
 
     try:
-        claims = json.loads(path.read_text(encoding="utf-8"))["claims"]
+        claims = json.loads(read_whole(path).decode("utf-8"))["claims"]
         certified = [(str(c["statement"]), list(c["certificates"])) for c in claims]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as problem:
         raise ExperimentError(f"{path}: no file of claims: {problem!r}"[:300]) from problem

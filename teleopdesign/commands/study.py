@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
+from ..whole_files import read_whole
 from . import STOPPED
 from ._options import add_effect_files, check_output, count_argument, say
 from ._progress import PointReporter
@@ -104,7 +105,7 @@ def _run_file(path: Path) -> dict[str, Any]:
     from ..studies import study
 
     try:
-        source = path.read_text(encoding="utf-8")
+        source = read_whole(path).decode("utf-8")
     except OSError as error:
         raise ExperimentError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:

@@ -58,6 +58,9 @@ def read_expression(text: str, *, where: str) -> sp.Expr:
     """
     if len(text) > LONGEST:
         raise ExperimentError(f"{where}: found {len(text)} characters, at most {LONGEST}")
+    if not text.isascii():  # Python reads letters of other scripts as those that look like them
+        odd = next(c for c in text if not c.isascii())
+        raise ExperimentError(f"{where}: found {quote(odd)}, expected plain letters and signs")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Python's, on text that is refused below anyway

@@ -119,17 +119,19 @@ def _integral(a: mpmath.matrix, time: mpmath.mpf) -> mpmath.matrix:
 
 
 def as_mpf(value: Fraction) -> mpmath.mpf:
+    """With the digits that are set."""
     return mpmath.mpf(value.numerator) / value.denominator
 
 
 def add(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
-    """Of polynomials, highest first."""
+    """The sum of polynomials, highest first."""
     n = max(len(p), len(q))
     p, q = ([mpmath.mpf(0)] * (n - len(x)) + x for x in (p, q))
     return [a + b for a, b in zip(p, q, strict=True)]
 
 
 def multiply(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
+    """The product of polynomials, highest first."""
     out = [mpmath.mpf(0)] * (len(p) + len(q) - 1)
     for i, a in enumerate(p):
         for j, b in enumerate(q):

@@ -13,6 +13,7 @@ from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, Array, tensor
 from ..by_value import ByValue
 from ..errors import ExperimentError, did_you_mean, quote
+from ..whole_files import follow_links
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
 from .toml_table import Table, describe_toml_value
 
@@ -117,8 +118,8 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chai
                 )
         return _chain_of_links(table, tuple(joints))
     file = table.text("urdf")
-    path = (folder / file).resolve() if "\0" not in file else folder
-    if not path.is_relative_to(folder.resolve()) or not path.is_file():
+    path = follow_links(folder / file) if "\0" not in file else folder
+    if not path.is_relative_to(follow_links(folder)) or not path.is_file():
         names = sorted(p.name for p in folder.iterdir() if p.suffix in (".urdf", ".xml"))
         raise ExperimentError(
             f"{table.where('urdf')}: no file {quote(file)} in {folder.name}/, found "

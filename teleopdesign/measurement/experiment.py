@@ -10,6 +10,7 @@ from ..by_value import ByValue
 from ..errors import ExperimentError, did_you_mean, quote
 from ..notebook import html_table
 from ..quantity import unit_of
+from ..whole_files import follow_links
 from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
@@ -161,7 +162,7 @@ def _folder_of(path: Path) -> Path:
                 f"{path}: a log with no {_FILE} beside it; to make one: "
                 f"teleopdesign new {shlex.quote(str(path))}"
             )
-        path = path.resolve()
+        path = follow_links(path)
         if path.is_dir():
             names = sorted(entry.name for entry in path.iterdir())
         else:
@@ -243,7 +244,7 @@ def _choice(table: Table, key: str, choices: tuple[str, ...], default: str | Non
 def _check_path(table: Table, folder: Path, file: str) -> None:
     where = table.where("file")
     try:
-        path = (folder / file).resolve()
+        path = follow_links(folder / file)
         inside = path.is_relative_to(folder)
         exists = path.is_file() or is_bag(path) or path.is_dir() and bool(tables_in(path))
     except (OSError, ValueError) as problem:

@@ -96,6 +96,8 @@ def open_log(path: Path, file: str) -> Log:
     file: its name in messages ("rod/fit.csv.gz")
     raises ExperimentError: unknown kind of file, or one that cannot be read
     """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise ExperimentError(f"{file}: found a pipe or a device, expected a file")
     opened: Callable[[Path, str], Log] | None = open_bag if is_bag(path) else None
     if opened is None and path.is_dir() and (parts := tables_in(path)):
         return _read_with_errors(lambda: open_folder(path, file, parts, open_log), file)

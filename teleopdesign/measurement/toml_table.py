@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, final
 
 from ..errors import ExperimentError, did_you_mean, quote
+from ..whole_files import read_whole
 
 
 @final
@@ -141,7 +142,7 @@ def read_toml(path: Path, file: str) -> Table:
     raises ExperimentError: unreadable, not UTF-8, or not TOML (with the line number)
     """
     try:
-        return Table(parse_toml(path.read_bytes().decode("utf-8-sig")), file)
+        return Table(parse_toml(read_whole(path).decode("utf-8-sig")), file)
     except OSError as problem:
         raise ExperimentError(f"{file}: cannot be read: {problem.strerror}") from None
     except UnicodeDecodeError as problem:

@@ -16,6 +16,7 @@ from ..by_value import ByValue
 from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError
 from ..measurement.files import content_digest
+from ..whole_files import follow_links
 from .chosen_measures import measures_of
 from .evaluate import StudyTask
 from .fingerprint import fingerprint
@@ -128,7 +129,7 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
 
     raises ExperimentError: the same folder twice
     """
-    parts = {f: f.resolve().parts[1:] for f in folders}
+    parts = {f: follow_links(f).parts[1:] for f in folders}
     by_place: dict[tuple[str, ...], Path] = {}
     for folder, place in parts.items():
         if len(parts) < len(folders) or place in by_place:

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 from ...errors import ExperimentError, quote
 from ...measurement.toml_table import describe_toml_value
+from ...whole_files import read_whole
 
 #: checks a value; the text is where it stands, for the message
 Check = Callable[[object, str], None]
@@ -29,7 +30,7 @@ def read_content(path: str | Path) -> dict[str, Any]:
     raises ExperimentError: cannot be read, is no JSON, or is no answer
     """
     try:
-        content = json.loads(Path(path).read_bytes().decode("utf-8-sig"), parse_constant=_constant)
+        content = json.loads(read_whole(path).decode("utf-8-sig"), parse_constant=_constant)
     except OSError as error:
         raise ExperimentError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:

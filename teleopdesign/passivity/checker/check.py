@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
+import stat
 from collections.abc import Callable
 from typing import Any
 
@@ -60,6 +62,7 @@ def load(path: str) -> object:
         return dict(pairs)
 
     try:
+        need(not stat.S_ISFIFO(os.stat(path).st_mode), "a pipe")  # which may never end
         with open(path, "rb") as file:
             data = file.read(FILE + 1)
         need(len(data) <= FILE, "too long")

@@ -16,6 +16,7 @@ from ...diagrams.junctions import position_symbol
 from ...errors import ExperimentError, ModelError
 from ...plain_data import write_json
 from ...realise.lti import S
+from ...whole_files import read_whole
 from ..rate_independent import Coulomb, Cycle, Dahl, Spring
 from ..search.growing_wave import GrowingWave
 from ..theorems.lugre import Jumps
@@ -48,7 +49,7 @@ def read_record(path: str | Path) -> Counterexample:
     raises ModelError: not such a file, or one whose stated energy its replay does not confirm
     """
     try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        content = json.loads(read_whole(path).decode("utf-8"))
         record = _make_counterexample(content)
         with np.errstate(over="raise", invalid="raise"):
             stated, replayed = float(content["energy"]), record.energy

@@ -48,9 +48,13 @@ def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
 
 
 def amplitude_beyond_onset(helps: Dahl, f_c: float) -> float:
-    """An amplitude at which cycles release energy, m: 1 - 1/u = f_C/f_D, doubled."""
+    """An amplitude at which cycles release energy, m: 1 - 1/u = f_C/f_D, doubled.
+
+    Levels that floats do not tell from each other count as one unit in the last place apart: what
+    such a cycle releases is then lost in rounding, and refutes nothing.
+    """
     length = helps.level / helps.stiffness
-    return length + 2 * length / (1 - f_c / helps.level)
+    return length + 2 * length / max(1 - f_c / helps.level, 2.0**-52)
 
 
 def proof_of_level(

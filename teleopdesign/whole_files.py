@@ -1,0 +1,51 @@
+"""A user's file, found and read whole: never without end, never more than its kind of text has.
+
+A pipe that nobody writes into would hold a reader for ever, and a device such as /dev/zero would
+fill the memory. What a shell hands over as a pipe, `<(command)`, is read as a file is.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import select
+from pathlib import Path
+
+#: bytes: an answer with all its arrays has some MiB; beyond, reading as JSON would take gigabytes
+LARGEST = 1 << 28
+#: s without a byte from a pipe that someone holds open
+_PATIENCE = 10.0
+_BLOCK = 1 << 20
+
+
+def read_whole(path: str | Path, *, largest: int = LARGEST) -> bytes:
+    """Its bytes.
+
+    raises OSError: as `open` does; more bytes than `largest`; a pipe from which nothing comes
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    blocks, size = list[bytes](), 0
+    with open(os.open(path, flags), "rb", buffering=0) as file:
+        while (block := _next_block(file.fileno())) and size <= largest:
+            blocks.append(block)
+            size += len(block)
+    if size > largest:
+        raise OSError(errno.EFBIG, f"more than {largest >> 20} MiB")
+    return b"".join(blocks)
+
+
+def follow_links(path: Path) -> Path:
+    """The path without links; one that leads round in a ring stays, and is no file then.
+
+    `Path.resolve` raises RuntimeError there, and OSError from Python 3.13 on
+    """
+    return Path(os.path.realpath(path))
+
+
+def _next_block(file: int) -> bytes:
+    while True:
+        try:
+            return os.read(file, _BLOCK)
+        except BlockingIOError:
+            if not select.select([file], [], [], _PATIENCE)[0]:
+                raise OSError(errno.ETIMEDOUT, f"nothing came for {_PATIENCE:g} s") from None
