@@ -38,7 +38,7 @@ def _name(rung: Rung) -> str:
 
 def ladder(bench: Workbench) -> str:
     """The errors of every rung as a Markdown table, and what counts as noise."""
-    lines = ["| model | fit error | check error |", "|---|---:|---:|"]
+    lines = ["| model | fit error | check error |", "|:---|---:|---:|"]
     for rung in bench.rungs:
         fit, check = (_percent(e) for e in (rung.fit.fit_error, rung.fit.check_error))
         lines.append(f"| {_name(rung)} | {fit} | {check} |")
@@ -76,7 +76,7 @@ def compare_rungs(bench: Workbench, one: int, other: int) -> str:
     first, second = bench.rungs[one].fit, bench.rungs[other].fit
     lines = [
         f"| | {_name(bench.rungs[one])} | {_name(bench.rungs[other])} |",
-        "|---|---:|---:|",
+        "|:---|---:|---:|",
         f"| fit error | {_percent(first.fit_error)} | {_percent(second.fit_error)} |",
         f"| check error | {_percent(first.check_error)} | {_percent(second.check_error)} |",
     ]
@@ -116,7 +116,7 @@ def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
     there_now = f"{number(factor * value.value)}{unit_after_number(unit)}"
     return (
         f"`{parameter}` = {there_now} (estimated: {_estimate(bench.model, parameter)})"
-        f"\n\n| error | as estimated | as moved |\n|---|---:|---:|\n{table}"
+        f"\n\n| error | as estimated | as moved |\n|:---|---:|---:|\n{table}"
     )
 
 

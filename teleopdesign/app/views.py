@@ -137,7 +137,10 @@ def ladder_view(
             place_side_by_side(buttons["rank"], buttons["all"]),
             mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
             if bench.candidates
-            else mo.md("The candidates beside this model were not looked at yet."),
+            else mo.md(
+                "What could be added to this model is not fitted yet: "
+                "*Look for what else is missing* does it."
+            ),
         ]
     )
 
