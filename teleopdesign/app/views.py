@@ -169,8 +169,13 @@ def design_view(bench: Workbench, body: str) -> PageElement:
     """The compensation for a body: what it does, its claims, diagram, Bode plot, simulation."""
     return mo.ui.tabs(
         {
-            title: mo.plain_text(part) if isinstance(part, str) else part
-            for title, part in pages.design_parts(bench, body)
+            title: mo.vstack(
+                [
+                    *([mo.md(caption)] if caption else ()),
+                    mo.plain_text(part) if isinstance(part, str) else part,
+                ]
+            )
+            for title, caption, part in pages.design_parts(bench, body)
         }
     )
 
