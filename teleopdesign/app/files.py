@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import ExperimentError
+from ..measurement.tables import DOORS, is_log
 from ..plain_data import write_beside
 
-#: endings of files that may be dropped on the page
-LOGS = (".csv", ".txt", ".tsv", ".gz", ".parquet", ".xlsx", ".mat", ".npz", ".h5", ".hdf5", ".bag")
 #: folder for what is dropped
 DROPPED = "dropped"
 #: bytes of a dropped file at most: a browser holds it in memory once, this process twice
@@ -34,8 +34,29 @@ def logs_in(folder: Path) -> tuple[str, ...]:
     return tuple(
         str(p.relative_to(folder))
         for p in files
-        if p.is_file() and p.suffix.lower() in LOGS and is_inside(folder, p)
+        if p.is_file() and is_log(p) and _is_offered(p) and is_inside(folder, p)
     )
+
+
+def _is_offered(path: Path) -> bool:
+    """Whether a log is one by its place too: answers are JSON files beside experiments."""
+    return path.suffix.lower() != ".json" or path.parent.name == DROPPED
+
+
+def newest(folder: Path, names: Sequence[str]) -> str | None:
+    """Of experiments or logs in a folder the one that was written last; None: there are none."""
+
+    def written(name: str) -> float:
+        path = folder / name
+        toml = path / "experiment.toml"
+        return (toml if toml.is_file() else path).stat().st_mtime
+
+    return max(names, key=written, default=None)
+
+
+def endings() -> str:
+    """The endings of files that can be read, for a label or a message."""
+    return ", ".join(dict.fromkeys(DOORS))
 
 
 def is_inside(folder: Path, path: Path) -> bool:
@@ -59,18 +80,18 @@ def keep_dropped(folder: Path, name: str, content: bytes) -> str:
     base = re.sub(r"[^\w.\- ]", "_", name.replace("\\", "/").rpartition("/")[2])
     stem, _, ending = base.rpartition(".")
     plain = f"{stem.strip(' .')[:LONGEST] or 'log'}.{ending}"
-    if Path(plain).suffix.lower() not in LOGS:
-        raise ExperimentError(
-            f'"{plain}": found {Path(plain).suffix!r}, expected {" or ".join(LOGS)}'
-        )
+    if not is_log(Path(plain)):
+        raise ExperimentError(f'"{plain}": found {Path(plain).suffix!r}, expected {endings()}')
     if len(content) > LARGEST:
         raise ExperimentError(f'"{plain}": {len(content)} bytes, expected at most {LARGEST}')
+    ending = max((e for e in DOORS if plain.lower().endswith(e)), key=len)
+    ending = plain[-len(ending) :]  # as it is written: "LOG.CSV"
     target = resolve_inside(folder, DROPPED)
     target.mkdir(exist_ok=True)
     path, number = target / plain, 1
     while path.exists():
         number += 1
-        path = target / f"{Path(plain).stem}-{number}{Path(plain).suffix}"
+        path = target / f"{plain.removesuffix(ending)}-{number}{ending}"
     with write_beside(path) as part:
         part.write_bytes(content)
     return str(path.relative_to(folder))

@@ -39,14 +39,19 @@ class Preview:
     survey: Survey
 
     def table(self) -> str:
-        """Channels with column, unit and the reason of each guess, as Markdown."""
-        lines = ["| channel | column | unit | guessed |", "|---|---|---|---|"]
+        """Channels with column, unit and the reason of each guess, as Markdown.
+
+        Columns in no channel stand below them, each with its reason.
+        """
+        lines = ["| channel | column | unit | guessed |", "|:---|:---|:---|:---|"]
         for key, entry in self.survey.channels.items():
             why = "; ".join(w for k, w in self.survey.guesses.items() if k.split(".")[1:2] == [key])
             column = entry.get("column", entry.get("value", ""))
             lines.append(
                 f"| {key} | {_cell(column)} | {_cell(entry.get('unit', ''))} | {_cell(why)} |"
             )
+        for column, why in self.survey.unused.items():
+            lines.append(f"| not used | {_cell(column)} | | {_cell(why)} |")
         return "\n".join(lines)
 
     def spans(self) -> FitAndCheck:
@@ -143,4 +148,6 @@ def _number(text: str | None, name: str) -> float | None:
 
 
 def _cell(text: object) -> str:
-    return str(text).replace("|", "\\|").replace("\n", " ")
+    """A text as a cell of a Markdown table shows it letter by letter: "N*m" is no emphasis."""
+    plain = " ".join(str(text).split())
+    return "".join(c if c.isalnum() or c == " " or ord(c) > 127 else f"&#{ord(c)};" for c in plain)

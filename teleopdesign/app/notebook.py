@@ -50,10 +50,11 @@ def _(TeleopDesignError, files, folder, mo, set_names, set_note):
             except TeleopDesignError as error:
                 set_note(str(error))
             else:
-                set_note(f"{name} is written; its columns are shown below")
+                set_note(f"{name} is copied into the folder; what is in it stands below")
         set_names(lambda n: n + 1)
 
-    drop = mo.ui.file(kind="area", multiple=True, on_change=keep, label="Drop a log here")
+    kinds = f"Drop a log here, or choose one ({files.endings()})"
+    drop = mo.ui.file(kind="area", multiple=True, on_change=keep, label=kinds)
     return (drop,)
 
 
@@ -61,7 +62,7 @@ def _(TeleopDesignError, files, folder, mo, set_names, set_note):
 def _(files, folder, get_names, mo):
     get_names()
     names = files.experiments_in(folder)
-    choice = mo.ui.dropdown(options=names, value=names[-1] if names else None, label="Experiment")
+    choice = mo.ui.dropdown(options=names, value=files.newest(folder, names), label="Experiment")
     return choice, names
 
 
@@ -88,9 +89,7 @@ def _(BackgroundTask, Workbench, among, choice, files, folder, mo, set_note, set
 def _(files, folder, get_names, mo):
     get_names()
     known_logs = files.logs_in(folder)
-    log = mo.ui.dropdown(
-        options=known_logs, value=known_logs[-1] if known_logs else None, label="Log"
-    )
+    log = mo.ui.dropdown(options=known_logs, value=files.newest(folder, known_logs), label="Log")
     return (log,)
 
 
@@ -151,7 +150,10 @@ def _(
 def _(choice, folder, mo, names, open_button, views):
     mo.vstack(
         [
-            mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
+            mo.md(
+                "# teleopdesign\n\nFind what the model of a device lacks, in a recording of it. "
+                f"Folder: `{folder.name}`"
+            ),
             views.place_side_by_side(choice, open_button)
             if names
             else mo.md("No experiment here yet. Bring a log of your own:"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..diagnose.comparison import residual_data
 from ..errors import TeleopDesignError
-from ..quantity import unit_after_number
+from ..quantity import unit_after_number, unit_of
 from ..report.words import number, unit_text, with_error
 from .workbench import Workbench
 
@@ -38,7 +38,7 @@ def _name(rung: Rung) -> str:
 
 def ladder(bench: Workbench) -> str:
     """The errors of every rung as a Markdown table, and what counts as noise."""
-    lines = ["| model | fit error | check error |", "|---|---:|---:|"]
+    lines = ["| model | fit error | check error |", "|:---|---:|---:|"]
     for rung in bench.rungs:
         fit, check = (_percent(e) for e in (rung.fit.fit_error, rung.fit.check_error))
         lines.append(f"| {_name(rung)} | {fit} | {check} |")
@@ -76,7 +76,7 @@ def compare_rungs(bench: Workbench, one: int, other: int) -> str:
     first, second = bench.rungs[one].fit, bench.rungs[other].fit
     lines = [
         f"| | {_name(bench.rungs[one])} | {_name(bench.rungs[other])} |",
-        "|---|---:|---:|",
+        "|:---|---:|---:|",
         f"| fit error | {_percent(first.fit_error)} | {_percent(second.fit_error)} |",
         f"| check error | {_percent(first.check_error)} | {_percent(second.check_error)} |",
     ]
@@ -116,7 +116,7 @@ def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
     there_now = f"{number(factor * value.value)}{unit_after_number(unit)}"
     return (
         f"`{parameter}` = {there_now} (estimated: {_estimate(bench.model, parameter)})"
-        f"\n\n| error | as estimated | as moved |\n|---|---:|---:|\n{table}"
+        f"\n\n| error | as estimated | as moved |\n|:---|---:|---:|\n{table}"
     )
 
 
@@ -147,32 +147,47 @@ def next_experiment(bench: Workbench) -> str:
     return repr(propose(bench.diagnosis()))
 
 
-def design_parts(bench: Workbench, body: str) -> list[tuple[str, Figure | Drawing | str]]:
+def design_parts(bench: Workbench, body: str) -> list[tuple[str, str, Figure | Drawing | str]]:
     """A compensation for the body as the last model describes it, one part a tab of the page.
 
-    returns: (title, what it shows); one part with the reason where there is no design
+    returns: (title, caption, what it shows); one part with the reason where there is no design
     """
     from ..plot import draw_diagram
 
     try:
         design = propose_design(bench, body)
-        parts: list[tuple[str, Figure | Drawing | str]] = [
-            ("Before and after", design.plot()),
-            ("Numbers, reasons and claims", repr(design)),
-            ("Diagram", draw_diagram(design.diagram)),
-            ("Bode", design.transparency.plot(columns=2)),
+        signals = "; ".join(f"`{name}` {text}" for name, text in design.diagram.texts.items())
+        parts: list[tuple[str, str, Figure | Drawing | str]] = [
+            ("Before and after", _BEFORE_AND_AFTER, design.plot()),
+            ("Numbers, reasons and claims", "", repr(design)),
+            ("Diagram", signals, draw_diagram(design.diagram)),
+            ("Bode", _BODE, design.transparency.plot(columns=2)),
         ]
         felt = design.impedance
         if felt.simulated is not None:
             impedance = felt.simulated.plot("frequency", model=felt.predicted, columns=2)
-            parts.append(("Impedance", impedance))
+            parts.append(("Impedance", _IMPEDANCE, impedance))
     except TeleopDesignError as error:
-        return [("No design", str(error))]
+        return [("No design", "", str(error))]
+    force = unit_text(unit_of("force", design.body.axis))
+    push = f"The compensated device without a hand, pushed with {number(_push(design))} {force}."
     try:
-        parts.append(("Simulation", _push_device(design).plot()))
+        parts.append(("Simulation", push, _push_device(design).plot()))
     except TeleopDesignError as error:
-        parts.append(("Simulation", str(error)))
+        parts.append(("Simulation", push, str(error)))
     return parts
+
+
+#: what the figures of a design show
+_BEFORE_AND_AFTER = (
+    "What misses of the wanted force in a simulated motion, the friction that is left in slow "
+    "steady motion, and how well the wanted force arrives at a load."
+)
+_BODE = "From the wanted force to the force on a load, in linear theory: 0 dB is perfect."
+_IMPEDANCE = (
+    "Force that a hand feels over its motion. Points: simulated with sampling, delay and encoder. "
+    "Lines: describing functions."
+)
 
 
 def propose_design(bench: Workbench, body: str) -> Design:
@@ -184,8 +199,13 @@ def _push_device(design: Design) -> Simulation:
     """The designed device, pushed for a second with half of the largest recorded command."""
     from ..simulate import simulate
 
-    push = 0.5 * design.reach.command
-    return simulate(design.diagram, duration=1.0, inputs={"R_D": push}, computer=design.sampling)
+    push = {"R_D": _push(design)}
+    return simulate(design.diagram, duration=1.0, inputs=push, computer=design.sampling)
+
+
+def _push(design: Design) -> float:
+    """Half of the largest recorded command."""
+    return 0.5 * design.reach.command
 
 
 class _Key:

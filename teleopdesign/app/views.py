@@ -137,7 +137,10 @@ def ladder_view(
             place_side_by_side(buttons["rank"], buttons["all"]),
             mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
             if bench.candidates
-            else mo.md("The candidates beside this model were not looked at yet."),
+            else mo.md(
+                "What could be added to this model is not fitted yet: "
+                "*Look for what else is missing* does it."
+            ),
         ]
     )
 
@@ -166,8 +169,13 @@ def design_view(bench: Workbench, body: str) -> PageElement:
     """The compensation for a body: what it does, its claims, diagram, Bode plot, simulation."""
     return mo.ui.tabs(
         {
-            title: mo.plain_text(part) if isinstance(part, str) else part
-            for title, part in pages.design_parts(bench, body)
+            title: mo.vstack(
+                [
+                    *([mo.md(caption)] if caption else ()),
+                    mo.plain_text(part) if isinstance(part, str) else part,
+                ]
+            )
+            for title, caption, part in pages.design_parts(bench, body)
         }
     )
 

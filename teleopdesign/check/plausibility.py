@@ -23,6 +23,9 @@ from .unit_slips import NEAR, POWERS, slips
 
 #: a gain or an inertia off by more than this factor is a unit, not a calibration or a poor guess
 FAR = 10.0
+#: a gain between one over this and this is the calibration of a force sensor, and no note; and its
+#: standard error, of the gain, up to which it is known at all
+CALIBRATED, UNSURE = 1.25, 0.05
 #: logarithm by which ratios may differ and still be one scale, and the least factor that is
 #: reported: a user's first values are commonly 20 % off
 ONE_SCALE, OFF_SCALE = 0.15, 2.0
@@ -44,6 +47,7 @@ def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
         if not doubts:
             doubts = [*_units(model, balance), *_shifts(prepared, balance)]
         findings += doubts or [_report_agreement(model, place, balance)]
+        findings += _calibration(prepared, balance)
     return tuple(findings)
 
 
@@ -111,6 +115,26 @@ def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[F
         f"{other} is {1 / gain.value:.3g} times as large as what balances {lead}: going by the "
         f"inertia, {wrong} in another unit than stated.",
         {"gain": gain.value, "error": gain.error, "inertia_ratio": ratio},
+        balance.body,
+    )
+
+
+def _calibration(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
+    """A second force whose scale is that of the first but for a calibration or a constant."""
+    gain = balance.gain
+    if not balance.other or balance.left > NOTHING or gain.error > UNSURE * gain.value:
+        return
+    if not 1 / FAR < gain.value < FAR or 1 / CALIBRATED < gain.value < CALIBRATED:
+        return
+    lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other))
+    yield Finding(
+        "force scales",
+        "note",
+        f"{other} balances {lead} only times {with_standard_error(gain.value, gain.error)}: the "
+        f"scale of one is off, as by a motor's constant (scale = {gain.value:.4g} at "
+        f"channels.{other}, or {1 / gain.value:.4g} times that of channels.{lead}), or the "
+        "actuator gives another force than commanded (actuator_gain).",
+        {"gain": gain.value, "error": gain.error},
         balance.body,
     )
 

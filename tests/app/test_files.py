@@ -1,11 +1,14 @@
 """The page opens and writes inside its folder alone."""
 
+import os
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.app import files
 from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.tables import DOORS
 
 
 def test_experiments_and_logs_are_found_below_the_folder(tmp_path):
@@ -30,6 +33,31 @@ def test_links_that_lead_out_of_the_folder_are_not_followed(tmp_path):
     for name in ("../outside", "link", "/etc"):
         with pytest.raises(ExperimentError, match="outside of folder"):
             files.resolve_inside(folder, name)
+
+
+def test_what_was_written_last_is_shown_first_whatever_its_name(tmp_path):
+    """A log that is dropped, an experiment that is made of it."""
+    assert files.newest(tmp_path, ()) is None
+    for age, name in enumerate(("zeta", "alpha", "mu")):
+        kept = files.keep_dropped(tmp_path, f"{name}.csv", b"t,x\n")
+        place = tmp_path / f"{name}_experiment"
+        place.mkdir()
+        (place / "experiment.toml").write_text("")
+        for path in (tmp_path / kept, place / "experiment.toml"):
+            os.utime(path, (1e9 + age, 1e9 + age))
+    assert files.newest(tmp_path, files.logs_in(tmp_path)) == "dropped/mu.csv"
+    assert files.newest(tmp_path, files.experiments_in(tmp_path)) == "mu_experiment"
+
+
+@pytest.mark.parametrize("ending", DOORS)
+def test_every_log_that_can_be_read_may_be_dropped(tmp_path, ending):
+    names = {files.keep_dropped(tmp_path, f"log{ending}", b"") for _ in range(2)}
+    assert len(names) == 2 and set(files.logs_in(tmp_path)) == names
+
+
+def test_answers_beside_experiments_are_no_logs(tmp_path):
+    (tmp_path / "answer.json").write_text("{}")
+    assert files.logs_in(tmp_path) == ()
 
 
 @given(name=st.text(max_size=40))

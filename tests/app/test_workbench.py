@@ -108,11 +108,15 @@ def test_the_design_is_shown_from_its_claims_to_its_simulation_and_written_as_a_
     bench, tmp_path
 ):
     added = bench.add("stribeck", "device")
-    parts = dict(pages.design_parts(added, "device"))
+    shown = pages.design_parts(added, "device")
+    parts = {title: part for title, _, part in shown}
+    captions = {title: caption for title, caption, _ in shown}
     titles = ["Before and after", "Numbers, reasons and claims", "Diagram", "Bode", "Impedance"]
     assert list(parts) == [*titles, "Simulation"]
     assert "proved" in parts["Numbers, reasons and claims"]
     assert parts["Diagram"].svg().startswith("<svg")
+    assert all(f"`{name}` " in captions["Diagram"] for name in ("R_D", "R_A", "L", "R_MBC"))
+    assert captions["Simulation"].endswith(" N.")
     position = parts["Simulation"].axes[0].lines[0].get_ydata()
     assert np.ptp(position) > 0
     assert "device_interface.toml" in export.write_all(added, tmp_path)

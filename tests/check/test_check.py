@@ -262,7 +262,7 @@ def test_a_limit_that_the_command_never_reaches_is_said_to_show_below_it(rod):
     known = {n: catalogue()[n] for n in ("coulomb", "viscous", "actuator_saturation")}
     sentence = shows(rod, known)["what the record can show"].sentence
     commands = np.abs(rod.records[0].signals["device.actuator_force"])
-    limit = float(sentence.split("actuator_saturation (below ")[1].split()[0])
+    limit = float(sentence.split("actuator_saturation (limit below ")[1].split()[0])
     assert 0.3 * commands.max() < limit < commands.max()
 
 

@@ -7,6 +7,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.check.mixed_columns import check_clock_unit, check_mixed_columns
+from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
 from teleopdesign.effects import EFFECTS, find_effect
 from teleopdesign.errors import ModelError
@@ -47,6 +48,20 @@ def test_a_body_that_rests_at_a_reversal_is_not_stuck_but_a_sensor_that_leaps_is
     assert stuck_stretches(moving, 1.0, "position") == []
     leaping = np.cumsum(np.r_[np.full(50, 20.0), np.zeros(40), [800.0], np.full(30, 20.0)])
     assert len(stuck_stretches(leaping, 1.0, "position")) == 1
+
+
+@pytest.mark.parametrize(("channel", "factor"), [("interaction", 0.6), ("actuator", 1.7)])
+def test_forces_of_two_scales_are_a_note_that_says_what_to_type(rod, channel, factor):
+    """The scale that is printed is the one that was put in; a calibration is no note."""
+    key = f"device.{channel}_force"
+    wrong = changed(rod, lambda s: s | {key: factor * s[key]})
+    (note,) = [f for f in check_experiment(wrong) if f.topic == "force scales"]
+    # the force that leads may be either of the two
+    expected = factor if channel == "actuator" else 1 / factor
+    gain = note.numbers["gain"]
+    assert min(abs(gain - expected), abs(gain - 1 / expected)) < 0.05 * gain
+    assert f"scale = {gain:.4g} at channels." in note.sentence
+    assert not [f for f in check_experiment(rod) if f.topic == "force scales"]
 
 
 @pytest.mark.parametrize(("word", "meant"), [("stiction", "stribeck"), ("LuGre", "presliding")])

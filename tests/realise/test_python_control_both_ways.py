@@ -327,7 +327,9 @@ def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, d
         square = MIMO[name]
         parts = [[control.ss(square[i, j]) for j in range(2)] for i in range(2)]
         entries = [[control.sample_system(e, PERIOD, "zoh") for e in row] for row in parts]
-        whole = control.combine_tf([[control.tf(e) for e in row] for row in entries])
+        tfs = [[control.tf(e) for e in row] for row in entries]
+        parts = ([[getattr(e, n)[0][0] for e in row] for row in tfs] for n in ("num", "den"))
+        whole = control.tf(*parts, PERIOD)
         given = whole if discrete else square
         diagram = two_rods(given, analog=False)
         motions, inputs, rods = ("x1", "x2"), ("f1", "f2"), [(0.1, 3.0), (0.2, 3.0)]

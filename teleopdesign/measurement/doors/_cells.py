@@ -19,6 +19,8 @@ _NUMBER = re.compile(
 #: thousands with commas between, as spreadsheets print them: "1,000.0". One comma alone may be a
 #: decimal comma, "1,000", and is none of them
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:(?:,\d{3})++\.\d*+|(?:,\d{3}){2,})$")
+#: the same beside decimal commas: "1.234,5". Points without a comma, "1.234", are none of them
+_THOUSANDS_WITH_POINTS = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})++,\d*+$")
 #: what loggers and tables write where there is no reading, in lower case
 NO_READING = frozenset(
     "n/a na n.a. #n/a #na null none nil - -- --- ? * . missing invalid "
@@ -36,16 +38,23 @@ def is_empty(cell: str) -> bool:
 
 def is_number(cell: str, comma: bool) -> bool:
     """Whether a cell is a number; comma: with a decimal comma, else with a point."""
-    if not comma and _THOUSANDS.match(cell):
+    if (_THOUSANDS_WITH_POINTS if comma else _THOUSANDS).match(cell):
         return True
     return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
 
 
-def number_of(cell: str) -> float | str:
-    """A cell as a number, NaN where it holds no reading; the cell itself where it is a text."""
+def number_of(cell: str, *, comma: bool = False) -> float | str:
+    """A cell as a number, NaN where it holds no reading; the cell itself where it is a text.
+
+    comma: the decimal sign is one, and points may part thousands
+    """
     cell = cell.strip()
     if is_empty(cell):
         return math.nan
+    if comma:
+        if "." in cell and not _THOUSANDS_WITH_POINTS.match(cell):
+            return cell
+        cell = cell.replace(".", "").replace(",", ".")
     if _THOUSANDS.match(cell):
         cell = cell.replace(",", "")
     if not _NUMBER.match(cell):
@@ -81,9 +90,9 @@ class CellColumns:
     A column that begins with another text is kept until it is whole: dates count from its first.
     """
 
-    def __init__(self, where: Sequence[str]) -> None:
-        """where: of each column, what errors call it."""
-        self._where = where
+    def __init__(self, where: Sequence[str], *, comma: bool = False) -> None:
+        """where: of each column, what errors call it;  comma: the decimal sign is one."""
+        self._where, self._comma = where, comma
         self._numbers: list[list[Array]] = [[] for _ in where]
         self._texts: list[list[str]] = [[] for _ in where]
         self._rows = 0
@@ -91,36 +100,42 @@ class CellColumns:
     def add(self, columns: Sequence[list[str]]) -> None:
         """The cells of the next rows; raises ExperimentError: one that is no number."""
         for k, cells in enumerate(columns):
-            if self._texts[k] or (self._rows == 0 and _begins_with_text(cells)):
+            if self._texts[k] or (self._rows == 0 and _begins_with_text(cells, self._comma)):
                 self._texts[k] += cells
             else:
-                self._numbers[k].append(_numbers(cells, self._where[k], self._rows))
+                self._numbers[k].append(_numbers(cells, self._where[k], self._comma, self._rows))
         self._rows += len(columns[0])
 
     def values(self) -> list[Array]:
         """Each column; raises ExperimentError: neither numbers nor dates."""
         return [
-            _seconds_or_numbers(texts, where) if texts else np.concatenate([_NO_ROWS, *numbers])
+            _seconds_or_numbers(texts, where, self._comma)
+            if texts
+            else np.concatenate([_NO_ROWS, *numbers])
             for texts, numbers, where in zip(self._texts, self._numbers, self._where, strict=True)
         ]
 
 
-def _begins_with_text(cells: Sequence[str]) -> bool:
+def _begins_with_text(cells: Sequence[str], comma: bool) -> bool:
     filled = next((c for c in cells if not is_empty(c)), "")
-    return bool(filled) and not is_number(filled, comma=False)
+    return bool(filled) and not is_number(filled, comma)
 
 
-def _seconds_or_numbers(cells: Sequence[str], where: str) -> Array:
-    stamps = stamps_in_texts(cells)
-    return _numbers(cells, where) if stamps is None else stamps
+def _seconds_or_numbers(cells: Sequence[str], where: str, comma: bool) -> Array:
+    stamps = stamps_in_texts([c.replace(",", ".") for c in cells] if comma else cells)
+    return _numbers(cells, where, comma) if stamps is None else stamps
 
 
-def _numbers(cells: Sequence[str], where: str, before: int = 0) -> Array:
+def _numbers(cells: Sequence[str], where: str, comma: bool, before: int = 0) -> Array:
     """Numbers, NaN for a cell without a reading; before: rows before the first."""
     out = np.full(len(cells), np.nan)
     for k, cell in enumerate(cells, start=before + 1):
-        number = number_of(cell) if cell else math.nan
+        number = number_of(cell, comma=comma) if cell else math.nan
         if isinstance(number, str):
-            raise ExperimentError(f"{where}, row {k}: found {quote(cell)}, expected a number")
+            expected = "a number"
+            if comma and _NUMBER.match(cell.strip()):
+                expected += " with a decimal comma, for that of other cells is one: is the point a "
+                expected += "decimal sign, or does it part thousands? Write it without"
+            raise ExperimentError(f"{where}, row {k}: found {quote(cell)}, expected {expected}")
         out[k - before - 1] = number
     return out

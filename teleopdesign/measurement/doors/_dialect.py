@@ -46,8 +46,8 @@ class Dialect:
     remarks: tuple[str, ...] = ()
 
 
-def dialect_of(path: Path, file: str) -> Dialect:
-    """How the file is written."""
+def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
+    """The encoding of a file, and its first lines; raises ExperimentError: there is none."""
     with open_bytes(path) as stream:
         raw = stream.read(LOOKED_AT)
         whole = len(raw) < LOOKED_AT
@@ -60,6 +60,11 @@ def dialect_of(path: Path, file: str) -> Dialect:
         raise ExperimentError(
             f"{file}: found no header, expected a first row that names the columns"
         )
+    return encoding, lines
+
+
+def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
+    """How a table is written, from its first lines."""
     body = [line for line in lines if line.strip() and not line.lstrip().startswith(COMMENTS)]
     separator, comma = _separator(body[1:] or body)
     first, width = _first_row(lines, separator, comma)

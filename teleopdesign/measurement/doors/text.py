@@ -22,10 +22,12 @@ from ._dialect import (
     Dialect,
     cells_of,
     dialect_of,
+    first_lines,
     is_value,
     open_bytes,
 )
 from ._log import MOST_BYTES, Array, Log, refuse_size
+from ._pairs import log_of_pairs, names_in_lines
 
 #: rows that are read at once: 20 MB of text
 _ROWS = 200_000
@@ -37,8 +39,10 @@ _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 def open_text(path: Path, file: str) -> Log:
     """A csv file, packed or not; raises ExperimentError: no text, no rows."""
-    dialect = dialect_of(path, file)
-
+    encoding, lines = first_lines(path, file)
+    if pairs := names_in_lines(lines):
+        return log_of_pairs(path, file, encoding, pairs)
+    dialect = dialect_of(lines, encoding, file)
     strays: list[int] = []
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
@@ -89,7 +93,10 @@ def _read(
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
         with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-            parts = [*_parts(_lines(stream, dialect, file, strays), dialect.separator, places)]
+            lines = _lines(stream, dialect, file, strays)
+            if dialect.comma:
+                lines = _with_points(lines, dialect.separator, places)
+            parts = [*_parts(lines, dialect.separator, places)]
         columns: dict[str, Array] = {}
         for name in wanted:  # a column at a time: its parts go when it is whole
             columns[name] = np.concatenate([part.pop(0) for part in parts])
@@ -127,7 +134,7 @@ def _place(header: Sequence[str], name: str, file: str) -> int:
 
 
 def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]) -> Iterator[str]:
-    """The rows of numbers with points as decimal signs.
+    """The rows of numbers.
 
     strays: gets the row before which a line was left out that is no row: too few cells, or no
         number in any
@@ -159,9 +166,25 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
             if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
                 raise _ragged_row_error(file, count, cells, width)
             line = line.rstrip("\r\n")[:-1] + "\n"
-        yield line.replace(",", ".") if dialect.comma else line
+        yield line
     if cut:
         strays.pop()  # said as a row that was cut off
+
+
+def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[str]:
+    """Rows with points in place of decimal commas.
+
+    raises ValueError: a point in a wanted cell, where it may part thousands
+    """
+    for line in lines:
+        if "." in line and any("." in c for c in pick(cells_of(line, separator), places)):
+            raise ValueError(line)
+        yield line.replace(",", ".")
+
+
+def pick(cells: Sequence[str], places: Sequence[int]) -> list[str]:
+    """Some cells of a row; "" where the row is shorter."""
+    return [cells[k] if k < len(cells) else "" for k in places]
 
 
 def _is_text(line: str, dialect: Dialect) -> bool:
@@ -191,9 +214,11 @@ def _read_cell_by_cell(
         f"{file}: {channel + ': ' if channel else ''}column {quote(name)}"
         for name, channel in wanted.items()
     ]
-    columns = CellColumns(where)
+    columns = CellColumns(where, comma=dialect.comma)
     with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
         lines = _lines(stream, dialect, file, strays)
         while rows := [cells_of(line, dialect.separator) for line in islice(lines, _ROWS)]:
-            columns.add([[r[k] if k < len(r) else "" for r in rows] for k in places])
+            columns.add(
+                [list(column) for column in zip(*(pick(r, places) for r in rows), strict=True)]
+            )
     return dict(zip(wanted, columns.values(), strict=True))

@@ -15,7 +15,6 @@ from ...quantity import measures, si_factor
 from ...standard_error import with_standard_error
 from ..column_names import is_wanted, likeness, words_of
 from ..first_guess import balance_factor, explain_force
-from .acting import names_current
 from .content import SURE_NAME, Array, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
@@ -30,6 +29,12 @@ FACTOR_OF_ONE = 1.25
 KNOWN = 0.05
 #: beginnings of the words that say the motor's side of a gear
 MOTOR = ("motor", "moteur", "モータ", "电机", "мотор")
+#: words of a force or torque: those of `column_names` without letters and words of a command, for
+#: a voltage that drives a motor balances its current too
+FORCE = (
+    "torque", "moment", "drehmoment", "tau", "force", "kraft", "couple", "coppia", "fuerza",
+    "forza", "トルク", "力矩", "扭矩", "토크", "момент", "сила",
+)  # fmt: skip
 
 
 def hand_by_balance(
@@ -78,14 +83,27 @@ def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
     """Whether a column may be the hand's force by its name and unit.
 
     named: it must be called a force, or have the unit of one: with a factor that is free a voltage
-        or a speed balances a current too
+        balances a current too
     """
     name, unit = column.name, column.unit
     if is_wanted(name) or likeness(name, "position") >= SURE_NAME:
         return False
     if unit is not None:
         return measures(unit, "force", axis)
-    return not named or likeness(name, "actuator_force") >= SURE_NAME and not names_current(name)
+    return (
+        not named
+        or not _is_motors(name)
+        and any(
+            word.endswith(known) if len(known) > 4 else word == known or _is_within(known, word)
+            for word in words_of(name)
+            for known in FORCE
+        )
+    )
+
+
+def _is_within(known: str, word: str) -> bool:
+    """Whether a word of a language without spaces holds another."""
+    return not known.isascii() and known in word
 
 
 def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:

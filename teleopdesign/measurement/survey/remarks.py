@@ -24,7 +24,7 @@ _TORQUE_CONSTANT = re.compile(
 #: "gear 50:1", "gear ratio = 50", "Getriebe i = 100"
 _GEAR_RATIO = re.compile(
     r"(?:\bgear(?:box)?(?:[ _]?ratio)?\b|\bgetriebe\w*|\breduction\b|\buntersetzung\b)\D{0,12}?"
-    r"(\d{1,5}(?:[.,]\d{1,6})?)(?:\s*:\s*1\b)?(?!\s*[:\d])",
+    r"(\d{1,5}(?:[.,]\d{1,6})?)(?:\s*:\s*1\b)?(?!\s*[:\d]|-)",
     re.I,
 )
 

@@ -1,0 +1,79 @@
+"""Lines of names and values, as a microcontroller prints them: "t=0.001 pos=0.28 cmd=-1.2"."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ._cells import number_of
+from ._header import bare_unit, is_unit_cell
+from ._log import Array, Log, refuse_size
+
+#: a name, "=" or ":", a number, a unit, and what stands between pairs. Possessive, and matched from
+#: where the last pair ended: a long line is decided at once
+_PAIR = re.compile(
+    r"[\s,;|]*+([^\W\d][\w./]*+)\s*+[=:]\s*+"
+    r"([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|nan)([^\W\d]*+)(?:[\s,;|]++|$)"
+)
+#: part of the lines that must be pairs of the same names; the others are messages, and left out
+MOST_OF_THEM = 0.8
+
+
+def pairs_of(line: str) -> list[tuple[str, str, str]]:
+    """(name, number, unit) of a line that holds nothing else; empty: the line is another one."""
+    pairs, end = [], 0
+    while end < len(line) and (match := _PAIR.match(line, end)) is not None:
+        pairs.append((match[1], match[2], match[3]))
+        end = match.end()
+    return pairs if len(pairs) > 1 and end == len(line) else []
+
+
+def names_in_lines(lines: Sequence[str]) -> dict[str, str]:
+    """Name -> unit of a file that is written in pairs; empty: the file is a table."""
+    filled = [line for line in lines if line.strip()]
+    rows = [row for line in filled if (row := pairs_of(line))]
+    if len(rows) < 3 or len(rows) < MOST_OF_THEM * len(filled):
+        return {}
+    # the first line of a dump may be cut off: the names are those of the next one
+    units = {name: bare_unit(unit) if is_unit_cell(unit) else "" for name, _, unit in rows[1]}
+    return units if len(units) == len(rows[1]) else {}
+
+
+def log_of_pairs(path: Path, file: str, encoding: str, units: Mapping[str, str]) -> Log:
+    """The log of a file whose lines are pairs.
+
+    units: of each name, as `names_in_lines` finds them
+    """
+    from ._dialect import open_bytes
+
+    strays: list[int] = []
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
+        strays.clear()
+        names, rows = tuple(units), []
+        with open_bytes(path) as raw, io.TextIOWrapper(raw, encoding, errors="replace") as stream:
+            for line in stream:
+                row = pairs_of(line)
+                if tuple(name for name, _, _ in row) == names:
+                    rows.append([float(number_of(number)) for _, number, _ in row])
+                elif line.strip():
+                    strays.append(len(rows) + 1)
+                refuse_size(len(rows), file)
+        if len(strays) > max(10, (1 - MOST_OF_THEM) * len(rows)):
+            raise ExperimentError(
+                f"{file}: row {strays[0]}: found other names than {', '.join(names)}, "
+                "expected the same ones in every line"
+            )
+        table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
+        return {name: table[:, names.index(name)].copy() for name in wanted}
+
+    def left_out() -> tuple[str, ...]:
+        return (f"{len(strays)} lines of another form: left out",) if strays else ()
+
+    notes = ("names and values in each line",)
+    return Log(tuple(units), read, {n: u for n, u in units.items() if u}, notes, left_out=left_out)

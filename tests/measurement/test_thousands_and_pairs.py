@@ -1,0 +1,100 @@
+"""Numbers with points between thousands, and lines of names and values."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.doors._pairs import pairs_of
+from teleopdesign.measurement.doors.text import open_text
+
+ROWS = 800
+T = 2.0 * np.arange(ROWS)  # ms: beyond 1000 long after the first rows
+Q = 900 * np.sin(0.01 * np.arange(ROWS)) * np.linspace(1, 3, ROWS)
+
+
+def german(value, digits=2):
+    """1234.5 -> "1.234,50"."""
+    return f"{value:,.{digits}f}".translate(str.maketrans(",.", ".,"))
+
+
+def open_lines(path, lines, encoding="utf-8"):
+    path.write_bytes(("\n".join(lines) + "\n").encode(encoding))
+    return open_text(path, path.name)
+
+
+def read_all(log):
+    return log.read(dict.fromkeys(log.names, ""))
+
+
+@given(value=st.floats(-1e9, 1e9), digits=st.integers(1, 6))
+def test_a_number_with_points_between_thousands_is_that_number(value, digits):
+    from teleopdesign.measurement.doors._cells import is_number, number_of
+
+    text = german(value, digits)
+    assert is_number(text, comma=True)
+    assert number_of(text, comma=True) == float(f"{value:.{digits}f}")
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_a_table_with_decimal_commas_may_have_points_between_thousands(tmp_path, separator):
+    rows = [separator.join(map(german, row)) for row in zip(T, Q, strict=True)]
+    log = open_lines(tmp_path / "log.csv", [separator.join(("Zeit (ms)", "Weg (mm)")), *rows])
+    columns = read_all(log)
+    assert np.array_equal(columns["Zeit (ms)"], T)
+    assert np.allclose(columns["Weg (mm)"], Q, atol=0.0051)
+
+
+def test_points_without_a_comma_in_a_table_of_decimal_commas_are_refused_in_one_line(tmp_path):
+    """1.234 may be 1234 or 1.234; it was read as the latter."""
+    rows = [f"{german(t, 0)};{german(q)}" for t, q in zip(T, Q, strict=True)]
+    log = open_lines(tmp_path / "log.csv", ["Zeit (ms);Weg (mm)", *rows])
+    with pytest.raises(ExperimentError, match='row 501: found "1.000", expected .* thousands'):
+        log.read({"Zeit (ms)": ""})
+    assert np.allclose(log.read({"Weg (mm)": ""})["Weg (mm)"], Q, atol=0.0051)
+
+
+def test_a_date_with_points_beside_decimal_commas_is_a_date(tmp_path):
+    rows = [f"02.03.2026 22:14:{k // 100:02d},{k % 100:02d};{german(q)}" for k, q in enumerate(Q)]
+    columns = read_all(open_lines(tmp_path / "log.csv", ["Zeit;Weg", *rows]))
+    assert np.allclose(columns["Zeit"], 0.01 * np.arange(ROWS) + columns["Zeit"][0], atol=1e-5)
+
+
+@pytest.mark.parametrize("form", ["t={:.3f} pos={:.5g}", "t: {:.3f}, pos: {:.5g}",
+                                  "t:{:.3f};pos:{:.5g}", "t = {:.3f} | pos = {:.5g}"])  # fmt: skip
+def test_lines_of_names_and_values_are_a_table(tmp_path, form):
+    rows = [form.format(t, q) for t, q in zip(T, Q, strict=True)]
+    log = open_lines(
+        tmp_path / "dump.log", ["ready", rows[0][4:], *rows[:300], "reset", *rows[300:]]
+    )
+    assert log.names == ("t", "pos")
+    columns = read_all(log)
+    assert np.allclose(columns["t"], T) and np.allclose(columns["pos"], Q, rtol=1e-4)
+    assert log.left_out() == ("3 lines of another form: left out",)
+
+
+def test_units_behind_the_values_are_units_of_their_columns(tmp_path):
+    rows = [f"t={t}ms pos={q:.3f}deg i=0.5A n=3" for t, q in zip(T, Q, strict=True)]
+    log = open_lines(tmp_path / "dump.txt", rows)
+    assert log.units == {"t": "ms", "pos": "deg", "i": "A"}
+
+
+def test_lines_with_other_names_midway_are_refused(tmp_path):
+    rows = [f"a={k} b={k}" for k in range(20_000)] + [f"a={k} c={k}" for k in range(20_000)]
+    log = open_lines(tmp_path / "dump.log", rows)
+    with pytest.raises(ExperimentError, match="row 20001: found other names than a, b"):
+        read_all(log)
+
+
+@pytest.mark.parametrize("line", ["a=1", "12:30:05, 4", "a=1 b", "a=1 b=2 and so on", "t=0,5 x=1,2",
+                                  "a==1 b=2", "=1 =2", "http://x/1 a=2"])  # fmt: skip
+def test_other_lines_are_no_pairs(line):
+    assert pairs_of(line) == []
+
+
+@pytest.mark.parametrize(
+    "line", ["a=" * 50_000, "a=1 " * 50_000, "a" * 200_000, "a=1" + "0" * 10**5]
+)
+def test_a_long_line_is_decided_at_once(line):
+    pairs_of(line)
