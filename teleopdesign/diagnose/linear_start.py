@@ -23,9 +23,10 @@ from .bodies_apart import select_bodies
 from .fit import Fit
 from .prepare import Prepared
 
-#: columns that are carried through the friction balance at once: as many as a processor's second
-#: cache holds of a record. With twice as many a search by periods takes a tenth longer
-AT_ONCE = 24
+#: columns that are carried through the friction balance at once: an even number, for a phase takes
+#: two; with the residual and another one they fill lanes of eight. Fewer: each call costs a
+#: millisecond besides; more: a record's columns leave a processor's second cache
+AT_ONCE = 30
 
 
 @dataclass(frozen=True)

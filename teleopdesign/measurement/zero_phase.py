@@ -71,15 +71,6 @@ def go_on(y: Array, states: Array, sos: Array, backward: bool) -> None:
 
 
 @compile_and_keep
-def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
-    """Filter the columns of y (samples, signals) in place, from one end to the other."""
-    n, r = y.shape
-    states = np.empty((2, 2, r))
-    settle(states, steady_state, y[n - 1 if backward else 0])
-    go_on(y, states, sos, backward)
-
-
-@compile_and_keep
 def copy_rows(values: Array, to: Array) -> None:
     """Copy the rows of one array into another; both lie without gaps in memory.
 
@@ -103,8 +94,13 @@ def filter_both_ways(y: Array, extended: Array, sos: Array, steady_state: Array)
             extended[k, j] = 2.0 * y[0, j] - y[m - k, j]
             extended[m + n + k, j] = 2.0 * y[n - 1, j] - y[n - 2 - k, j]
     copy_rows(y, extended[m : m + n])
-    one_way(extended, sos, steady_state, False)
-    one_way(extended[m:], sos, steady_state, True)
+    states = np.empty((2, 2, r))
+    # there and back by one call: of a copy of the loop for each LLVM makes no good vectors, and it
+    # takes twice as long
+    for way in range(2):
+        there = extended[way * m :]
+        settle(states, steady_state, there[way * (len(there) - 1)])
+        go_on(there, states, sos, way == 1)
 
 
 def columns(rows: Array) -> Array:

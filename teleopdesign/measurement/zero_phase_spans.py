@@ -144,6 +144,22 @@ def connect_spans(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Ar
 
 
 @compile_and_keep
+def _fill_span(extended: Array, y: Array, begin: int, end: int) -> None:
+    """Set rows of the continued record to those of y (n, signals), mirrored beyond its ends."""
+    n, r = y.shape
+    m = (extended.shape[0] - n) // 2
+    for e in range(begin, min(end, m)):
+        for j in range(r):
+            extended[e, j] = 2.0 * y[0, j] - y[m - e, j]
+    for e in range(max(begin, m + n), end):
+        for j in range(r):
+            extended[e, j] = 2.0 * y[n - 1, j] - y[m + 2 * (n - 1) - e, j]
+    first, last = max(begin - m, 0), min(end - m, n)
+    if first < last:
+        copy_rows(y[first:last], extended[m + first : m + last])
+
+
+@compile_and_keep
 def filter_spans(
     y: Array,
     extended: Array,
@@ -161,30 +177,23 @@ def filter_spans(
     m = (extended.shape[0] - n) // 2
     count = len(spans)
     states = np.zeros((2 * count, 4, r))  # after each span, there and back
-    for c in range(count):
-        begin, end = spans[c, 0], spans[c, 1]
-        for e in range(begin, min(end, m)):
-            for j in range(r):
-                extended[e, j] = 2.0 * y[0, j] - y[m - e, j]
-        for e in range(max(begin, m + n), end):
-            for j in range(r):
-                extended[e, j] = 2.0 * y[n - 1, j] - y[m + 2 * (n - 1) - e, j]
-        first, last = max(begin - m, 0), min(end - m, n)
-        if first < last:
-            copy_rows(y[first:last], extended[m + first : m + last])
-        here = states[c]
-        if c == 0:
-            settle(here.reshape(2, 2, r), steady_state, extended[begin])
+    # there and back by one call of `go_on`, as in `filter_both_ways`
+    for visit in range(2 * count):
+        back = visit >= count
+        c = 2 * count - 1 - visit if back else visit
+        begin, end, here = spans[c, 0], spans[c, 1], states[visit]
+        if back:
+            begin = max(begin, m)
+            if end <= m:
+                break
         else:
-            _multiply(here, steps[c], states[c - 1])
-        go_on(extended[begin:end], here.reshape(2, 2, r), sos, False)
-    settle(states[count].reshape(2, 2, r), steady_state, extended[n + 2 * m - 1])
-    for c in range(count - 1, -1, -1):
-        begin, end = max(spans[c, 0], m), spans[c, 1]
-        if end <= m:
-            break
-        here = states[2 * count - 1 - c]
-        if c < count - 1:
-            _multiply(here, steps[c + 1], states[2 * count - 2 - c])
+            _fill_span(extended, y, begin, end)
+        if visit == 0 or visit == count:
+            last = extended[end - 1] if back else extended[begin]
+            settle(here.reshape(2, 2, r), steady_state, last)
+        elif back:
+            _multiply(here, steps[c + 1], states[visit - 1])
             _multiply(here, swings[c + 1], states[c])
-        go_on(extended[begin:end], here.reshape(2, 2, r), sos, True)
+        else:
+            _multiply(here, steps[c], states[visit - 1])
+        go_on(extended[begin:end], here.reshape(2, 2, r), sos, back)

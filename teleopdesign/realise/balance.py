@@ -48,10 +48,10 @@ def _balance(
     """
     n, r = left.shape
     sos, steady, _, _ = filters
-    needed, low, high = there[0], there[1], there[2]
+    needed = there[0]
     extended = np.zeros((n + 2 * m, r))
     friction: Array = np.zeros_like(needed)
-    smooth, ahead, now = np.zeros_like(needed), needed.copy(), np.empty(r)
+    smooth, ahead = np.zeros_like(needed), needed.copy()
     momentum, carried = 1.0, 0.0
     for turn in range(STEPS + 1):
         if turn == 1:
@@ -66,25 +66,26 @@ def _balance(
             carried = (momentum - 1.0) / later
             momentum = later
         for i, k in enumerate(rows):
-            for j in range(r):
-                smooth[i, j] += extended[m + k, j]
-            value = ahead[i, 0] + smooth[i, 0]
+            value = ahead[i, 0] + smooth[i, 0] + extended[m + k, 0]
+            clipped = 2 if value >= there[2, i, 0] else 1 if value <= there[1, i, 0] else 0
             # where the value is clipped, its tangents are the bound's; a loop for each case, for
             # with all in one numba makes no vector instructions
-            if value >= high[i, 0]:
+            if clipped:
                 for j in range(r):
-                    now[j] = high[i, j]
-            elif value <= low[i, 0]:
-                for j in range(r):
-                    now[j] = low[i, j]
+                    smooth[i, j] += extended[m + k, j]
+                    now = there[clipped, i, j]
+                    next_ahead = now + carried * (now - friction[i, j])
+                    left[k, j] = ahead[i, j] - next_ahead
+                    ahead[i, j] = next_ahead
+                    friction[i, j] = now
             else:
                 for j in range(r):
-                    now[j] = ahead[i, j] + smooth[i, j]
-            for j in range(r):
-                next_ahead = now[j] + carried * (now[j] - friction[i, j])
-                left[k, j] = ahead[i, j] - next_ahead
-                ahead[i, j] = next_ahead
-                friction[i, j] = now[j]
+                    smooth[i, j] += extended[m + k, j]
+                    now = ahead[i, j] + smooth[i, j]
+                    next_ahead = now + carried * (now - friction[i, j])
+                    left[k, j] = ahead[i, j] - next_ahead
+                    ahead[i, j] = next_ahead
+                    friction[i, j] = now
     return friction
 
 

@@ -127,6 +127,11 @@ def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
     )
 
 
+def contiguous(tangent: Array) -> Array:
+    """Tangents (p, n) without gaps in memory, and writable: kernels are compiled for no others."""
+    return np.require(tangent, requirements=("C", "W"))
+
+
 def stage_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
     """State of an actuation stage, as its average over the hold of each row, with tangents."""
     _, mean = _advance(effect, along, along.signals[SIGNALS["command"]])
@@ -148,7 +153,7 @@ def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
 def _advance(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
     """The effect's state at the rows and its average over the hold of each."""
     scan = compile_source(_stage_source(effect), "stage")
-    tangent = np.ascontiguousarray(command.tangent)
+    tangent = contiguous(command.tangent)
     end, dend = np.empty_like(command.value), np.empty_like(tangent)
     mean, dmean = np.empty_like(command.value), np.empty_like(tangent)
     scan(

@@ -1,5 +1,6 @@
 """Effects are sought on few samples, which say what all samples of the records say."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,9 @@ from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.prepare import SOUGHT, prepare
 from teleopdesign.diagnose.record_shift import record_shifts
+from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import base_of
+from teleopdesign.realise import compiled, scan, shape_scan
 
 
 @pytest.fixture(scope="module")
@@ -84,3 +87,22 @@ def test_records_without_samples_to_spare_are_sought_on_themselves(case):
     assert dense.coarse is dense
     fit = estimate(stated, dense)
     assert base_of(fit, dense) == replace(base_of(fit, dense), fit=fit, coarse=fit)
+
+
+def test_each_kernel_is_compiled_once_for_few_samples_and_for_all(case, monkeypatch):
+    prepared, _, true = case
+    model = true.with_effect(true.known["presliding"], at="device", values={"stiffness": 1e4})
+    kernels = Counter()
+
+    def counted(source, function):
+        kernel = compiled.compile_source(source, function)
+        kernels[kernel] += 1
+        return kernel
+
+    for module in (scan, shape_scan):
+        monkeypatch.setattr(module, "compile_source", counted)
+    for stretches in (prepared.of("fit"), prepared.coarse.of("fit")):
+        for names in ((), tuple(model.parameters), ("device.inertia",)):
+            residuals(model, stretches, names)
+    assert len(kernels) == 2 and min(kernels.values()) >= 6  # a lag, and bristles
+    assert [len(kernel.signatures) for kernel in kernels] == [1, 1]

@@ -24,10 +24,8 @@ from teleopdesign.measurement import zero_phase
 from teleopdesign.realise.compiled import compile_source
 source = "from numba import njit\\n@njit(cache=True)\\ndef f(x):\\n    return 2 * x\\n"
 f = compile_source(source, "f")
-sos, state = zero_phase.sections(20.0, 1e-3)
-y = np.ones((50, 1))
-zero_phase.one_way(y, sos, state, False)
-print(f(21), round(float(y[-1, 0]), 6), sum(f.stats.cache_hits.values()))
+y = zero_phase.zero_phase(np.ones(50), 20.0, 1e-3)
+print(f(21), round(float(y[-1]), 6), sum(f.stats.cache_hits.values()))
 """
 
 
