@@ -252,14 +252,21 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
         elif part == "torque_constant":
             choices = replace(choices, torque_constant=_constant(answer))
         elif part == "counts_per_turn":
-            choices = replace(choices, counts_per_turn=float(answer))
+            choices = replace(choices, counts_per_turn=_number(answer, key))
         elif part == "gear_ratio":
-            choices = replace(choices, gear_ratio=float(answer))
+            choices = replace(choices, gear_ratio=_number(answer, key))
         elif key == "model.device.axis":
             choices = replace(choices, axis=answer)
         else:
-            choices = replace(choices, sample_rate=float(answer))
+            choices = replace(choices, sample_rate=_number(answer, key))
     return replace(choices, units=units)
+
+
+def _number(text: str, key: str) -> float:
+    try:
+        return float(text.replace(",", "."))
+    except ValueError:
+        raise ExperimentError(f"{key}: found {text!r}, expected a number") from None
 
 
 def _with_column(choices: Choices, quantity: str, column: str) -> Choices:

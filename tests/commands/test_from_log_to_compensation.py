@@ -63,6 +63,17 @@ def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
     assert "torque_constant = { value = 0.05," in Path("joint/experiment.toml").read_text()
 
 
+def test_an_answer_that_is_no_number_is_refused_in_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    t = np.arange(3000) / 500
+    rows = np.column_stack([np.round(2000 * np.sin(2 * t)), np.sign(np.cos(2 * t))])
+    np.savetxt("log.csv", rows, delimiter=",", header="enc,i (A)", comments="")
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("builtins.input", lambda asked: "many" if "sample_rate" in asked else "")
+    assert main(["new", "log.csv"]) == 2
+    assert "sample_rate: found 'many', expected a number" in capsys.readouterr().err
+
+
 def test_check_says_once_how_the_log_was_read_and_names_no_steps_that_were_interpolated(
     short_log, capsys
 ):
