@@ -47,7 +47,7 @@ def short_log(tmp_path, monkeypatch, capsys):
 
 def test_no_command_shows_the_commands_and_where_to_begin(capsys):
     assert main([]) == 2
-    said = capsys.readouterr().out
+    said = capsys.readouterr().err
     assert "teleopdesign new log.csv" in said and "diagnose" in said
 
 
