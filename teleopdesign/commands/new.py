@@ -84,13 +84,13 @@ def run(options: argparse.Namespace) -> int:
     for path in options.logs:
         if not path.exists():
             raise ExperimentError(f"{path}: no such file")
+    choices, spans = _choices(options), _spans(options)
     stem = options.logs[0].name.split(".")[0] or "experiment"
     folder = options.output or Path(f"{stem}_experiment")
     if not options.overwrite:
         require_new(folder)
     logs = [open_log(path, path.name) for path in options.logs]
     require_same_columns(logs, [path.name for path in options.logs])
-    choices = _choices(options)
     survey = survey_log(logs[0], options.logs[0].name, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:
@@ -102,7 +102,7 @@ def run(options: argparse.Namespace) -> int:
         folder,
         title=options.title or stem,
         inertia=options.inertia,
-        spans=_spans(options),
+        spans=spans,
         overwrite=options.overwrite,
     )
     print(survey_text(survey, options.logs[0].name))
