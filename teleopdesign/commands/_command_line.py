@@ -44,7 +44,7 @@ def _run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool]) -> int
     try:
         try:
             if not (sys.argv[1:] if arguments is None else arguments):
-                parser().print_help()
+                parser().print_help(sys.stderr)
                 return 2
             options = parser().parse_args(arguments)
         finally:  # also where help was shown, or a wrong argument refused

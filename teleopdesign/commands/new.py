@@ -84,13 +84,13 @@ def run(options: argparse.Namespace) -> int:
     for path in options.logs:
         if not path.exists():
             raise ExperimentError(f"{path}: no such file")
+    choices, spans = _choices(options), _spans(options)
     stem = options.logs[0].name.split(".")[0] or "experiment"
     folder = options.output or Path(f"{stem}_experiment")
     if not options.overwrite:
         require_new(folder)
     logs = [open_log(path, path.name) for path in options.logs]
     require_same_columns(logs, [path.name for path in options.logs])
-    choices = _choices(options)
     survey = survey_log(logs[0], options.logs[0].name, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:
@@ -102,7 +102,7 @@ def run(options: argparse.Namespace) -> int:
         folder,
         title=options.title or stem,
         inertia=options.inertia,
-        spans=_spans(options),
+        spans=spans,
         overwrite=options.overwrite,
     )
     print(survey_text(survey, options.logs[0].name))
@@ -252,14 +252,21 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
         elif part == "torque_constant":
             choices = replace(choices, torque_constant=_constant(answer))
         elif part == "counts_per_turn":
-            choices = replace(choices, counts_per_turn=float(answer))
+            choices = replace(choices, counts_per_turn=_number(answer, key))
         elif part == "gear_ratio":
-            choices = replace(choices, gear_ratio=float(answer))
+            choices = replace(choices, gear_ratio=_number(answer, key))
         elif key == "model.device.axis":
             choices = replace(choices, axis=answer)
         else:
-            choices = replace(choices, sample_rate=float(answer))
+            choices = replace(choices, sample_rate=_number(answer, key))
     return replace(choices, units=units)
+
+
+def _number(text: str, key: str) -> float:
+    try:
+        return float(text.replace(",", "."))
+    except ValueError:
+        raise ExperimentError(f"{key}: found {text!r}, expected a number") from None
 
 
 def _with_column(choices: Choices, quantity: str, column: str) -> Choices:

@@ -47,7 +47,7 @@ def short_log(tmp_path, monkeypatch, capsys):
 
 def test_no_command_shows_the_commands_and_where_to_begin(capsys):
     assert main([]) == 2
-    said = capsys.readouterr().out
+    said = capsys.readouterr().err
     assert "teleopdesign new log.csv" in said and "diagnose" in said
 
 
@@ -61,6 +61,17 @@ def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
     assert "--overwrite" in refused.err and not refused.out
     assert main([*log, "--overwrite"]) == 0
     assert "torque_constant = { value = 0.05," in Path("joint/experiment.toml").read_text()
+
+
+def test_an_answer_that_is_no_number_is_refused_in_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    t = np.arange(3000) / 500
+    rows = np.column_stack([np.round(2000 * np.sin(2 * t)), np.sign(np.cos(2 * t))])
+    np.savetxt("log.csv", rows, delimiter=",", header="enc,i (A)", comments="")
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("builtins.input", lambda asked: "many" if "sample_rate" in asked else "")
+    assert main(["new", "log.csv"]) == 2
+    assert "sample_rate: found 'many', expected a number" in capsys.readouterr().err
 
 
 def test_check_says_once_how_the_log_was_read_and_names_no_steps_that_were_interpolated(
