@@ -19,6 +19,10 @@ _SLOWEST, _POINTS = 1e-9, 6001
 _STEP = 0.2
 #: parts of a sample at which crossings are looked for, before they are followed
 _PARTS = 8
+#: whole samples up to which short dead times are looked at one by one
+_LOOKED = 6
+#: parts of a sample at which the gain at half the sampling rate is looked at
+_FINE = 32
 #: shares of the margin, and samples where there is none, at which the loop is to decay
 _BEFORE, _SAMPLES = (0.25, 0.5, 0.75, 0.99), (0.5, 1.0, 3.0, 10.0, 30.0)
 #: samples; more dead time than this is not looked at
@@ -79,7 +83,7 @@ def delay_margin(loop: SampledLoop) -> float:
         low = time
     times = [s * best for s in _BEFORE] if np.isfinite(best) else [n * period for n in _SAMPLES]
     decays = 0.0
-    for time in (t for t in times if t <= longest):
+    for time in sorted(t for t in (*times, *_looked_at(loop)) if t <= min(longest, best)):
         if loop.with_delay(time).grows():
             return _bisect(loop, decays, time)
         decays = time
@@ -89,7 +93,7 @@ def delay_margin(loop: SampledLoop) -> float:
 def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
     """Dead times (s) at which a mode is on the circle, and whole samples later than it would be."""
     period = float(loop.period)
-    exact, near = set[float](), set[float]()
+    exact, near = _crossings_at_half_the_rate(loop), set[float]()
     for part in np.arange(_PARTS) / _PARTS:
         phase, at = unity_crossings(loop.with_delay(part * period))
         for angle, whole in zip(at, np.radians(phase % 360) / at, strict=True):
@@ -100,6 +104,38 @@ def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
             if on_circle is not None:
                 exact.add(on_circle)
     return exact, {t for t in near if t > 0}
+
+
+def _looked_at(loop: SampledLoop) -> set[float]:
+    """Short dead times (s) at which a loop may grow and decay again a hair further: parts of a
+    sample, and where a dead time of the loop is whole samples, as what it lets pass bends there.
+    """
+    period = float(loop.period)
+    bends = {float(-t % loop.period) for t, _ in loop.above}
+    parts = {*(k * period / _PARTS for k in range(_PARTS)), *bends}
+    return {n * period + part for n in range(_LOOKED) for part in parts} - {0.0}
+
+
+def _crossings_at_half_the_rate(loop: SampledLoop) -> set[float]:
+    """Dead times (s) at which a mode is at z = -1: there the gain is real, whatever the dead time.
+
+    Each whole sample turns its sign; only the part of a sample changes its size.
+    """
+    from scipy.optimize import brentq
+
+    period = float(loop.period)
+
+    def gain(part: float) -> float:
+        return float(loop.with_delay(part * period)(np.array([np.pi]))[0].real)
+
+    parts = np.append(np.arange(_FINE) / _FINE, 1 - 1e-9)
+    values = np.array([gain(part) for part in parts])
+    times = set[float]()
+    for size, samples in ((-1.0, 0), (1.0, 1)):
+        for k in np.flatnonzero((values[1:] > size) != (values[:-1] > size)):
+            part = brentq(lambda x, size=size: gain(x) - size, parts[k], parts[k + 1], xtol=1e-12)
+            times.add((samples + part) * period)
+    return {t for t in times if t > 0}
 
 
 def _bisect(loop: SampledLoop, low: float, high: float) -> float:

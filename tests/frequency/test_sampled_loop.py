@@ -127,6 +127,22 @@ def test_where_others_sample_too_margins_are_called_approximate():
     assert loop_gain(mixed).sampled is None
 
 
+def test_a_window_of_dead_times_about_a_whole_sample_is_seen():
+    """Late by 3/8 of a sample; it grows from 0.623 to 0.65 of a sample more, then at 0.875 again.
+
+    Drawn by the attack; the crossing beyond the window was called the margin.
+    """
+    numbers = [tuple(Fraction(repr(c)) for c in p)
+               for p in ([1.0, 3.09, 6.569, 8.031], [5.548, 3.124, 0.395])]  # fmt: skip
+    period = Fraction("0.21")
+    one = ((Fraction(1),), (Fraction(1),))
+    loop = SampledLoop(period, one, numbers[0], ((period * 3 / 8, numbers[1]),))
+    margin = delay_margin(replace(loop_gain(interface(gain(0.3))), sampled=loop))
+    assert margin == pytest.approx(0.130849, rel=1e-5)
+    for share, grows in ((0.999, False), (1.001, True)):
+        assert loop.with_delay(share * margin).grows() == grows
+
+
 def test_a_sampled_loop_survives_pickling():
     loop = loop_gain(interface(gain(1.0)))
     gain_margin(loop)
