@@ -30,15 +30,6 @@ SOUGHT = 6.0
 #: edge over bandwidth up to which few samples hold the command: above the edge of the smoothing
 #: (`SMOOTHING`), below half of `SOUGHT`
 PASSED = 2.0
-#: what a motion with fewer samples has of one with all
-_SIGNALS_OF_MOTION = (
-    "time",
-    "position",
-    "velocity",
-    "acceleration",
-    "interaction",
-    "direction",
-)
 #: fewest samples that count in a stretch with fewer samples
 FEWEST = 16
 #: blocks of the fit records that are held out in turn where there is no check record
@@ -180,10 +171,14 @@ def _thin_motion(motion: Motion, count: int) -> Motion:
     unheld = np.where(below, 1.0 / np.where(below, coarse.hold(), 1.0), 0.0)
     edge = min(SMOOTHING * motion.bandwidth, 0.45 / coarse.sample_time)
     # copied: kernels of hidden states are compiled, and loaded, for signals without gaps in memory
-    few = {name: getattr(motion, name)[at].copy() for name in _SIGNALS_OF_MOTION}
     return replace(
         motion,
-        **few,
+        time=motion.time[at].copy(),
+        position=motion.position[at].copy(),
+        velocity=motion.velocity[at].copy(),
+        acceleration=motion.acceleration[at].copy(),
+        interaction=motion.interaction[at].copy(),
+        direction=motion.direction[at].copy(),
         command=coarse.multiply(force, unheld),
         spectrum=coarse,
         smoothing=coarse.lowpass(edge, order=8),

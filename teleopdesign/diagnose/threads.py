@@ -22,10 +22,6 @@ from threadpoolctl import threadpool_limits
 T = TypeVar("T")
 #: most threads at a time
 MOST = 4
-#: bytes of a block that, once freed, lets glibc keep blocks up to its size, and twice as many bytes
-#: in all: the largest that counts, 32 MiB with its head. Less: arrays of long records are cleared
-#: anew; of no effect where the system's allocator is another one
-KEPT = 32 * 2**20 - 2**14
 
 
 def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> list[T]:
@@ -38,5 +34,10 @@ def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> lis
 
 @lru_cache(maxsize=1)
 def keep_freed_memory() -> None:
-    """Let the process keep freed memory, by glibc's own rule: free a large block, untouched."""
-    np.empty(KEPT, dtype=np.uint8)
+    """Let the process keep freed memory, by glibc's own rule: free a large block, untouched.
+
+    Once it is freed, glibc keeps blocks up to its size, and twice as many bytes in all. Of no
+    effect where the system's allocator is another one.
+    """
+    # the largest that counts, 32 MiB with its head; less: arrays of long records are cleared anew
+    np.empty(32 * 2**20 - 2**14, dtype=np.uint8)

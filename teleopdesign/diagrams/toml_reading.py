@@ -7,6 +7,7 @@ text. Everything unknown is refused, in one line.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -84,6 +85,8 @@ def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) 
     outside, tables = root.table("outside"), root.table("blocks")
     junctions, texts = root.table("junctions"), root.table("texts")
     kinematics, pose = root.table("kinematics"), root.table("pose")
+    for table in (junctions, kinematics):
+        _refuse_ambiguous_pi(table, tables)
     return Diagram(
         _string(head, "name"),
         tuple(_block(name, tables.table(name), effects) for name in tables.content),
@@ -94,6 +97,22 @@ def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) 
         tuple(_kinematics(kinematics, name) for name in kinematics.content),
         {name: pose.number(name) for name in pose.content},
     )
+
+
+def _refuse_ambiguous_pi(expressions: Table, blocks: Table) -> None:
+    """In an expression a position called "pi" would be the number, in silence."""
+    if not any("pi" in _motions(blocks.table(name)) for name in blocks.content):
+        return
+    for name, terms in expressions.content.items():
+        texts = terms.values() if isinstance(terms, dict) else [terms]
+        if any(isinstance(text, str) and re.search(r"\bpi\b", text) for text in texts):
+            where = expressions.where(name)
+            raise ExperimentError(f'{where}: found "pi", a number and a motion: rename the motion')
+
+
+def _motions(block: Table) -> list[object]:
+    motions = block.content.get("motions", [])
+    return [block.content.get("motion"), *(motions if isinstance(motions, list) else [])]
 
 
 def _block(name: str, table: Table, effects: Mapping[str, Effect]) -> Block:
