@@ -2,11 +2,17 @@
 
 Where nothing can be written (a package that only others may write to, no home, a full disk), or
 what is kept is damaged, a function is compiled in the process, which takes seconds; no error.
+
+Compiled code holds what it calls. numba asks only whether the file of a function itself changed, so
+that after an upgrade an old callee would go on within its caller: here all their files count.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from numba import njit
@@ -21,8 +27,38 @@ def compile_and_keep(function: Function) -> Function:
         dispatcher = njit(cache=True, nogil=True)(function)
     except RuntimeError:  # numba finds no place for machine code
         dispatcher = njit(nogil=True)(function)
+    _stamp_callees(dispatcher)
     without_cache_errors(dispatcher)
     return cast(Function, dispatcher)
+
+
+def _stamp_callees(dispatcher: Any) -> None:
+    """Let machine code that is kept count as old where a file of what it calls has changed."""
+    file: Any = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
+    if hasattr(file, "_source_stamp"):
+        file._source_stamp = (file._source_stamp, hash_files(list_files_of_callees(dispatcher)))
+
+
+def list_files_of_callees(dispatcher: Any) -> list[Path]:
+    """Files of the compiled functions that a compiled one calls, and of those that these call."""
+    waiting, callees = [dispatcher.py_func], set[Any]()
+    while waiting:
+        function = waiting.pop()
+        for name in function.__code__.co_names:
+            called = getattr(function.__globals__.get(name), "py_func", None)
+            if called is not None and called not in callees:
+                callees.add(called)
+                waiting.append(called)
+    return sorted({Path(called.__code__.co_filename) for called in callees})
+
+
+def hash_files(files: Iterable[Path]) -> str:
+    """A hash of what files hold; one that cannot be read counts as empty."""
+    whole = hashlib.sha256()
+    for path in files:
+        with suppress(OSError):
+            whole.update(path.read_bytes())
+    return whole.hexdigest()[:20]
 
 
 def without_cache_errors(dispatcher: object) -> None:

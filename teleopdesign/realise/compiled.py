@@ -1,8 +1,9 @@
 """Generated source -> compiled function, kept in a cache folder so that it compiles once a machine.
 
-The file name is a hash of the content; numba keeps its machine code beside it. What runs is the
-source in memory, never what a file holds: the file is what numba's cache goes by. The folder is the
-user's alone; where there is none, machine code is kept for this process, or not at all.
+The file name is a hash of the content and of what it imports; numba keeps its machine code beside
+it. What runs is the source in memory, never what a file holds: the file is what numba's cache goes
+by. The folder is the user's alone; where there is none, machine code is kept for this process, or
+not at all.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import atexit
 import hashlib
 import os
+import re
 import shutil
 import stat
 import sys
@@ -23,8 +25,10 @@ from types import ModuleType
 from typing import Any
 from uuid import uuid4
 
-from ..machine_code import without_cache_errors
+from ..machine_code import hash_files, without_cache_errors
 
+#: folder of the package, whose functions generated source may import
+_PACKAGE = Path(__file__).parents[1]
 #: whether somebody else may write there
 _OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
@@ -89,7 +93,9 @@ def compile_source(source: str, function: str) -> Callable[..., Any]:
 @lru_cache(maxsize=256)
 def compiled_module(source: str, function: str) -> Mapping[str, Any]:
     """Names of that source, a module that uses numba;  function: main one, in the file's name."""
-    digest = hashlib.sha256(source.encode()).hexdigest()[:20]
+    imported = re.findall(r"^from teleopdesign\.([\w.]+) import", source, re.M)
+    files = [_PACKAGE.joinpath(*module.split(".")).with_suffix(".py") for module in imported]
+    digest = hashlib.sha256((source + hash_files(files)).encode()).hexdigest()[:20]
     name = f"teleopdesign_{function}_{digest}"
     folder = cache_folder()
     path = None if folder is None else folder / f"{name}.py"
