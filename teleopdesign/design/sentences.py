@@ -146,5 +146,5 @@ def _passivity(design: Design) -> list[str]:
     lines = ["passivity"]
     for case, claims in design.claims.items():
         for claim in claims:
-            lines.append(f"  {case}: {claim.status}: {claim.statement} ({claim.verdict})")
+            lines.append(f"  {case}: {claim.heading}: {claim.statement} ({claim.verdict})")
     return lines

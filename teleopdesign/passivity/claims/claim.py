@@ -146,6 +146,12 @@ class Claim(ByValue):
     statement: str
     verdict: Verdict
 
+    @property
+    def heading(self) -> str:
+        """The status in words: of evidence, whether it speaks against the statement."""
+        is_against = self.status == "evidence" and not self.holds
+        return "evidence against" if is_against else self.status
+
     def __post_init__(self) -> None:
         verdict = self.verdict
         if isinstance(verdict, Refutation) and not (verdict.replayed > 0 < verdict.record.energy):
@@ -182,4 +188,4 @@ class Claim(ByValue):
         return html_table("Claim", ("", ""), rows)
 
     def __repr__(self) -> str:
-        return f"{self.status}: {self.statement}\n    {self.verdict}"
+        return f"{self.heading}: {self.statement}\n    {self.verdict}"

@@ -90,7 +90,7 @@ class TopicClaim(ByValue):
     def heading(self) -> str:
         """The status; of what is proved in continuous time alone, with these words."""
         limited = self.claim.status == "proved" and self.time == "continuous"
-        return f"{self.claim.status}{' (in continuous time)' * limited}"
+        return f"{self.claim.heading}{' (in continuous time)' * limited}"
 
 
 def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
