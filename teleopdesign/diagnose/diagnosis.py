@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..by_value import ByValue
@@ -141,6 +141,15 @@ class Diagnosis(ByValue):
     def more_is_missing(self) -> bool:
         """Whether the final model leaves more than noise."""
         return not is_adequate(self.after, self.floor) and self.moment is None
+
+    @property
+    def may_be_noise(self) -> bool:
+        """Whether all that is left may be noise, for by the final model sensors leave as much.
+
+        The floor that counts was held below that, so that nothing hides in it.
+        """
+        drawn = replace(self.floor, value=self.floor.drawn)
+        return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)
 
     @property
     def left(self) -> float:

@@ -180,6 +180,13 @@ def sentence(diagnosis: Diagnosis) -> str:
     """The verdict in words."""
     left = diagnosis.left
     more = f" What is left is {left:.1f} noise floors: more is missing."
+    if diagnosis.may_be_noise:
+        more = (
+            f" What is left is {left:.1f} noise floors, which were held at "
+            f"{100 * diagnosis.floor.value:.3g} %; by this model sensors leave "
+            f"{100 * diagnosis.floor.drawn:.3g} %: these records do not tell whether more is "
+            "missing."
+        )
     rest = more if diagnosis.more_is_missing else ""
     if (moment := diagnosis.moment) is not None:
         rest = (

@@ -115,6 +115,12 @@ def verdict(diagnosis: Diagnosis) -> str:
         if more
         else f"What is left is near what sensor noise alone would leave, {floor}."
     )
+    if diagnosis.may_be_noise:
+        rest = (
+            f"What is left is {left} times the noise floor, which was held at {floor}; by this "
+            f"model sensors leave {percent(diagnosis.floor.drawn)}: these records do not tell "
+            "whether more is missing."
+        )
     if (moment := diagnosis.moment) is not None:
         rest = (
             f"What is left is {left} times what sensor noise alone would leave, "

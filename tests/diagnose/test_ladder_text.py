@@ -7,6 +7,7 @@ import pytest
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.diagnosis import OpenQuestion, SetAside
 from teleopdesign.diagnose.ladder_text import ladder_text, sentence
+from teleopdesign.report.words import verdict
 
 
 @pytest.fixture
@@ -57,3 +58,19 @@ def test_check_records_that_leave_far_more_than_fit_records_are_said_to_differ(
     rungs = (*diagnosis.rungs[:-1], replace(last, fit=replace(last.fit, check_error=error)))
     text = ladder_text(replace(diagnosis, rungs=rungs))
     assert ("records: the check records leave" in text) is is_said
+
+
+@pytest.mark.parametrize(
+    ("floors", "held", "is_open"), [(2.2, True, True), (1.1, True, False), (2.2, False, False)]
+)
+def test_what_sensors_may_have_left_is_not_said_to_miss_more(diagnosis, floors, held, is_open):
+    """The floor is held at half of the error; drawn, it is so many times the held one."""
+    error = diagnosis.after.check_error
+    value = 0.5 * error / max(1.0, diagnosis.left * diagnosis.floor.value / error)
+    floor = replace(diagnosis.floor, value=value, drawn=floors * value, held=held)
+    there = replace(diagnosis, floor=floor, moment=None)
+    assert there.more_is_missing
+    assert there.may_be_noise is is_open
+    for text in (sentence(there), verdict(there)):
+        assert ("do not tell whether more is missing" in text) is is_open
+        assert ("more is missing" in text.replace("whether more is missing", "")) is not is_open
