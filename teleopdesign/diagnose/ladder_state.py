@@ -167,7 +167,8 @@ def look(
     """Draw the noise floor of the last rung and rank every candidate beside it.
 
     before: the state that a move led to; None: the ladder begins
-    Where a late log of a hand's force explains more than every effect, the rung is fitted with it.
+    Where a late log of a hand's force explains more than every effect, and than a tone from
+    outside, the rung is fitted with it.
     """
     prepared, criteria = search.prepared, search.criteria
     here = with_paying_shift(rungs[-1].fit, prepared)
@@ -188,7 +189,8 @@ def look(
         and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
     late = with_late_hand(here, supported, floors.allowed, prepared, criteria=criteria)
-    if late is not None:  # no effect: all of them are looked at again beside it
+    if late is not None and tone.is_beaten_by(late):
+        # no effect: all of them are looked at again beside it
         return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)
     if before is None:
         return LadderState(rungs, floors, first, ranking, tone, supported)
