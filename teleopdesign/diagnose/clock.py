@@ -65,6 +65,8 @@ def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
         if again.check_error < fit.check_error:
             fit = again
     for shift in shifts_of(fit.model, prepared.stretches):
+        if shift.at not in fit.model.bodies:  # of a hand's force: no actuator is late there
+            continue
         if shift.at_bound and shift.late < 0.0 and _stands_for_a_delay(fit, shift.at, prepared):
             fit = _with_shift(fit, shift.at, Value(0.0, fixed=True), prepared)
     return fit
@@ -94,6 +96,8 @@ def with_late_hand(
         if hand in fit.model.record_shift:
             continue
         late = _with_shift(fit, hand, Value(0.0), prepared)
+        if late.model.log_late(hand) <= 0.0:  # no sensor is early
+            continue
         if check_squares(late) < least and is_better(fit, late, floor, criteria=criteria):
             return late
     return None

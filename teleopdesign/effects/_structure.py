@@ -132,7 +132,7 @@ def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
     ratio = p.damping / critical
     return (
         f"a tip with a damping ratio of {ratio:.3g} creeps and does not spring back: it stands for "
-        "something else that follows the motion late"
+        "what else follows the motion late"
     )
 
 

@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
-from teleopdesign.diagnose.clock import with_late_hand
+from teleopdesign.diagnose.clock import with_late_hand, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.noise_floor import noise_floor
@@ -74,6 +74,15 @@ def test_the_filter_of_the_hands_sensor_is_told_and_nothing_is_missing(adequate,
     for name, value in right.model.parameters.items():
         there = diagnosis.model.parameters[name].value
         assert there == pytest.approx(value.value, rel=0.03, abs=5 * value.stderr)
+
+
+def test_a_hand_whose_shift_ends_early_at_its_bound_is_no_late_actuator(adequate):
+    """A dead time may stand behind a command that is early, behind no force of a hand."""
+    prepared = prepare(adequate)
+    row = adequate.records[0].sample_time
+    model = td.Model.from_experiment(adequate).with_record_shift({HAND: td.Value(-2.0 * row)})
+    fit = estimate(model, prepared)
+    assert with_paying_shift(fit, prepared).check_error <= fit.check_error
 
 
 def test_a_force_that_is_in_time_gets_no_shift(adequate):

@@ -294,7 +294,8 @@ def test_no_late_loop_of_this_kind_is_proved_stable_that_has_a_growing_pole(fami
                 growing = count_growing(family.terms({**values, **point}))
                 assert not growing, (values, box, point)
     print(type(family).__name__, dict(counts))
-    assert 0 < counts["proved"] < number
+    # of few draws of a kind all may be stable
+    assert 0 < counts["proved"] and (counts["proved"] < number or number < 40)
 
 
 def test_the_attacker_counts_what_grows():
