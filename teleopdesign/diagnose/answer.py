@@ -168,7 +168,8 @@ def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
         if (one.accepted, one.probability()) > (before.accepted, before.probability()):
             best[one.ranked.candidate.key] = one
     rows = [_row(diagnosis, one) for one in best.values()]
-    return sorted(rows, key=lambda c: -c["probability"])
+    # equal ones stay in the order of the rankings, whatever the last digits are on this machine
+    return sorted(rows, key=lambda c: -round(c["probability"], 6))
 
 
 def _evidence(one: CandidateEvidence) -> dict[str, Any]:

@@ -19,8 +19,12 @@ from .ranking import Ranked, Ranking
 
 
 def rank_key(ranked: Ranked) -> tuple[bool, float]:
-    """Sort key of a ranking: candidates that count first, then by squares on the check records."""
-    return not ranked.counts, check_squares(ranked.fit)
+    """Sort key of a ranking: candidates that count first, then by squares on the check records.
+
+    To six digits, which is what a search resolves: two that are the same force stay in the order of
+    the catalogue, on any machine.
+    """
+    return not ranked.counts, float(f"{check_squares(ranked.fit):.6g}")
 
 
 def select_equals(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
