@@ -148,9 +148,9 @@ def as_logged(model: Model, motion: Motion) -> Motion:
         carried = motion.links.carried(model.links, motion.acceleration)
         return replace(motion, command_late=late, carried=carried)
     if sensed := model.log_late(f"{motion.body}.interaction_force"):
-        spectrum = motion.spectrum
-        earlier = spectrum.multiply(motion.interaction, np.asarray(spectrum.ahead(sensed)))
-        motion = replace(motion, interaction=earlier)
+        unfiltered = 1.0 + sensed * motion.spectrum.derivative(1)
+        force = motion.spectrum.multiply(motion.interaction, unfiltered)
+        motion = replace(motion, interaction=force, interaction_late=sensed)
     return motion if late == motion.command_late else replace(motion, command_late=late)
 
 

@@ -62,6 +62,7 @@ class Motion(ByValue):
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
     further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
     command_late: s by which the log of the command is later than that of the position
+    interaction_late: s, time constant of the hand's sensor, whose low-pass `interaction` is without
     merged: rows of the record from one sample to the next: 1 unless samples were left out
     links: of the arm that the body is a joint of;  carried: (n,) the force that they need here
     """
@@ -81,6 +82,7 @@ class Motion(ByValue):
     smoothing: Array
     bandwidth: float
     command_late: float = 0.0
+    interaction_late: float = 0.0
     merged: int = 1
     further: Mapping[str, Array] = field(default_factory=dict)
     links: LinkForces | None = None

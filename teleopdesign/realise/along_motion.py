@@ -143,10 +143,14 @@ def measured_along(
 
 
 def _with_late_tangent(motion: Motion, columns: Sequence[object]) -> Traced:
-    """The hand's force, and what it changes by where its log is later."""
+    """The hand's force, and what it changes by where its sensor is slower.
+
+    The force is f + T df/dt of the logged one f, that of the sensor's low-pass with T: by T, df/dt.
+    """
     tangent = np.zeros((len(columns), len(motion.time)))
-    slope = motion.spectrum.multiply(motion.interaction, motion.spectrum.derivative(1))
-    tangent[columns.index(INTERACTION_LATE)] = slope
+    rate = motion.spectrum.derivative(1)
+    logged = rate / (1.0 + motion.interaction_late * rate)
+    tangent[columns.index(INTERACTION_LATE)] = motion.spectrum.multiply(motion.interaction, logged)
     return Traced(motion.interaction, tangent)
 
 
