@@ -24,8 +24,8 @@ from .standard_error import with_standard_error
 class Model:
     """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI).
 
-    record_shift: body -> s by which the log of its command is late, "BODY.interaction_force" -> s
-        by which that of the hand's force is: no physics, but what a logger or a sensor did to the
+    record_shift: body -> s by which the log of its command is late, "BODY.interaction_force" -> s,
+        time constant of the hand's sensor: no physics, but what a logger or a sensor did to the
         records that the model was estimated on; none where that is unknown
     links: base parameters (SI) of the arm whose joints the bodies are; (): none are estimated
     """

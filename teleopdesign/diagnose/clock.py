@@ -9,8 +9,8 @@ shift is held at none: the candidates are held against the model without it. Oth
 at its bound leaves may be too little for a search, and a late actuator passes for an adequate one.
 
 The filter of a force sensor makes the hand's force late beside the command, and an `actuator_lag`
-stands in for it. So its shift is tried where more than noise is left, and taken where it explains
-surely more than chance and more than every effect does.
+stands in for it. So its time constant is estimated where more than noise is left, and taken where
+it explains surely more than chance and more than every effect does.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def with_late_hand(
     *,
     criteria: Criteria = CRITERIA,
 ) -> Fit | None:
-    """The fit with the log of a hand's force late; None where an effect, or nothing, is better.
+    """The fit without the low-pass of a hand's sensor; None where an effect, or nothing, is better.
 
     supported: the effects that the records support beside the fit
     """
