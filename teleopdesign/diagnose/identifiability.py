@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model import Model
 from ..quantity import unit_after_number
 from ..standard_error import with_standard_error
 from .candidates import Candidate
@@ -16,8 +17,8 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
     """Whether the new parameters are determined and the base's parameters cannot imitate them.
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
-    the effect is there without it or a product of its parameters is known, what is essential to it
-    surely so, and some must change the residual in a unique way.
+    the effect is there without it or a product of its parameters is known; a strength by more, what
+    is essential to it surely so; and some must change the residual in a unique way.
     """
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
     effects = {fit.free[i].rpartition(".")[0] for i in new}
@@ -28,7 +29,7 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
         if declared.optional or (name in together and not declared.search.essential):
             continue
         away = np.pi if declared.quantity == "angle" else fit.model.from_absence(name)
-        if not value.stderr * (criteria.surely if declared.search.essential else 1.0) < away:
+        if not value.stderr * _errors_from_absence(fit.model, name, criteria) < away:
             return False
     old = [i for i, n in enumerate(fit.free) if n in base.free]
     for i in new:
@@ -43,6 +44,24 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
         if float(np.linalg.norm(rest)) > criteria.least_unique_share * size:
             return True
     return False
+
+
+def _errors_from_absence(model: Model, name: str, criteria: Criteria) -> float:
+    """Standard errors by which a parameter must differ from the value where its effect is absent.
+
+    One, for what is neither essential nor a strength: the effect stands on the others.
+    """
+    if model.declared(name).search.essential:
+        return criteria.surely
+    return criteria.strong if is_strength(model, name) else 1.0
+
+
+def is_strength(model: Model, name: str) -> bool:
+    """Whether an effect is absent where this parameter of it has a finite value, such as zero."""
+    place, local_name = model.locate(name)
+    effect, _, parameter = local_name.partition(".")
+    absent = model.body(place).effect(effect).absent.get(parameter) if parameter else None
+    return absent is not None and bool(np.isfinite(absent))
 
 
 def list_known_in_product(
@@ -60,7 +79,7 @@ def list_known_in_product(
     return frozenset(n for n, p in powers if criteria.close * product.known < abs(p))
 
 
-def doubt(fit: Fit, candidate: Candidate) -> str:
+def doubt(fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA) -> str:
     """Which parameter an accepted effect stands on and the stated errors do not tell from absence.
 
     By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
@@ -69,14 +88,12 @@ def doubt(fit: Fit, candidate: Candidate) -> str:
     together = list_known_in_product(fit, f"{candidate.at}.{candidate.effect.name}")
     for name, declared in candidate.effect.parameters.items():
         full = f"{candidate.at}.{candidate.effect.name}.{name}"
-        absent = candidate.effect.absent.get(name)
-        strength = absent is not None and np.isfinite(absent)
         if full not in fit.free or declared.optional or full in together:
             continue
-        if not (strength or declared.search.essential):
+        if not (is_strength(fit.model, full) or declared.search.essential):
             continue
         value = fit.model.parameters[full]
-        if not value.stderr < fit.model.from_absence(full):
+        if not criteria.strong * value.stderr < fit.model.from_absence(full):
             unit = unit_after_number(fit.model.unit(full))
             best = with_standard_error(value.value, value.stderr)
             return f"{name} = {best}{unit} is not told from absence by the errors of the readings"

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .adequacy import is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .decision import helps_but_is_barred, list_displaced_parameters
@@ -40,6 +41,7 @@ class CandidateEvidence:
     outweighs: squares that it takes away on this step over these and what the last step leaves
         above the noise floor and another effect could explain, 0 to 1; of the force or seen at the
         command, the smaller
+    from_noise: the step began at a model that leaves no more than may be noise
     at_most: probability of the accepted effects that it needs: it is not there without them
     """
 
@@ -51,6 +53,7 @@ class CandidateEvidence:
     left: float
     barred: str = ""
     outweighs: float = 0.0
+    from_noise: bool = False
     at_most: float = 1.0
 
     def probability(self, *, criteria: Criteria = CRITERIA) -> float:
@@ -62,6 +65,8 @@ class CandidateEvidence:
         # unexplained, as much as noise is sure to be no effect
         trusted = 1.0 if self.left <= criteria.adequate else (criteria.adequate / self.left) ** 2
         trusted = max(trusted, self.outweighs**criteria.outweighing)
+        if self.from_noise:  # an effect that is there takes away nearly all that noise does not
+            trusted *= self.explained
         return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
 
 
@@ -113,6 +118,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                     left=diagnosis.left,
                     barred=barred,
                     outweighs=_outweighs(diagnosis, ranking.base, ranked.fit),
+                    from_noise=is_adequate(ranking.base, diagnosis.floor),
                 )
             )
     return evidence

@@ -59,6 +59,15 @@ def test_what_outweighs_what_is_left_is_believed_though_more_than_noise_is_left(
     assert replace(EVIDENCE, outweighs=0.1).probability() == EVIDENCE.probability()
 
 
+def test_beside_a_model_that_leaves_only_noise_an_effect_is_believed_by_what_it_takes_away():
+    """Of 1.6 floors 1.4 are left: less than half of what sensors do not explain."""
+    part = (1.6**2 - 1.4**2) / (1.6**2 - 1.0)
+    added = replace(EVIDENCE, left=1.4, explained=part)
+    assert added.probability() == pytest.approx(0.97)
+    assert replace(added, from_noise=True).probability() == pytest.approx(0.97 * part)
+    assert replace(added, from_noise=True).probability() < 0.5
+
+
 def test_what_was_not_accepted_is_improbable():
     assert replace(EVIDENCE, accepted=False).probability() < 0.05
 
