@@ -49,6 +49,7 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "spring": {"stiffness": 10.0},
     "hardening_spring": {"stiffness": 8e3},
     "cogging": {"amplitude": 0.2, "period": 0.02, "phase": 0.0},
+    "position_dependent_gain": {"fall": 900.0, "centre": 0.0},
     "torque_ripple": {"amplitude": 0.2, "period": 0.02, "phase": 0.0},
     "actuator_gain": {"gain": 0.8},
     "actuator_saturation": {"limit": 1.2},

@@ -110,6 +110,9 @@ TERMS: dict[str, Term] = {
         lambda now: np.quantile(np.abs(now.held), np.linspace(0.3, 0.99, 24)),
     ),
     "actuator_gain": Term(lambda now, _: [now.command]),
+    "position_dependent_gain": Term(
+        lambda now, _: [now.command * now.position, now.command * now.position**2]
+    ),
     "torque_ripple": Term(lambda now, p: _wave(now, p, now.command), _periods),
     "contact_damping": Term(lambda now, _: [now.velocity * (now.depth > 0)]),
     "contact_hardening": Term(lambda now, _: [now.depth**2]),

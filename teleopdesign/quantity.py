@@ -64,6 +64,10 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
         _Kind("a cubic stiffness", ("N/m^3", "N/mm^3")),
         _Kind("a rotary cubic stiffness", ("N*m/rad^3", "mNm/rad^3")),
     ),
+    "per_square_of_position": (
+        _Kind("a part per length squared", ("1/m^2", "1/mm^2")),
+        _Kind("a part per angle squared", ("1/rad^2", "1/deg^2")),
+    ),
     "temperature": (_TEMPERATURE, _TEMPERATURE),
     "temperature_coefficient": (_PER_KELVIN, _PER_KELVIN),
     "frequency": (_FREQUENCY, _FREQUENCY),

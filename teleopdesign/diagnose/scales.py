@@ -36,6 +36,7 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "resonance_damping": force / acceleration * 2 * np.pi * bandwidth,
         "drag": force / velocity**2,
         "cubic_stiffness": force / position**3,
+        "per_square_of_position": 1.0 / position**2,
         "travel": max(float(np.ptp(m.position)) for m in motions),
         "duration": max(float(np.ptp(m.time)) for m in motions),
         "frequency": bandwidth,

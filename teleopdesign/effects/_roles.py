@@ -23,6 +23,7 @@ ENERGIES: tuple[Energy, ...] = get_args(Energy)
 ACTUATION_ORDER = (
     "actuator_gain",
     "torque_ripple",
+    "position_dependent_gain",
     "actuator_lag",
     "actuation_delay",
     "actuator_saturation",

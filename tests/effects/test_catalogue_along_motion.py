@@ -152,6 +152,7 @@ def factors(force, position, time):
         "stiffness": force / position,
         "drag": force * time**2 / position**2,
         "cubic_stiffness": force / position**3,
+        "per_square_of_position": 1.0 / position**2,
         "frequency": 1.0 / time,
         "angle": 1.0,
         "dimensionless": 1.0,

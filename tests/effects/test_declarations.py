@@ -27,6 +27,8 @@ BOUNDS = {
     "bias.force": (-inf, inf),
     "cogging.amplitude": (-inf, inf),
     "cogging.phase": (-inf, inf),
+    "cogging_harmonic.amplitude": (-inf, inf),
+    "cogging_harmonic.phase": (-inf, inf),
     "contact_hardening.power": (1.0, 4.0),
     "coulomb_asymmetry.half_difference": (-inf, inf),
     "coupling.inertia": (-inf, inf),
@@ -39,6 +41,7 @@ BOUNDS = {
     "load_dependent_friction.driving_difference": (-1.0, 1.0),
     "position_dependent_friction.amplitude": (-1.0, 1.0),
     "position_dependent_friction.phase": (-inf, inf),
+    "position_dependent_gain.centre": (-inf, inf),
     "shear_thinning.exponent": (0.0, 1.0),
     "torque_ripple.amplitude": (-1.0, 1.0),
     "torque_ripple.phase": (-inf, inf),
@@ -47,6 +50,7 @@ BOUNDS = {
 }
 #: periods: three quarters of a cycle over the travel from one to the next
 WAVES = tuple(1.0 / (0.75 * k) for k in range(1, 151))
+SHORT_WAVES = tuple(1.0 / (0.75 * k) for k in range(1, 301))
 #: where a search of a parameter starts, in the record's scale; the others start at 0.01 and 0.1
 STARTS = {
     "actuation_delay.delay": (0.05, 0.5, 2.0),
@@ -60,6 +64,9 @@ STARTS = {
     "cogging.amplitude": (0.03,),
     "cogging.period": WAVES,
     "cogging.phase": (0.0,),
+    "cogging_harmonic.amplitude": (0.03,),
+    "cogging_harmonic.period": SHORT_WAVES,
+    "cogging_harmonic.phase": (0.0,),
     "contact_hardening.depth": (0.5,),
     "contact_hardening.power": (1.2, 1.5, 2.0),
     "coupling.inertia": (0.1,),
@@ -80,6 +87,8 @@ STARTS = {
     "position_dependent_friction.amplitude": (0.05,),
     "position_dependent_friction.period": (3.0, *WAVES),
     "position_dependent_friction.phase": (0.0,),
+    "position_dependent_gain.centre": (-1.0, 0.0, 1.0),
+    "position_dependent_gain.fall": (0.05,),
     "presliding.bristle_damping": (0.1,),
     "presliding.stiffness": (3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4),
     "shear_thinning.exponent": (0.25, 0.5, 0.75),
@@ -99,6 +108,7 @@ SCALES = {
     "backlash.gap": "resonance_position",
     "backlash.stiffness": "resonance_stiffness",
     "cogging.period": "travel",
+    "cogging_harmonic.period": "travel",
     "friction_drift.time_constant": "duration",
     "position_dependent_friction.period": "travel",
     "torque_ripple.period": "travel",
@@ -108,6 +118,8 @@ SCALES = {
 #: largest value of a search, in that unit
 WITHIN = {
     "cogging.period": 2.0,
+    "cogging_harmonic.period": 2.0,
+    "position_dependent_gain.fall": 1.0,
     "load_dependent_friction.coefficient": 1.0,
     "torque_ripple.period": 2.0,
     **{f"maxwell_slip.{n}_{i}": 1e4 for n in ("stiffness", "level") for i in (3, 4)},
@@ -122,6 +134,7 @@ CHOSEN = {
 #: may be left out, and are zero then
 OPTIONAL = {
     "hardening_spring.neutral",
+    "position_dependent_gain.centre",
     "load_dependent_friction.driving_difference",
     "load_dependent_friction.extra_at_rest",
     "load_dependent_friction.stribeck_velocity",
@@ -171,10 +184,12 @@ def test_exactly_the_linear_laws_have_a_linear_form(name):
 REPEATS = {
     "arm": None,
     "cogging": "period",
+    "cogging_harmonic": "period",
     "contact_hysteresis": None,
     "gravity": 2 * pi,
     "hardening_spring": None,
     "position_dependent_friction": "period",
+    "position_dependent_gain": None,
     "spring": None,
     "torque_ripple": "period",
 }
@@ -187,6 +202,7 @@ def test_what_depends_on_the_place_and_on_time_is_that_of_the_physics(name):
     assert depends_on_time(KNOWN[name]) == (name == "friction_drift")
 
 
+WAVES_OF = ("cogging", "cogging_harmonic", "gravity")
 #: the parameter that a law is proportional to, where no hidden state depends on it
 STRENGTH = {
     "tip_friction": "level",
@@ -205,10 +221,11 @@ STRENGTH = {
     "stribeck": "extra_static_level",
     "viscous": "damping",
     "viscous_asymmetry": "half_difference",
-    **dict.fromkeys(("cogging", "gravity"), "amplitude"),
+    "position_dependent_gain": "fall",
+    **dict.fromkeys(WAVES_OF, "amplitude"),
     **dict.fromkeys(("position_dependent_friction", "torque_ripple"), "amplitude"),
 }
-WAVING = {"cogging", "gravity", "position_dependent_friction", "torque_ripple"}
+WAVING = {*WAVES_OF, "position_dependent_friction", "torque_ripple"}
 
 
 @pytest.mark.parametrize("name", sorted(KNOWN))

@@ -44,6 +44,7 @@ LAWS = {
     "added_inertia": lambda s, p, o: p.inertia * s.acceleration,
     "bias": lambda s, p, o: p.force,
     "cogging": lambda s, p, o: p.amplitude * wave(s, p),
+    "cogging_harmonic": lambda s, p, o: p.amplitude * wave(s, p),
     "coulomb": lambda s, p, o: p.level,
     "coulomb_asymmetry": lambda s, p, o: p.half_difference * s.direction,
     "coupling": lambda s, p, o: p.inertia * s.other_acceleration,
@@ -54,6 +55,9 @@ LAWS = {
     "load_dependent_friction": lambda s, p, o: load_dependent(s, p),
     "maxwell_slip": lambda s, p, o: s.force_1 + s.force_2 + s.force_3 + s.force_4,
     "position_dependent_friction": lambda s, p, o: 1 + p.amplitude * wave(s, p),
+    "position_dependent_gain": lambda s, p, o: (
+        s.command - s.command * p.fall * (s.position - p.centre) ** 2
+    ),
     "presliding": lambda s, p, o: (
         p.stiffness * s.bristle + p.bristle_damping * bristle_rate(s.bristle, s, p.stiffness)
     ),

@@ -33,6 +33,7 @@ RINGS = {"stiffness": 400.0, "damping": 0.0}
 SWINGS = {"stiffness": 100.0, "damping": 1.0}
 HEAVY = {"stiffness": 400.0, "tip_inertia": 0.25}
 AT_HUM = {"stiffness": 400.0, "tip_inertia": HUM}
+AT_THE_END = {"centre": 1.0}
 GAP = {"stiffness": 8.0, "gap": 0.01, "tip_inertia": 0.1}
 
 #: effect, parameter, value that keeps the name, one that loses it, other values, words of why
@@ -40,6 +41,10 @@ DESERVED = [
     ("cogging", "period", 2.0 / 1.5, MORE * 2.0 / 1.5, {}, "does not repeat"),
     ("cogging", "period", -1.3, -1.4, {}, "a period of 1.4 rad"),
     ("torque_ripple", "period", 1.3, 1.4, {}, "does not repeat"),
+    ("cogging_harmonic", "period", 1.3, 1.4, {}, "does not repeat"),
+    # half of the gain is left one radian away, then none
+    ("position_dependent_gain", "fall", LESS * 0.25, 0.25, AT_THE_END, "its opposite beyond"),
+    ("position_dependent_gain", "centre", 1.0, MORE, {"fall": 0.1}, "falls one way only"),
     # a bristle gives by level / stiffness: 0.005 rad are half a step, 2 rad the travel
     ("presliding", "stiffness", 199.0, 200.0, {}, "sgn friction"),
     ("presliding", "stiffness", 0.501, 0.5, {}, "for a spring"),
@@ -156,3 +161,11 @@ def test_a_structure_declares_neither_a_linear_form_nor_what_it_does_with_energy
     assert not effect.linear and effect.energy == "supplies"
     assert effect.corrections() == {} and effect.led_momentum() == 0, "the tip runs free"
     assert "no part" in effect.plausible(SimpleNamespace(tip_inertia=0.5), facts())
+
+
+def test_a_gain_over_the_place_has_no_name_where_each_place_was_passed_at_one_speed():
+    values = {"fall": 0.1, "centre": 0.0}
+    assert "one speed only" in said("position_dependent_gain", "plausible", values)
+    apart = np.random.default_rng(0).uniform(-4.0, 4.0, 401)
+    assert said("position_dependent_gain", "plausible", values, speeds=apart) is None
+    assert said("position_dependent_gain", "plausible", values, places=np.zeros(0)) is None

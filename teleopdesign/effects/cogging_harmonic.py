@@ -1,0 +1,35 @@
+"""Cogging harmonic: a second period of the force that repeats along the travel.
+
+    F = A_2 sin(2 pi x / p_2 + phi_2), beside `cogging`
+
+Slots and poles of a motor seldom leave one sine: the wave of the poles comes beside that of slots
+and poles together, and each has harmonics. The largest of them is `cogging`, the next is this one.
+"""
+
+from dataclasses import replace
+
+from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
+from ._facts import repeats_within_travel
+from .cogging import law
+
+#: twice as many starts as `cogging` has: half of the shortest period found there is sought, too
+STARTS = tuple(4.0 / 3.0 / k for k in range(1, 2 * len(PERIOD.search.starts) + 1))
+EFFECT = Effect(
+    role="force",
+    energy="stores",
+    law=law,
+    parameters={
+        "amplitude": Parameter(
+            "force", "A_2: amplitude", lower=-float("inf"), search=FitSearch(starts=(0.03,))
+        ),
+        "period": replace(PERIOD, search=replace(PERIOD.search, starts=STARTS)),
+        "phase": Parameter(
+            "angle", "phi_2: phase at x = 0", lower=-float("inf"), search=FitSearch(starts=(0.0,))
+        ),
+    },
+    absent={"amplitude": 0.0},
+    canonical=positive_amplitude,
+    plausible=repeats_within_travel,
+    needs=frozenset({"cogging"}),
+    source="periodic detent force of a slotted machine, further harmonic",
+)
