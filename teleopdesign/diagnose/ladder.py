@@ -17,6 +17,7 @@ from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
 from .straight import straighten
+from .transmission import add_transmission
 
 
 def find_missing(
@@ -82,7 +83,8 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
 
     Where no effect is supported alone, a straight line is fitted in place of bends, and effects
     that explained equally well are compared again; then, where more than a tone is left, a pair is
-    sought, then an exchange, then a pair in place of all rungs.
+    sought, then a transmission with friction behind it, then an exchange, then a pair in place of
+    all rungs.
     """
     if state.step > search.plan.most_effects:
         return straighten(search, state)
@@ -98,5 +100,6 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         return None
     if state.set_aside:  # pairs and exchanges were sought before, beside what was set aside
         return None
-    attempts = (move(search, state) for move in (add_pair, exchange, replace_by_pair))
+    moves = (add_pair, add_transmission, exchange, replace_by_pair)
+    attempts = (move(search, state) for move in moves)
     return next((moved for moved in attempts if moved is not None), None)

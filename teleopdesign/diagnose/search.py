@@ -113,6 +113,18 @@ def estimate_from_starts(
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
 
 
+def estimate_best_start(
+    models: Sequence[Model], new: Sequence[tuple[str, str]], prepared: Prepared
+) -> Fit:
+    """A rough fit from the best of these starts, which are followed on few samples.
+
+    new: (effect, place) whose squares are rugged: a better place is sought near by
+    """
+    coarse = prepared.coarse
+    best = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
+    return estimate(_jolt(best, new, coarse).model, prepared, effort=EFFORTS.near)
+
+
 def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
     """The fit, or the one that its user's values lead to where that leaves less.
 

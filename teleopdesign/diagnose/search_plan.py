@@ -72,6 +72,22 @@ class SearchPlan:
     #: rough one left at most, in 136 fits on simulated and real records, but for four: those of the
     #: candidates that led
     contending: float = 0.15
+    #: courses of a tip that friction holds: widths of the gap; rates at which it swings, and
+    #: slowings by friction, of each as many. The true course must lie within some 40 % of one of
+    #: them. 588 courses of 15 s take 0.3 s
+    tip_gaps: int = 12
+    tip_grid: int = 7
+    #: rates over the bandwidth (in rad/s) between which a tip swings: slower ones are a second body
+    #: that hardly follows, of faster ones the band shows nothing
+    tip_swings: tuple[float, float] = (0.03, 1.0)
+    #: slowings over the rms acceleration: by less friction does next to nothing, by more it holds
+    tip_slowings: tuple[float, float] = (0.05, 3.0)
+    #: damping ratio of a tip where its search begins: a fit moves it easily
+    tip_damping: float = 0.15
+    #: courses that are followed by a search, each the best near by after so many more. 0: none is
+    #: sought, as at the joints of an arm, where it was not measured
+    tip_starts: int = 2
+    tip_refined: int = 60
     #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
     #: between two
     tone_fineness: int = 4
@@ -86,7 +102,7 @@ class SearchPlan:
         """The plan for each joint of an arm with so many; its records are searched whole."""
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
         most = self.trials if count <= self.whole_at else self.pairs_beyond
-        return replace(plan, trials=min(self.trials, most), partial_pairs=False)
+        return replace(plan, trials=min(self.trials, most), partial_pairs=False, tip_starts=0)
 
     def omissions(self) -> tuple[str, ...]:
         """What it leaves out of the search with `PLAN`, in words; none where it is that one."""
@@ -111,4 +127,4 @@ class SearchPlan:
 PLAN = SearchPlan()
 #: those of a first look. A weak effect, the third and later ones, and two that mask each other may
 #: be missed
-QUICK = SearchPlan(most_effects=2, long=8_000, windows=8_000, trials=0, exchanges=0)
+QUICK = SearchPlan(most_effects=2, long=8_000, windows=8_000, trials=0, exchanges=0, tip_starts=0)

@@ -1,0 +1,137 @@
+"""A move of a ladder: add a transmission with friction behind it, the commonest gear.
+
+A pair like others (`pairs`), but neither of the two leads to the other: beside a gap without
+friction no friction helps, for the search of that gap ended elsewhere. Their search begins at
+courses of the tip (`tip_start`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+from .adequacy import is_adequate
+from .candidates import Candidate
+from .decision import explained_share, is_better, is_supported, objection
+from .evidence import check_squares
+from .fit import Fit
+from .ladder_state import LadderSearch, LadderState
+from .outside_tone import best_tone
+from .rank import make_ranked
+from .ranking import Ranking
+from .rung import Rung
+from .rungs import estimate_without, order_by_falling_error
+from .search import base_of, estimate_best_start
+from .tip_start import tip_starts
+from .width import OpenWidths
+
+
+def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """Add a transmission and the friction behind it, or put them in place of all that was added.
+
+    In place of all: where the two explain most of what the rungs leave.
+    """
+    if is_adequate(state.fit, state.floor, criteria=search.criteria) or not search.plan.tip_starts:
+        return None
+    beside = [state.rungs] if state.step == 1 else [state.rungs[:1], state.rungs]
+    for rungs in beside:
+        ranking = state.ranking if rungs is state.rungs else state.rungs[1].ranking
+        pair = _best_pair(search, state, rungs[-1].fit, ranking)
+        order = pair and order_by_falling_error((*rungs, *pair), search.prepared)
+        if not order or frozenset(order[-1].fit.model.effects) in state.visited:
+            continue
+        return state.with_rungs(order)
+    return None
+
+
+def _best_pair(
+    search: LadderSearch, state: LadderState, base: Fit, ranking: Ranking | None
+) -> tuple[Rung, ...] | None:
+    """The best transmission with friction behind it, beside a base; None: none is supported.
+
+    ranking: of the candidates beside the base
+    """
+    alone = {r.candidate.key: r.fit for r in ranking.ranked} if ranking is not None else {}
+    pairs = [
+        _fit_pair(search, base, *both, alone.get(both[0].key)) for both in _possible_pairs(base)
+    ]
+    supported = [
+        pair for pair in pairs if pair is not None and _is_supported(search, state, base, pair)
+    ]
+    return min(supported, key=lambda pair: check_squares(pair[-1].fit), default=None)
+
+
+def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
+    """Each transmission that a body lacks, with each friction of a tip that needs one."""
+    for place, body in base.model.bodies.items():
+        if any(e.role == "structure" for e in body.effects):
+            continue
+        known = base.model.known.values()
+        for transmission in (e for e in known if e.role == "structure" and e.led is not None):
+            whole = base.model.with_effect(transmission, at=place).body(place)
+            for friction in (e for e in known if e.role == "tip_level"):
+                if not (whole.has(friction.name) or whole.lacks(friction)):
+                    yield Candidate(transmission, place), Candidate(friction, place)
+
+
+def _fit_pair(
+    search: LadderSearch,
+    base: Fit,
+    transmission: Candidate,
+    friction: Candidate,
+    ranked_alone: Fit | None,
+) -> tuple[Rung, Rung] | None:
+    """Two rungs: the transmission alone, and both.
+
+    ranked_alone: the transmission as a candidate of its own. Fitted from where both are, it may
+        leave more than the base does
+    """
+    prepared = search.prepared
+    search.progress(f"trying {transmission} with {friction.effect.name}")
+    coarse = base_of(base, prepared).coarse
+    starts = tip_starts(coarse, prepared.coarse, transmission, friction, plan=search.plan)
+    if not starts:
+        return None
+    new = (transmission.key, friction.key)
+    both = estimate_best_start([one.model for one in starts], new, prepared)
+    alone = estimate_without(both.model, Rung(friction, both), prepared)
+    if alone is None:
+        return None
+    if ranked_alone is not None:
+        alone = min((alone, ranked_alone), key=check_squares)
+    rank = partial(
+        make_ranked,
+        prepared=prepared,
+        criteria=search.criteria,
+        widths=OpenWidths(prepared, search.criteria),
+    )
+    # alone it explains little, and may be no gap at all: what is said of it is said beside friction
+    first = replace(rank(base, transmission, both), fit=alone)
+    return (
+        Rung(transmission, alone, Ranking(base, (first,))),
+        Rung(friction, both, Ranking(alone, (rank(alone, friction, both),))),
+    )
+
+
+def _is_supported(
+    search: LadderSearch, state: LadderState, base: Fit, pair: tuple[Rung, ...]
+) -> bool:
+    """Whether both are needed, explain most of what the last rung leaves, and deserve their names.
+
+    What was set aside is not taken again.
+    """
+    criteria, floor, both = search.criteria, state.floor, pair[-1].fit
+    added = {rung.added.key for rung in pair if rung.added is not None}
+    if added & {one.candidate.key for one in state.set_aside}:
+        return False
+    first, second = (rung.ranking.ranked[0] for rung in pair if rung.ranking is not None)
+    return (
+        not objection(base, replace(first, fit=both), floor, criteria=criteria)
+        and first.is_identifiable
+        and is_supported(pair[0].fit, second, floor, criteria=criteria)
+        and is_better(base, both, floor, criteria=criteria)
+        and is_better(state.fit, both, floor, criteria=criteria)
+        and explained_share(state.fit, both, floor) >= criteria.mostly
+        and best_tone(base, search.prepared).is_beaten_by(both)
+    )

@@ -1,0 +1,91 @@
+"""What a tip takes of the force along a measured motion, per unit of its inertia.
+
+A tip behind a transmission with a gap, which dry friction slows:
+
+    dw/dt = f - d sgn w,   f = q^2 (s -+ g/2) + 2 z q (v - w) outside the gap, abs(s) > g/2, else 0
+
+s is how far the actuator's side is ahead of the tip, v and w are their velocities. The tip's own
+inertia m_t does not stand here: it takes m_t f of the force. So one course of the tip serves every
+m_t, with the stiffness m_t q^2, the damping 2 m_t z q and the level m_t d.
+
+Thousands of courses are cheap: no tangents, no correction by what is left unexplained. They say
+where a search begins; the laws of `effects` say where it ends (tests hold the two together).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..machine_code import compile_and_keep
+from ..measurement.filtering import Array
+
+#: rad by which the tip swings in one step: a twelfth of a turn about doubles the work of a sixth,
+#: and moves no best start by as much as two starts lie apart
+SWING = 1.0 / 6.0
+
+
+def tip_along(
+    position: Array,
+    velocity: Array,
+    sample_time: float,
+    *,
+    gap: float,
+    swing: float,
+    damping_ratio: float,
+    slowing: float,
+) -> Array:
+    """Acceleration (n,) that the transmission gives the tip: f of this file, mean of each row.
+
+    position, velocity: (n,) of the actuator's side, m or rad;  gap: g, its width
+    swing: q, rad/s, of the tip in contact with the actuator's side held;  damping_ratio: z
+    slowing: d, acceleration that dry friction takes from a tip that slides
+    """
+    steps = max(1, math.ceil(swing * sample_time / SWING))
+    return _follow_tip(
+        np.ascontiguousarray(position),
+        np.ascontiguousarray(velocity),
+        sample_time / steps,
+        (0.5 * gap, swing**2, 2.0 * damping_ratio * swing, slowing),
+        steps,
+    )
+
+
+@compile_and_keep
+def _follow_tip(
+    position: Array,
+    velocity: Array,
+    step: float,
+    law: tuple[float, float, float, float],
+    steps: int,
+) -> Array:
+    """Semi-implicit steps of one tip, which begins in the middle of its gap, at the same speed.
+
+    step: seconds of one, `steps` a row;  law: half of the gap, stiffness, damping and slowing
+    """
+    half, stiffness, damping, slowing = law
+    out = np.zeros(len(position))
+    here, speed = position[0], velocity[0]
+    for k in range(len(position) - 1):
+        whole = 0.0
+        for i in range(steps):
+            part = i / steps
+            ahead = position[k] + (position[k + 1] - position[k]) * part - here
+            faster = velocity[k] + (velocity[k + 1] - velocity[k]) * part - speed
+            if ahead > half:
+                pull = stiffness * (ahead - half) + damping * faster
+            elif ahead < -half:
+                pull = stiffness * (ahead + half) + damping * faster
+            else:
+                pull = 0.0
+            whole += pull
+            speed += step * pull
+            if speed > 0.0:
+                speed = max(speed - step * slowing, 0.0)
+            elif speed < 0.0:
+                speed = min(speed + step * slowing, 0.0)
+            here += step * speed
+        out[k] = whole / steps
+    out[-1] = out[-2]
+    return out

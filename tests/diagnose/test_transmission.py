@@ -1,0 +1,74 @@
+"""Gears: a gap or a spring, with dry friction behind it, found together."""
+
+import numpy as np
+import pytest
+from effects.recorded import write_recorded
+
+import teleopdesign as td
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.fit import estimate, fit_squares
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.search import base_of
+from teleopdesign.diagnose.tip_start import tip_starts
+from teleopdesign.effects import EFFECTS
+from teleopdesign.model import Model
+
+BELIEVED = "coulomb = { level = 0.4 }\nviscous = { damping = 0.5 }"
+#: kg, N/m, N s/m, N; beside them a gap in m
+GEAR = {"has_tip": 1.0, "tip_inertia": 0.06, "tip_stiffness": 800.0, "tip_damping": 1.0}
+RUBBING = {"level": 0.2, "damping": 0.5, "tip_level": 0.3}
+TRUE = {"tip_inertia": 0.06, "stiffness": 800.0, "damping": 1.0, "gap": 1e-3}
+FRICTION = Candidate(EFFECTS["tip_friction"], "device")
+
+
+@pytest.fixture(scope="module")
+def gear(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("gears") / "gap"
+    write_recorded(folder, BELIEVED, gap=TRUE["gap"], **GEAR, **RUBBING)
+    return td.load_experiment(folder)
+
+
+def test_searches_begin_near_the_true_gap(gear):
+    prepared = prepare(gear)
+    base = base_of(estimate(Model.from_experiment(gear), prepared), prepared).coarse
+    starts = tip_starts(base, prepared.coarse, Candidate(EFFECTS["backlash"], "device"), FRICTION)
+    best = starts[0]
+    assert best.squares == min(s.squares for s in starts)
+    assert best.squares < 0.3 * fit_squares(base)
+    values = {n: v.value for n, v in best.model.parameters.items()}
+    for name in ("tip_inertia", "stiffness", "gap"):
+        assert values[f"device.backlash.{name}"] == pytest.approx(TRUE[name], rel=0.5)
+    assert values["device.tip_friction.level"] == pytest.approx(0.3, rel=0.5)
+    # what the friction behind the gap does is no more put down to the friction before it
+    assert values["device.coulomb.level"] < base.model.parameters["device.coulomb.level"].value
+
+
+def test_no_search_begins_where_a_hand_moves_the_tip(gear):
+    prepared = prepare(gear)
+    base = estimate(Model.from_experiment(gear), prepared)
+    for stretch in prepared.stretches:
+        stretch.motion.interaction[:] = 0.1
+    assert tip_starts(base, prepared, Candidate(EFFECTS["backlash"], "device"), FRICTION) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gap", [1e-3, 0.0])
+def test_a_gear_with_friction_on_the_load_is_named_with_both(gap, tmp_path):
+    folder = write_recorded(tmp_path / "gear", BELIEVED, gap=gap, **GEAR, **RUBBING)
+    diagnosis = td.find_missing(td.load_experiment(folder))
+    transmission = "backlash" if gap else "transmission_compliance"
+    assert [c.effect.name for c in diagnosis.missing] == [transmission, "tip_friction"]
+    for name in EFFECTS[transmission].parameters:
+        fitted = diagnosis.model.parameters[f"device.{transmission}.{name}"]
+        assert abs(fitted.value - TRUE[name]) < max(5 * fitted.stderr, 0.1 * TRUE[name])
+    level = diagnosis.model.parameters["device.tip_friction.level"]
+    assert level.value == pytest.approx(0.3, rel=0.1)
+    assert np.all(np.diff([r.fit.check_error for r in diagnosis.rungs]) < 0)
+
+
+@pytest.mark.slow
+def test_a_gap_without_friction_behind_it_gets_none(tmp_path):
+    values = {**RUBBING, "tip_level": 0.0}
+    folder = write_recorded(tmp_path / "gear", BELIEVED, gap=1e-3, **GEAR, **values)
+    diagnosis = td.find_missing(td.load_experiment(folder))
+    assert [c.effect.name for c in diagnosis.missing] == ["backlash"]
