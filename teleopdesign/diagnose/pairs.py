@@ -8,7 +8,7 @@ from dataclasses import replace
 from .adequacy import is_adequate
 from .candidates import Candidate
 from .decision import explained_share, is_better, is_supported
-from .evidence import check_squares
+from .evidence import check_score, check_squares
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
 from .noise_floor import NoiseFloor
@@ -35,19 +35,35 @@ def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | N
 
     Where two are missing, a third can explain more than either does alone, and stand in their way:
     Maxwell slip explains part of what a spring and a bristle do. The second need explain nothing
-    alone: beside rigid friction no fall of Stribeck's shows where bristles bend.
+    alone: beside rigid friction no fall of Stribeck's shows where bristles bend. Where only noise
+    is left, a pair is sought in place of an effect with many parameters, which may imitate two.
     """
     ranking = state.rungs[1].ranking if state.step > 1 else None
     if state.replaced or ranking is None:
         return None
-    if is_adequate(state.fit, state.floor, criteria=search.criteria):
+    noise = is_adequate(state.fit, state.floor, criteria=search.criteria)
+    if noise and not _has_many_parameters(search, state):
         return None
     alone = [r.candidate for r in ranking.ranked if r.counts]
     among = None if search.plan.partial_pairs else alone
     pair = _best_pair(search, state, ranking, among)
     if pair is None or not _explains_most(search, state, pair[-1].fit):
         return None
+    if noise and not _is_better_and_no_larger(search, state, pair[-1].fit):
+        return None
     return replace(state.with_rungs((state.rungs[0], *pair)), replaced=True)
+
+
+def _has_many_parameters(search: LadderSearch, state: LadderState) -> bool:
+    """Whether an added effect has so many parameters that it may stand in for two."""
+    added = (rung.added for rung in state.rungs if rung.added is not None)
+    return any(len(one.effect.parameters) >= search.plan.many_parameters for one in added)
+
+
+def _is_better_and_no_larger(search: LadderSearch, state: LadderState, both: Fit) -> bool:
+    """Whether a fit leaves surely less than the last rung, with no more free parameters."""
+    no_more = len(both.free) <= len(state.fit.free)
+    return no_more and check_score(state.fit, both) > search.criteria.sure
 
 
 def _explains_most(search: LadderSearch, state: LadderState, both: Fit) -> bool:

@@ -30,6 +30,9 @@ class SearchPlan:
     #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
     #: are in what is left, and on a real arm it took 183 in place of 154 s and changed no answer
     partial_pairs: bool = True
+    #: parameters of an effect from which two simpler ones are held against it though it leaves only
+    #: noise. Five: `maxwell_slip`, which turns as a spring and a bristle do together
+    many_parameters: int = 5
     #: part of the squares of an arm's joint that its first effect takes away where the links were
     #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
     astray: float = 0.75

@@ -243,3 +243,16 @@ def test_two_effects_that_make_each_other_superfluous_do_not_take_turns(monkeypa
         visited |= {sets[-1]}
         assert len(sets) < 5
     assert sets == [frozenset("bc"), frozenset("ac"), frozenset("abc")]
+
+
+def test_a_pair_takes_the_place_of_many_parameters_though_only_noise_is_left(ladder):
+    search, state = ladder
+    stand_in = with_effects(search, with_stand_in(search, state), "quadratic_drag")
+    noise = 1.001 * stand_in.fit.check_error / state.floor.value
+    loud = replace(search, criteria=replace(CRITERIA, adequate=noise))
+    assert is_adequate(stand_in.fit, state.floor, criteria=loud.criteria)
+    assert replace_by_pair(loud, stand_in) is None
+    few = replace(loud, plan=replace(search.plan, many_parameters=2))
+    moved = replace_by_pair(few, stand_in)
+    assert set(added(moved)) == {"spring", "bias"} and moved.replaced
+    assert len(moved.fit.free) <= len(stand_in.fit.free)
