@@ -150,3 +150,98 @@ def test_a_slope_where_the_law_may_be_undefined_tells_nothing():
     slope = enclosure_of(1 / X, [X], smooth=True)
     with pytest.raises(Singular):
         slope([interval(0.0, 1.0)])
+
+
+corners = st.tuples(st.integers(-2, 2), st.integers(-2, 2)).map(sorted)
+relations = [sp.StrictLessThan, sp.StrictGreaterThan, sp.LessThan, sp.GreaterThan, sp.Eq, sp.Ne]
+
+
+@pytest.mark.parametrize("relation", relations)
+@given(x=corners, y=corners)
+def test_a_relation_can_hold_or_fail_where_points_of_the_ranges_do(relation, x, y):
+    """Whether any point does is seen on a grid of halves: ranges end at whole numbers."""
+    condition = relation(X, Y, evaluate=False)
+    found = enclosure_of(condition, [X, Y])([interval(*x), interval(*y)])
+    points = [(a / 2, b / 2) for a in range(2 * x[0], 2 * x[1] + 1)
+              for b in range(2 * y[0], 2 * y[1] + 1)]  # fmt: skip
+    holds = {bool(relation(sp.Rational(a), sp.Rational(b))) for a, b in points}
+    assert found == (True in holds, False in holds)
+
+
+@given(x=corners, y=corners, z=st.sampled_from(["and", "or", "not", "if"]))
+def test_conditions_are_joined_as_the_possibilities_of_their_parts(x, y, z):
+    first, second = sp.StrictLessThan(X, 0), sp.StrictLessThan(Y, 0)
+    joined = {
+        "and": sp.And(first, second),
+        "or": sp.Or(first, second),
+        "not": sp.Not(sp.And(first, second), evaluate=False),
+        "if": sp.ITE(first, second, sp.StrictLessThan(0, Y), evaluate=False),
+    }[z]
+    rule = {
+        "and": lambda a, b: a < 0 and b < 0,
+        "or": lambda a, b: a < 0 or b < 0,
+        "not": lambda a, b: not (a < 0 and b < 0),
+        "if": lambda a, b: b < 0 if a < 0 else b > 0,
+    }[z]
+    found = enclosure_of(joined, [X, Y])([interval(*x), interval(*y)])
+    points = [(a / 2, b / 2) for a in range(2 * x[0], 2 * x[1] + 1)
+              for b in range(2 * y[0], 2 * y[1] + 1)]  # fmt: skip
+    holds = {rule(a, b) for a, b in points}
+    # x and y are free of each other, so no possibility is counted that is none
+    assert found == (True in holds, False in holds)
+
+
+STEP = sp.Heaviside(X, sp.Rational(1, 2))
+
+
+@pytest.mark.parametrize(
+    ("law", "over", "expected"),
+    [
+        (STEP, (-2.0, -1.0), (0.0, 0.0)),
+        (STEP, (1.0, 2.0), (1.0, 1.0)),
+        (STEP, (-1.0, 1.0), (0.0, 1.0)),
+        (STEP, (0.0, 1.0), (0.0, 1.0)),
+        (STEP, (-1.0, 0.0), (0.0, 1.0)),
+        (sp.sign(X), (-2.0, -1.0), (-1.0, -1.0)),
+        (sp.sign(X), (-1.0, 0.0), (-1.0, 0.0)),
+        (sp.sign(X), (0.0, 1.0), (0.0, 1.0)),
+        (sp.Piecewise((1, X < 0), (5, X < 1), (9, True)), (-1.0, 0.5), (1.0, 5.0)),
+        (sp.Piecewise((1, X < 0), (5, X < 1), (9, True)), (2.0, 3.0), (9.0, 9.0)),
+        (sp.Piecewise((1, X < 0), (5, X < 1)), (0.5, 2.0), (-inf, inf)),
+        (sp.Piecewise((1, X < 0), (5, X < 1)), (-2.0, 0.5), (1.0, 5.0)),
+        (1 / X, (1.0, 2.0), (0.5, 1.0)),
+        (1 / X, (0.0, 2.0), (0.5, inf)),
+        (1 / X, (-2.0, 0.0), (-inf, -0.5)),
+        (1 / X, (-1.0, 2.0), (-inf, inf)),
+        (X * Y, (0.0, 0.0), (0.0, 0.0)),
+        (X * sp.exp(-Y), (0.0, 0.0), (0.0, 0.0)),
+        (sp.exp(Y), (0.0, 0.0), (0.0, inf)),
+        (sp.Min(X, 2), (1.0, 3.0), (1.0, 2.0)),
+        (sp.Max(X, 2), (1.0, 3.0), (2.0, 3.0)),
+        (sp.tan(X), (-0.5, 0.5), (-0.5463024898437905, 0.5463024898437905)),
+    ],
+    ids=str,
+)
+def test_steps_pieces_poles_and_empty_products_have_their_range(law, over, expected):
+    """y is anywhere on the line."""
+    found = ends(enclosure_of(law, [X, Y])([interval(*over), interval(-inf, inf)]))
+    assert found == pytest.approx(expected, abs=1e-14, rel=1e-13)
+
+
+@pytest.mark.parametrize("law", [1 / X, sp.sqrt(X), sp.log(X), X ** sp.Rational(-1, 3), X**-2])
+def test_where_a_smooth_law_is_asked_for_its_edge_is_refused(law):
+    smooth = enclosure_of(law, [X], smooth=True)
+    for over in ((0.0, 1.0), (-1.0, 1.0)):
+        with pytest.raises(Singular):
+            smooth([interval(*over)])
+        enclosure_of(law, [X])([interval(*over)])
+    low, high = ends(smooth([interval(0.5, 1.0)]))
+    assert low <= float(law.subs(X, 0.5)) <= high
+
+
+@given(x=st.floats(-750, 750))
+def test_an_exponential_stays_on_its_side_of_one_and_of_zero(x):
+    low, high = ends(enclosure_of(sp.exp(X), [X])([interval(x, x)]))
+    assert 0 <= low <= high and (high <= 1 if x <= 0 else low >= 1)
+    width = enclosure_of(sp.exp(X), [X])([interval(-inf, x)])
+    assert ends(width)[0] == 0.0 and ends(width)[1] >= high * (1 - 1e-14)

@@ -15,7 +15,7 @@ from teleopdesign.errors import ModelError
 from teleopdesign.passivity.identified import identify_device
 from teleopdesign.realise.acting_bound import largest_acting_force
 from teleopdesign.realise.damping_interval import damping_interval, small_motion_damping
-from teleopdesign.realise.friction_interval import friction_interval
+from teleopdesign.realise.friction_interval import friction_interval, value_interval
 from teleopdesign.realise.reach import Reach
 
 REACH = Reach(
@@ -250,3 +250,66 @@ def test_a_users_damper_counts_in_small_motion_under_any_name():
     pushing = user(lambda now, p: -p.size * now.velocity, role="force")
     undeclared = with_own(pushing)
     assert damping_interval(undeclared, errors=0.0).supplying == ("own",)
+
+
+@pytest.mark.parametrize(
+    ("value", "ends"),
+    [
+        (td.Value(0.5, stderr=0.1), (0.3, 0.7)),
+        (td.Value(0.5, stderr=0.4), (0.0, 1.3)),
+        (td.Value(0.5, stderr=0.1, fixed=True), (0.5, 0.5)),
+        (td.Value(0.5), (0.5, 0.5)),
+        (td.Value(0.5, stderr=inf), (0.5, 0.5)),
+    ],
+)
+def test_a_value_is_within_two_errors_and_not_below_zero(value, ends):
+    found = value_interval(value, errors=2.0)
+    assert found.estimate == 0.5 and (found.low, found.high) == pytest.approx(ends)
+    alone = f"{0.5:.4g}"
+    assert str(found) == (
+        alone if ends[0] == ends[1] else f"{alone} ({ends[0]:.4g} to {ends[1]:.4g})"
+    )
+
+
+@pytest.mark.parametrize(
+    ("travel", "lengths", "slides"), [(2e-3, 1.0, False), (2.1e-3, 1.05, True)]
+)
+def test_friction_is_known_where_a_motion_turns_the_bristles_round(travel, lengths, slides):
+    """Of 0.5 N over 500 N/m: a bristle length is 1 mm, and each way counts half of the travel."""
+    values = {"coulomb.level": 0.5, "presliding.stiffness": 500.0}
+    found = friction_interval(body_of(values), errors=2.0)
+    assert found.presliding.estimate == 500.0
+    assert found.bristle_lengths(travel) == pytest.approx(lengths)
+    assert found.slides_within(travel) == slides
+    ideal = friction_interval(body_of({"coulomb.level": 0.5}), errors=2.0)
+    assert ideal.presliding is None and ideal.bristle_lengths(1e-9) == inf
+
+
+def test_parameters_of_the_level_without_an_error_are_named_unless_they_are_fixed():
+    values = {"coulomb.level": 0.5, "viscous.damping": 1.0}
+    assert friction_interval(body_of(values), errors=2.0).unknown == ("coulomb.level",)
+    known = body_of(values, {"coulomb.level": 0.1})
+    assert friction_interval(known, errors=2.0).unknown == ()
+    fixed = body_of(values).with_values({"coulomb.level": td.Value(0.5, fixed=True)})
+    assert friction_interval(fixed, errors=2.0).unknown == ()
+    assert friction_interval(body_of({"viscous.damping": 1.0}), errors=2.0) is None
+
+
+@pytest.mark.parametrize("asymmetry", [-0.5, 0.5])
+def test_a_damping_that_differs_with_the_direction_takes_from_one_of_them(asymmetry):
+    """And drag that grows with speed adds nothing at rest."""
+    values = {"viscous.damping": 2.0, "quadratic_drag.drag": 5.0}
+    assert damping_interval(body_of(values), errors=2.0).least.low == pytest.approx(2.0)
+    values["viscous_asymmetry.half_difference"] = asymmetry
+    found = damping_interval(body_of(values), errors=2.0)
+    assert found.least.low == pytest.approx(1.5) and found.supplying == ()
+    values["viscous_asymmetry.half_difference"] = 5.0 * asymmetry
+    supplied = damping_interval(body_of(values), errors=2.0)
+    assert supplied.least.low == pytest.approx(2.0)
+    assert supplied.supplying == ("viscous_asymmetry",)
+
+
+def test_the_least_damping_is_that_of_the_worst_parameter():
+    unsure = body_of({"viscous.damping": 2.0}, {"viscous.damping": 0.25})
+    least = damping_interval(unsure, errors=2.0).least
+    assert (least.low, least.estimate) == pytest.approx((1.5, 2.0))

@@ -7,11 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.diagnose.one_moment import Moment
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.report.words import (
     join_names,
     number,
     percent,
+    sentence_of,
     short,
     typeset,
     unit_text,
@@ -109,6 +111,100 @@ def test_effects_that_explain_most_but_are_unlikely_are_said_to(diagnosis):
     text = verdict(replace(diagnosis, verdict="undecided", named=()))
     assert text.startswith("Undecided: with stribeck at device the force error")
     assert "less likely than not" in text
+
+
+def two_added(diagnosis):
+    """A ladder whose second effect is not probable enough to be named."""
+    first, second = diagnosis.rungs
+    other = next(r.candidate for r in second.ranking.ranked if r.candidate.key != second.added.key)
+    rungs = (first, second, replace(second, added=other))
+    return replace(diagnosis, rungs=rungs, named=(second.added,)), other
+
+
+def test_an_effect_that_helps_and_is_not_named_is_said_to_beside_those_that_are(diagnosis):
+    both, other = two_added(diagnosis)
+    text = verdict(both)
+    assert text.startswith("Your model lacks stribeck at device. With them, the force error")
+    assert f" {other} helps, but is less likely than not what is missing." in text
+    each = verdict(replace(both, verdict="undecided", named=()))
+    assert f"with stribeck at device and {other} the force error" in each
+    assert "but each is less likely than not" in each
+    little = replace(both.rungs[2].fit, check_error=0.95 * diagnosis.before.check_error)
+    rungs = (*both.rungs[:2], replace(both.rungs[2], fit=little))
+    text = verdict(replace(both, verdict="undecided", rungs=rungs, named=()))
+    assert f"stribeck at device and {other} help, but explain less than half" in text
+
+
+def with_floor(diagnosis, *, floors, drawn=1.0, held=False):
+    """The diagnosis with a floor of which the last model leaves so many."""
+    value = diagnosis.after.check_error / floors
+    floor = replace(diagnosis.floor, value=value, drawn=drawn * value, held=held, at_command=1.0)
+    return replace(diagnosis, floor=floor)
+
+
+def test_what_is_left_is_near_noise_or_more_is_missing_or_may_hide_in_a_floor_that_was_held(
+    diagnosis,
+):
+    near = verdict(with_floor(diagnosis, floors=1.5))
+    assert "What is left is near what sensor noise alone would leave, " in near
+    far = with_floor(diagnosis, floors=4.0, drawn=3.0)
+    assert f"left is {number(far.left, 2)} times what sensor noise" in verdict(far)
+    assert "more is missing." in verdict(far)
+    held = with_floor(diagnosis, floors=4.0, drawn=3.0, held=True)
+    assert f"which was held at {percent(held.floor.value)}" in verdict(held)
+    assert f"sensors leave {percent(held.floor.drawn)}" in verdict(held)
+    assert "more is missing" in verdict(with_floor(diagnosis, floors=4.0, drawn=1.1, held=True))
+
+
+def test_what_is_left_at_one_moment_is_said_with_the_rest_of_the_record(diagnosis):
+    moment = Moment("fit.csv", "device", 1.0, 1.5, 1.25)
+    one = replace(with_floor(diagnosis, floors=4.0), moment=moment)
+    said = f"1.2 times without one moment ({moment})"
+    assert said.replace("1.2 ", f"{number(1.25, 2)} ") in verdict(one)
+    only = replace(one, rungs=one.rungs[:1], verdict="model_adequate")
+    assert "Your model is adequate" in verdict(only) and f"({moment})" in verdict(only)
+    plain = replace(only, moment=None)
+    assert verdict(plain).endswith(
+        "sensor noise alone would leave " + percent(plain.floor.value) + "."
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "printed"),
+    [
+        (99994.0, "99994"),
+        (99999.6, "1.000·10⁵"),
+        (1e5, "1.000·10⁵"),
+        (1e-3, "0.001000"),
+        (9.99e-4, "9.990·10⁻⁴"),
+        (0.09999, "0.09999"),
+        (-1.0, "−1.000"),
+    ],
+)
+def test_powers_of_ten_are_printed_from_a_hundred_thousand_and_below_a_thousandth(value, printed):
+    assert number(value) == printed
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "printed"),
+    [
+        (123456.0, 100.0, ("1.2346·10⁵", "100")),
+        (-0.5, 0.012, ("−0.500", "0.012")),
+        (0.0, 1e-9, ("0", "1.0·10⁻⁹")),
+        (3.0, 25.0, ("3", "25")),
+        (3.0, 250.0, ("3.0", "250")),
+        (1e-9, 1e-12, ("1.0000·10⁻⁹", "1.0·10⁻¹²")),
+        (2.0, math.inf, ("2.000", "–")),
+        (2.0, 0.0, ("2.000", "–")),
+    ],
+)
+def test_a_value_stops_at_the_second_digit_of_its_error(value, error, printed):
+    assert with_error(value, error) == printed
+
+
+def test_an_entry_of_a_diagnosis_is_a_sentence_and_nothing_is_none():
+    assert sentence_of("what is left") == "What is left."
+    assert sentence_of(None) == sentence_of("") == ""
 
 
 @pytest.mark.parametrize(
