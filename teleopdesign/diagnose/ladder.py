@@ -17,6 +17,7 @@ from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
 from .straight import straighten
+from .together import add_together
 from .transmission import add_transmission
 
 
@@ -100,6 +101,6 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         return None
     if state.set_aside:  # pairs and exchanges were sought before, beside what was set aside
         return None
-    moves = (add_pair, add_transmission, exchange, replace_by_pair)
+    moves = (add_pair, add_transmission, exchange, replace_by_pair, add_together)
     attempts = (move(search, state) for move in moves)
     return next((moved for moved in attempts if moved is not None), None)

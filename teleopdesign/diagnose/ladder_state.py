@@ -82,6 +82,7 @@ class LadderState:
     supported: candidates that the records support, in the order of the ranking
     exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
     straightened: whether a straight line took the place of forces of the place once
+    together: whether many effects at once took the place of all rungs
     came_back: effects (name, place) that were replaced by another once, or came back beside it:
         none of them is replaced again, so that two effects cannot take turns
     set_aside: effects that were accepted and are not there by the errors that the answer would
@@ -99,6 +100,7 @@ class LadderState:
     exchanges: int = 0
     replaced: bool = False
     straightened: bool = False
+    together: bool = False
     came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()

@@ -30,6 +30,11 @@ class SearchPlan:
     #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
     #: are in what is left, and on a real arm it took 183 in place of 154 s and changed no answer
     partial_pairs: bool = True
+    #: most effects that are added at once where no other move leads on; 0: none, as at a joint of
+    #: an arm. Eight: friction of the speed, of the direction, and forces of the place, one of each
+    together: int = 8
+    #: relative difference of squares below which two effects do the same: what a search resolves
+    same: float = 1e-6
     #: parameters of an effect from which two simpler ones are held against it though it leaves only
     #: noise. Five: `maxwell_slip`, which turns as a spring and a bristle do together
     many_parameters: int = 5
@@ -105,7 +110,9 @@ class SearchPlan:
         """The plan for each joint of an arm with so many; its records are searched whole."""
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
         most = self.trials if count <= self.whole_at else self.pairs_beyond
-        return replace(plan, trials=min(self.trials, most), partial_pairs=False, tip_starts=0)
+        return replace(
+            plan, trials=min(self.trials, most), partial_pairs=False, tip_starts=0, together=0
+        )
 
     def omissions(self) -> tuple[str, ...]:
         """What it leaves out of the search with `PLAN`, in words; none where it is that one."""
@@ -130,4 +137,6 @@ class SearchPlan:
 PLAN = SearchPlan()
 #: those of a first look. A weak effect, the third and later ones, and two that mask each other may
 #: be missed
-QUICK = SearchPlan(most_effects=2, long=8_000, windows=8_000, trials=0, exchanges=0, tip_starts=0)
+QUICK = SearchPlan(
+    most_effects=2, long=8_000, windows=8_000, trials=0, exchanges=0, tip_starts=0, together=0
+)
