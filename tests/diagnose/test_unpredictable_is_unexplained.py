@@ -23,7 +23,7 @@ from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.seen_at_command import seen_at_command
+from teleopdesign.realise.seen_at_command import _transmit, _Way, seen_at_command
 from teleopdesign.realise.traced import Traced
 
 ACTUATION = {n: e for n, e in EFFECTS.items() if e.role == "actuation"}
@@ -126,6 +126,23 @@ def test_samples_beyond_a_limit_are_blind():
     assert not seen.weak
     weak = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 0.5}), motion)
     assert weak.blind.all() and weak.weak
+
+
+@pytest.mark.parametrize("gain", [1.0, 0.4, -0.4, 3.0, 0.0])
+@pytest.mark.parametrize("varies", [False, True])
+def test_of_a_hands_force_the_part_that_a_way_transmits_reaches_the_body(gain, varies):
+    """No more than its usual part, and at most all: a resonance brings no force of its own."""
+    motion = one_way()
+    n = len(motion.time)
+    force = smooth_noise(np.random.default_rng(2), n, 2.0)
+    over = gain * (np.linspace(0.5, 1.5, n) if varies else np.ones(n))
+    way = _Way(over, np.full(len(motion.spectrum.frequency), complex(gain)), 0.0)
+    passed = _transmit(force, way, motion)
+    inside = slice(int(RATE), -int(RATE))
+    shape = np.minimum(over / gain, 1.0) if gain else np.ones(n)
+    # what amplifies is held at one, and its gain as well
+    expected = force if gain > 1.0 else force * gain * shape
+    np.testing.assert_allclose(passed[inside], expected[inside], atol=1e-6)
 
 
 # records whose unexplained force no effect knows

@@ -1,6 +1,7 @@
 """The compiled kernel: accuracy, the guard of its step, sampling, and what it refuses."""
 
 import os
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,17 @@ from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface, world_haptics_2005
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.compiled import cache_folder
-from teleopdesign.realise.kernel import fastest_rates, refine_factor
+from teleopdesign.realise.kernel import (
+    FINER,
+    RELOAD,
+    Timing,
+    execute,
+    fastest_rates,
+    refine_factor,
+    round_up_steps,
+    worst_reload,
+)
+from teleopdesign.realise.layout import Layout
 from teleopdesign.simulate import Sampling, prepare, simulate, sine
 
 REFERENCE = sine(amplitude=0.01, frequency=1.5)
@@ -329,3 +340,47 @@ def test_the_fastest_rate_of_each_lane_names_its_state():
     rates, states = fastest_rates(jacobian)
     assert rates.tolist() == pytest.approx([7.0, 30.0, 0.0, 5.0])
     assert (states[0], states[3]) == (1, 0)
+
+
+@pytest.mark.parametrize("reloads", [(7.0, 3.0), (3.0, 7.0), (0.0, 0.0), ()])
+def test_the_measure_of_a_run_is_that_of_its_worst_bristle(reloads):
+    """The loop is a stand-in that writes a measure for each bristle, and a row of zeros behind."""
+    names = tuple(f"z{i}" for i in range(len(reloads)))
+    layout = Layout(names, (), (), (), (), (), ("mass",), ("x",), names)
+    places = {"PARAMETERS": 0, "COLUMNS": 1, "WORST": 4, "ROWS": 8}
+
+    def run(*arguments):
+        memory = next(a for a in arguments if isinstance(a, np.ndarray) and a.shape == (8,))
+        memory[2:8] = 99.0
+        memory[4 : 4 + len(reloads)] = reloads
+
+    made = SimpleNamespace(layout=layout, functions=places, loop=SimpleNamespace(run=run))
+    timing = Timing(1e-4, 10, 5, 0, (), 0.0, 0.0)
+    none = np.zeros((0, 1))
+    rows = {False: 6, True: 51}
+    for every_step, count in rows.items():
+        out, worst = execute(
+            made, {"mass": 2.0}, timing, inputs=none, sampled=none, start={}, every_step=every_step
+        )
+        assert worst == max(reloads, default=0.0) and out.shape == (count, 1)
+
+
+@given(needed=st.integers(1, 4000), least=st.integers(1, 20))
+def test_a_grid_has_as_many_steps_as_needed_or_the_next_number_that_is_allowed(needed, least):
+    found = round_up_steps(needed, least)
+    allowed = [least * f for f in FINER]
+    if needed > allowed[-1]:
+        assert found is None
+    else:
+        assert found in allowed and found >= needed
+        assert not any(needed <= a < found for a in allowed)
+
+
+@given(least=st.integers(1, 50), share=st.sampled_from([0.999, 1.001]))
+def test_a_run_ends_where_not_even_the_finest_grid_would_do(least, share):
+    """The measure falls with the square of the step."""
+    limit = worst_reload(least, least)
+    factor = refine_factor(share * limit, RELOAD, 2.0)
+    assert factor == FINER[-1] + (share > 1.0)
+    # seen from a grid that is twice as fine, a quarter of it is left
+    assert worst_reload(2 * least, least) == pytest.approx(limit / 4.0)

@@ -107,7 +107,8 @@ def test_an_excerpt_shows_where_the_residual_fell_most_with_the_clock_of_its_rec
     last = bump(n, 200, 300, 0.8)  # what no effect lowered is no gain
     clock = 100.0 + H * np.arange(n)
     measured = np.linspace(1.0, 1.1, n)
-    rows = samples(n, residual=[first, last], measured=measured, clock=clock)
+    between = bump(n, 1500, 300, 0.9)  # of rungs between the first and the last none is shown
+    rows = samples(n, residual=[first, between, last], measured=measured, clock=clock)
     graph = excerpt(rows, "prismatic", bandwidth)
     shown, before, after = graph.series
     assert shown.x[0] == clock[900] and len(shown.x) == 300
