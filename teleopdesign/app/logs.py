@@ -132,11 +132,11 @@ def preview(folder: Path, name: str, answers: Answers | None = None) -> Preview:
     return Preview(name, tuple(log.names), survey_log(log, path.name, choices))
 
 
-def _with_units(choices: Choices, units: Mapping[str, str], found: Survey, file: str) -> Choices:
+def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file: str) -> Choices:
     """Choices with the units of channels as those of columns, which are held as they were found."""
     columns: dict[str, str] = {}
     for key in units:
-        column = found.channels.get(key, {}).get("column")
+        column = survey.channels.get(key, {}).get("column")
         if column is None:
             shown = next(name for name, channel in ASKED.items() if channel == key)
             raise ExperimentError(f"{file}: {shown} unit: choose the column of the {shown} as well")
