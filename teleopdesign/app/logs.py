@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from ..errors import ExperimentError
 from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
 from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log
+from ..measurement.value_text import motor_constant, plain_number
 from .files import resolve_inside
 
 if TYPE_CHECKING:
@@ -18,12 +19,20 @@ if TYPE_CHECKING:
 
 #: points of a line in the preview: more are not seen
 POINTS = 3000
-#: what the page asks for -> what the survey calls it
+#: what a form of the page says, by the name of its field; empty or None: to be detected
+Answers = Mapping[str, str | None]
+#: what the page asks a column and its unit for -> what the survey calls it
 ASKED = {
     "time": "time",
     "position": "position",
     "actuator force": "actuator_force",
     "hand force": "interaction_force",
+}
+#: numbers that the page asks for -> what the survey calls them
+NUMBERS = {
+    "gear ratio": "gear_ratio",
+    "counts per turn": "counts_per_turn",
+    "sample rate (Hz)": "sample_rate",
 }
 
 
@@ -53,6 +62,18 @@ class Preview:
         for column, why in self.survey.unused.items():
             lines.append(f"| not used | {_cell(column)} | | {_cell(why)} |")
         return "\n".join(lines)
+
+    def guessed_units(self) -> str:
+        """Which units are guesses, and where to type them; "" where every unit is known."""
+        guessed = [
+            f"*{name}* ({_cell(entry['unit'])})"
+            for name, key in ASKED.items()
+            if f"channels.{key}.unit" in self.survey.guesses
+            and "unit" in (entry := self.survey.channels.get(key, {}))
+        ]
+        if not guessed:
+            return ""
+        return f"No name says the unit of {', '.join(guessed)}: type it where the guess is wrong."
 
     def spans(self) -> FitAndCheck:
         """The fit and check spans that are proposed, s from the first row, within the log."""
@@ -86,15 +107,49 @@ class Preview:
         return figure
 
 
-def preview(folder: Path, name: str, choices: Choices | None = None) -> Preview:
+def columns_of(folder: Path, name: str) -> tuple[str, ...]:
+    """The names of a log's columns, whatever they hold.
+
+    raises ExperimentError: the log cannot be read
+    """
+    path = resolve_inside(folder, name)
+    return tuple(open_log(path, path.name).names)
+
+
+def preview(folder: Path, name: str, answers: Answers | None = None) -> Preview:
     """Look at a log of the folder.
 
-    choices: columns, axis and constants that the user states; the rest is detected
-    raises ExperimentError: the log cannot be read, or holds no position or no force
+    answers: columns, units, axis and constants that the user states; the rest is detected
+    raises ExperimentError: the log cannot be read, or holds no position or no force; an answer that
+        is no number, or a unit of something else
     """
     path = resolve_inside(folder, name)
     log = open_log(path, path.name)
-    return Preview(name, tuple(log.names), survey_log(log, path.name, choices or Choices()))
+    answers = answers or {}
+    choices = choices_of(answers)
+    if units := units_of(answers):
+        choices = _with_units(choices, units, survey_log(log, path.name, choices), path.name)
+    return Preview(name, tuple(log.names), survey_log(log, path.name, choices))
+
+
+def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file: str) -> Choices:
+    """Choices with the units of channels as those of columns, which are held as they were found."""
+    columns: dict[str, str] = {}
+    for key in units:
+        column = survey.channels.get(key, {}).get("column")
+        if column is None:
+            shown = next(name for name, channel in ASKED.items() if channel == key)
+            raise ExperimentError(f"{file}: {shown} unit: choose the column of the {shown} as well")
+        columns[key] = column
+    named = {columns[key]: unit for key, unit in units.items()}
+    return replace(
+        choices,
+        units=named,
+        time=columns.get("time", choices.time),
+        position=columns.get("position", choices.position),
+        actuator_force=columns.get("actuator_force", choices.actuator_force),
+        interaction_force=columns.get("interaction_force", choices.interaction_force),
+    )
 
 
 def spans_of_sliders(fit: Sequence[float], check: Sequence[float], shown: Preview) -> FitAndCheck:
@@ -119,32 +174,37 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
     return str(target.relative_to(folder))
 
 
-def choices_of(answers: dict[str, str | None]) -> Choices:
-    """What a form of the page says; an empty answer: to be detected.
+def choices_of(answers: Answers) -> Choices:
+    """What a form of the page says of columns, axis and constants; an empty answer: to be detected.
 
-    answers: of `ASKED`, "axis", "torque constant" (N m/A) and "gear ratio"
+    answers: of `ASKED`, "axis", "torque constant" with its unit, and of `NUMBERS`
     raises ExperimentError: a constant that is no number
     """
-    constant = _number(answers.get("torque constant"), "torque constant")
     column = {key: answers.get(name) or None for name, key in ASKED.items()}
+    number = {key: _number(answers, name) for name, key in NUMBERS.items()}
+    constant = (answers.get("torque constant") or "").strip()
     return Choices(
         axis=answers.get("axis") or None,
         time=column["time"],
         position=column["position"],
         actuator_force=column["actuator_force"],
         interaction_force=column["interaction_force"],
-        torque_constant=None if constant is None else (constant, "N*m/A"),
-        gear_ratio=_number(answers.get("gear ratio"), "gear ratio"),
+        torque_constant=motor_constant(constant, where="torque constant") if constant else None,
+        gear_ratio=number["gear_ratio"],
+        counts_per_turn=number["counts_per_turn"],
+        sample_rate=number["sample_rate"],
     )
 
 
-def _number(text: str | None, name: str) -> float | None:
-    if text is None or not text.strip():
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        raise ExperimentError(f"{name}: found {text!r}, expected a number") from None
+def units_of(answers: Answers) -> dict[str, str]:
+    """The units that a form of the page states, by channel."""
+    said = {key: (answers.get(f"{name} unit") or "").strip() for name, key in ASKED.items()}
+    return {key: unit for key, unit in said.items() if unit}
+
+
+def _number(answers: Answers, name: str) -> float | None:
+    text = (answers.get(name) or "").strip()
+    return plain_number(text, where=name) if text else None
 
 
 def _cell(text: object) -> str:

@@ -95,19 +95,29 @@ def _(files, folder, get_names, mo):
 
 @app.cell
 def _(TeleopDesignError, folder, log, logs, views):
-    columns, trouble, duration = (), "", 1.0
-    proposed = ((0.0, 0.7), (0.7, 1.0))
+    columns, unreadable = (), ""
     if log.value is not None:
         try:
-            first_look = logs.preview(folder, log.value)
+            columns = logs.columns_of(folder, log.value)
+        except TeleopDesignError as error:
+            unreadable = str(error)
+    form = views.column_form(columns)
+    return columns, form, unreadable
+
+
+@app.cell
+def _(TeleopDesignError, columns, folder, form, log, logs, views):
+    understood, trouble = None, ""
+    duration, proposed = 1.0, ((0.0, 0.7), (0.7, 1.0))
+    if columns:
+        try:
+            understood = logs.preview(folder, log.value, form.value)
         except TeleopDesignError as error:
             trouble = str(error)
         else:
-            columns, duration = first_look.columns, first_look.survey.duration
-            proposed = first_look.spans()
+            duration, proposed = understood.survey.duration, understood.spans()
     fit_span, check_span = views.span_sliders(duration, proposed)
-    form = views.column_form(columns)
-    return check_span, columns, fit_span, form, trouble
+    return check_span, fit_span, trouble, understood
 
 
 @app.cell
@@ -125,11 +135,13 @@ def _(
     set_names,
     set_note,
     trouble,
+    understood,
+    unreadable,
     views,
 ):
-    def make(understood, spans):
+    def make(shown, spans):
         try:
-            made = logs.make_experiment(folder, understood, spans)
+            made = logs.make_experiment(folder, shown, spans)
             set_note(f"{made} is made: open it above")
         except TeleopDesignError as error:
             set_note(str(error))
@@ -139,9 +151,9 @@ def _(
     if log.value is not None:
         parts.append(log)
     if columns:
-        parts += views.log_parts(folder, log.value, form, (fit_span, check_span), make)
-    elif trouble:
-        parts.append(mo.callout(trouble, kind="warn"))
+        parts += views.log_parts(form, understood, trouble, (fit_span, check_span), make)
+    elif unreadable:
+        parts.append(mo.callout(unreadable, kind="warn"))
     log_view = mo.vstack(parts)
     return (log_view,)
 

@@ -7,7 +7,6 @@ notebook.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import marimo as mo
@@ -48,46 +47,57 @@ def span_sliders(duration: float, proposed: Spans) -> tuple[PageElement, PageEle
 
 
 def column_form(columns: Sequence[str]) -> PageElement:
-    """What a person can say of a log: axis, columns, constants."""
-    return mo.ui.dictionary(
-        {
-            "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
-            **{name: mo.ui.dropdown(columns, label=name) for name in logs.ASKED},
-            "torque constant": mo.ui.text(label="torque constant (N*m/A)"),
-            "gear ratio": mo.ui.text(label="gear ratio"),
-        }
+    """What a person can say of a log: columns with their units, axis, constants."""
+    fields: dict[str, PageElement] = {}
+    for name in logs.ASKED:
+        fields[name] = mo.ui.dropdown(columns, label=name)
+        fields[f"{name} unit"] = mo.ui.text(label=f"{name} unit", full_width=False)
+    fields["axis"] = mo.ui.dropdown(["prismatic", "revolute"], label="axis")
+    fields["torque constant"] = mo.ui.text(
+        label="torque constant", placeholder="0.037 N*m/A or 12 N/A"
     )
+    fields |= {name: mo.ui.text(label=name) for name in logs.NUMBERS}
+    return mo.ui.dictionary(fields)
+
+
+def form_rows(form: PageElement) -> PageElement:
+    """The form as it is laid out: each column above its unit, then axis and constants."""
+    fields = form.elements
+    pairs = [mo.vstack([fields[name], fields[f"{name} unit"]]) for name in logs.ASKED]
+    others = [fields[name] for name in ("axis", "torque constant", *logs.NUMBERS)]
+    return mo.vstack([place_side_by_side(*pairs), place_side_by_side(*others)])
 
 
 def log_parts(
-    folder: Path,
-    name: str,
     form: PageElement,
+    understood: logs.Preview | None,
+    trouble: str,
     sliders: tuple[PageElement, PageElement],
     make: Callable[[logs.Preview, Any], object],
 ) -> list[PageElement]:
     """A log as it is understood, and the button that makes an experiment of it.
 
+    understood: None where `trouble` says why not
     make: what the button does with the log and its spans
     """
+    parts = [
+        mo.md("Empty fields: columns are chosen by names and physics. Choose where that is wrong:"),
+        form_rows(form),
+    ]
+    if understood is None:
+        return [*parts, mo.callout(trouble, kind="warn")]
+    parts.append(mo.md(understood.table()))
+    if guessed := understood.guessed_units():
+        parts.append(mo.md(guessed))
+    parts += [mo.md("What is fitted, and what is checked:"), *sliders]
     try:
-        understood = logs.preview(folder, name, logs.choices_of(form.value))
         spans = logs.spans_of_sliders(sliders[0].value, sliders[1].value, understood)
     except TeleopDesignError as error:
-        return [form, *sliders, mo.callout(str(error), kind="warn")]
-    return [
-        mo.md("Empty fields: columns are chosen by names and physics. Choose where that is wrong:"),
-        place_side_by_side(*form.elements.values()),
-        mo.md(understood.table()),
-        mo.md("What is fitted, and what is checked:"),
-        *sliders,
-        understood.plot(spans),
-        mo.ui.button(
-            label="Make the experiment",
-            on_click=lambda _: make(understood, spans),
-            kind="success",
-        ),
-    ]
+        return [*parts, mo.callout(str(error), kind="warn")]
+    button = mo.ui.button(
+        label="Make the experiment", on_click=lambda _: make(understood, spans), kind="success"
+    )
+    return [*parts, understood.plot(spans), button]
 
 
 def residual_view(

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ._paths import shell_word
-from ._values import number_and_unit
 
 if TYPE_CHECKING:
     from ..measurement.new_folder import FitAndCheck
@@ -191,6 +190,7 @@ def _short(value: object) -> str:
 
 def _choices(options: argparse.Namespace) -> Choices:
     from ..measurement.survey import Choices
+    from ..measurement.value_text import motor_constant
 
     units = {}
     for text in options.unit:
@@ -198,6 +198,9 @@ def _choices(options: argparse.Namespace) -> Choices:
         if not equals or not column or not unit:
             raise ExperimentError(f"--unit: found {text!r}, expected COLUMN=UNIT")
         units[column] = unit
+    constant = None
+    if options.torque_constant is not None:
+        constant = motor_constant(options.torque_constant, where="--torque-constant")
     return Choices(
         axis=options.axis,
         time=options.time,
@@ -205,28 +208,17 @@ def _choices(options: argparse.Namespace) -> Choices:
         actuator_force=options.force,
         interaction_force=options.hand,
         units=units,
-        torque_constant=_constant(options.torque_constant),
+        torque_constant=constant,
         gear_ratio=options.gear_ratio,
         counts_per_turn=options.counts_per_turn,
         sample_rate=options.sample_rate,
     )
 
 
-def _constant(text: str | None) -> tuple[float, str] | None:
-    """A number and a unit, "0.037 N*m/A"."""
-    if text is None:
-        return None
-    value, unit = number_and_unit(text, where="--torque-constant", example="0.037 N*m/A")
-    if not unit.endswith(("/A", "/mA", "/V")):
-        raise ExperimentError(
-            f"--torque-constant: found the unit {unit!r}, expected a force or torque for each "
-            'ampere or volt, such as "N*m/A" or "N/A"'
-        )
-    return value, unit
-
-
 def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
     """The user's answers to what was guessed; an empty answer takes the guess."""
+    from ..measurement.value_text import motor_constant, plain_number
+
     units = dict(choices.units)
     for key, why in list(survey.guesses.items()):
         _, quantity, part = (*key.split("."), "", "")[:3]
@@ -250,23 +242,16 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
         elif part == "column":
             choices = _with_column(choices, quantity, answer)
         elif part == "torque_constant":
-            choices = replace(choices, torque_constant=_constant(answer))
+            choices = replace(choices, torque_constant=motor_constant(answer, where=key))
         elif part == "counts_per_turn":
-            choices = replace(choices, counts_per_turn=_number(answer, key))
+            choices = replace(choices, counts_per_turn=plain_number(answer, where=key))
         elif part == "gear_ratio":
-            choices = replace(choices, gear_ratio=_number(answer, key))
+            choices = replace(choices, gear_ratio=plain_number(answer, where=key))
         elif key == "model.device.axis":
             choices = replace(choices, axis=answer)
         else:
-            choices = replace(choices, sample_rate=_number(answer, key))
+            choices = replace(choices, sample_rate=plain_number(answer, where=key))
     return replace(choices, units=units)
-
-
-def _number(text: str, key: str) -> float:
-    try:
-        return float(text.replace(",", "."))
-    except ValueError:
-        raise ExperimentError(f"{key}: found {text!r}, expected a number") from None
 
 
 def _with_column(choices: Choices, quantity: str, column: str) -> Choices:

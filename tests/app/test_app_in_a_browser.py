@@ -4,10 +4,11 @@ import shutil
 import urllib.error
 import urllib.request
 
+import numpy as np
 import pytest
 from app.browser import CHROMIUM, WHY, opened, picture, press
 
-from teleopdesign import example
+from teleopdesign import example, load_experiment
 
 #: presses *Add* and counts the seconds until the page holds the new rung
 SECONDS_TO_THE_NEW_RUNG = """() => new Promise(done => {
@@ -39,6 +40,53 @@ def test_the_page_is_for_this_machine_and_for_whoever_has_the_token(served):
     assert code in (401, 403) or "login" in url
 
 
+def fill_in(page, label, text):
+    """Type into a field by keyboard alone; Enter takes what stands there."""
+    field = page.get_by_label(label, exact=True)
+    field.focus()
+    page.keyboard.press("Control+A")
+    page.keyboard.type(text)
+    page.keyboard.press("Enter")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason=WHY)
+def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
+    address, folder = served
+    t = np.arange(6000) / 500
+    q = 25.0 * np.sin(2 * t)
+    rows = np.column_stack([1000 * t, q, 800 * np.sign(np.cos(2 * t)) + 30 * q])
+    log = tmp_path / "bare.csv"
+    np.savetxt(log, rows, delimiter=",", header="tick,joint,drive", comments="", fmt="%.9g")
+    with opened(address) as page:
+        page.locator("input[type=file]").set_input_files(log)
+        page.get_by_text("No name says the unit of").wait_for()
+        fill_in(page, "position unit", "furlong")
+        page.get_by_text("unit of 'joint': found 'furlong', expected a unit such as").wait_for()
+        fill_in(page, "position unit", "deg")
+        page.get_by_role("cell", name="deg", exact=True).wait_for()
+        # Tab leads from a column to its unit
+        page.get_by_label("actuator force", exact=True).focus()
+        page.keyboard.press("Tab")
+        page.keyboard.type("mA")
+        page.keyboard.press("Enter")
+        page.get_by_role("cell", name="mA", exact=True).wait_for()
+        fill_in(page, "time unit", "ms")
+        fill_in(page, "torque constant", "0.05 N*m/A")
+        page.get_by_text("stands for the motor's constant").wait_for(state="detached")
+        page.get_by_text("No name says the unit of").wait_for(state="detached")
+        page.wait_for_timeout(3000)  # the log is drawn anew
+        picture(page, folder, "units", full_page=True)
+        press(page, "Make the experiment")
+        page.get_by_text("bare_experiment is made").wait_for()
+    channels = load_experiment(folder / "bare_experiment").channels.values()
+    assert {c.quantity: c.unit for c in channels} == {
+        "time": "ms",
+        "position": "deg",
+        "actuator_force": "mA",
+    }
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason=WHY)
 def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
@@ -48,7 +96,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         page.locator("input[type=file]").set_input_files(log)
         page.get_by_role("cell", name="actuator_force").wait_for()
         assert page.get_by_text("Open an experiment to begin.").count() == 0  # there is none yet
-        page.get_by_label("hand force").select_option("f_h")
+        page.get_by_label("hand force", exact=True).select_option("f_h")
         page.get_by_role("cell", name="interaction_force").wait_for()
         # the end of the check span, by keyboard: a few steps of a 500th of the log
         last = page.get_by_role("slider").last

@@ -52,6 +52,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
                 f"{file}: {key}: {why}, found {join_names(raw)}{did_you_mean(name, raw)}"
             )
     _check_units(choices, raw, file)
+    _check_numbers(choices, file)
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
     if time_name is not None:
@@ -87,15 +88,30 @@ def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
             )
 
 
+def _check_numbers(choices: Choices, file: str) -> None:
+    """Refuse numbers that no device has: a rate of 0 Hz, a gear of 0."""
+    for key, expected in (
+        ("sample_rate", "more than 0 Hz"),
+        ("counts_per_turn", "more than 0"),
+        ("gear_ratio", "any other number"),
+    ):
+        value = getattr(choices, key)
+        if value is None:
+            continue
+        if not math.isfinite(value) or value == 0 or (value < 0 and key != "gear_ratio"):
+            raise ExperimentError(f"{file}: {key}: found {value:g}, expected {expected}")
+
+
 def _units_in_use(survey: Survey, choices: Choices, file: str) -> None:
     """Refuse a unit that was chosen for a column, but is none of what the column is taken for."""
     for key, entry in survey.channels.items():
         column = entry.get("column")
         unit = choices.units.get(column) if isinstance(column, str) else None
         if unit is not None and unit != entry.get("unit"):
+            on_axis = "" if key == "time" else f" on a {survey.axis} axis"
             raise ExperimentError(
-                f"{file}: unit of {column!r}: found {unit!r}, expected one of a {_noun(key)} on a "
-                f"{survey.axis} axis, such as {entry.get('unit')!r}"
+                f"{file}: unit of {column!r}: found {unit!r}, expected one of a {_noun(key)}"
+                f"{on_axis}, such as {entry.get('unit')!r}"
             )
 
 

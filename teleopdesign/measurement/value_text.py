@@ -1,0 +1,60 @@
+"""Values as people type them: a number, and a unit where there must be one."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from ..errors import ExperimentError
+from ..quantity import is_unit
+
+_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)")
+
+
+def split_value(text: str) -> tuple[float, str] | None:
+    """The number and what stands behind it; None: no finite number begins the text."""
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    if match is None or not math.isfinite(float(match[1])):
+        return None
+    return float(match[1]), match[2].strip()
+
+
+def number_and_unit(text: str, *, where: str, example: str) -> tuple[float, str]:
+    """The number and the unit of a text such as "0.037 N*m/A", both required.
+
+    raises ExperimentError: no number, or no unit
+    """
+    parts = split_value(text)
+    if parts is None or not is_unit(parts[1]):
+        raise ExperimentError(
+            f'{where}: found {text!r}, expected a number and a unit such as "{example}"'
+        )
+    return parts
+
+
+def motor_constant(text: str, *, where: str) -> tuple[float, str]:
+    """A motor's constant such as "0.037 N*m/A" or "12 N/A".
+
+    raises ExperimentError: no number, or another unit
+    """
+    value, unit = number_and_unit(text, where=where, example="0.037 N*m/A")
+    if not unit.endswith(("/A", "/mA", "/V")):
+        raise ExperimentError(
+            f"{where}: found the unit {unit!r}, expected a force or torque for each "
+            'ampere or volt, such as "N*m/A" or "N/A"'
+        )
+    return value, unit
+
+
+def plain_number(text: str, *, where: str) -> float:
+    """A number alone; a decimal comma is read.
+
+    raises ExperimentError: no number
+    """
+    try:
+        value = float(text.replace(",", "."))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ExperimentError(f"{where}: found {text!r}, expected a number")
+    return value
