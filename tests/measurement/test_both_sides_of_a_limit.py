@@ -13,7 +13,7 @@ from scipy.io import savemat
 import teleopdesign as td
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.bandwidth import LOWEST, default_bandwidth
-from teleopdesign.measurement.doors import _log, matlab
+from teleopdesign.measurement.doors import _log, json_records, matlab
 from teleopdesign.measurement.doors.bag import _check_field
 from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.reading import ReadingStep
@@ -21,6 +21,7 @@ from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.repeated_rows import rows_between_readings
 from teleopdesign.measurement.soundness.encoder_steps import check_steps
 from teleopdesign.measurement.soundness.signal import signals
+from teleopdesign.measurement.tables import open_log
 from teleopdesign.measurement.time_grid import stamps_are_true
 from teleopdesign.measurement.zero_phase import filter_both_ways, margin, sections
 from teleopdesign.measurement.zero_phase_spans import reach, windows
@@ -147,6 +148,23 @@ def test_structs_within_structs_are_columns_to_a_depth_of_four(tmp_path, depth):
     log = matlab.open_matlab(tmp_path / "log.mat", "log.mat")
     assert any(name.endswith(".q") for name in log.names) == (depth <= 4)
     assert "t" in log.names
+
+
+@pytest.mark.parametrize("more", [0, 1])
+@pytest.mark.parametrize("as_records", [False, True])
+def test_objects_within_objects_of_a_json_file_are_columns_to_a_depth(tmp_path, more, as_records):
+    """As a record of lists, and as a list of records."""
+    value = 1.5 if as_records else [0.5 * k for k in range(100)]
+    for _ in range(json_records.DEPTH + more):
+        value = {"in": value}
+    path = tmp_path / "log.json"
+    path.write_text(json.dumps([{"t": k, **value} for k in range(100)] if as_records else value))
+    name = ".".join(["in"] * (json_records.DEPTH + more))
+    names = open_log(path, "log.json").names if as_records or not more else ()
+    assert (name in names) == (more == 0)
+    if not names:
+        with pytest.raises(ExperimentError):
+            open_log(path, "log.json")
 
 
 @pytest.mark.parametrize(
