@@ -19,6 +19,7 @@ from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.reading import ReadingStep
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.repeated_rows import rows_between_readings
+from teleopdesign.measurement.resample import commands_on_clock
 from teleopdesign.measurement.soundness.encoder_steps import check_steps
 from teleopdesign.measurement.soundness.signal import signals
 from teleopdesign.measurement.tables import open_log
@@ -56,6 +57,27 @@ def test_whether_stamps_are_true_is_told_as_surely_as_it_scatters(truth, noise):
 def test_stamps_of_a_body_that_rests_tell_nothing():
     clock = clock_with(1e-3 * np.arange(100.0), 1e-3)
     assert stamps_are_true(clock, [np.zeros(100)]) == (1.0, math.inf)
+
+
+@pytest.mark.parametrize("phase", [-0.3, 0.0, 0.2, 0.4])
+@pytest.mark.parametrize("scatter", [0.0, 0.1])
+def test_a_command_that_changes_between_rows_is_its_mean_over_each_sample(phase, scatter):
+    """It holds from n + phase on; a row near k has what held at its time."""
+    h, n = 1e-3, 400
+    random = np.random.default_rng(3)
+    held = random.standard_normal(n + 2)  # of cell -1, 0, 1, ...
+    at = np.arange(n) + scatter * random.uniform(-1.0, 1.0, n)
+    values = held[np.floor(at - phase).astype(int) + 1]
+    found, _ = commands_on_clock(values, clock_with(h * at, h), phase)
+    fine = (np.arange(200) + 0.5) / 200
+    times = np.arange(n)[:, None] + fine
+    mean = held[np.floor(times - phase).astype(int) + 1].mean(axis=1)
+    seen = np.isin(np.arange(-1, n + 1), np.floor(at - phase))
+    # where a row or its neighbour came too late to see a command, a line stands for it
+    whole = seen[:-2] & seen[1:-1] & seen[2:]
+    inside = np.flatnonzero(whole)[2:-2]
+    assert len(inside) > (0.25 if scatter else 0.98) * n
+    assert found[inside] == pytest.approx(mean[inside], abs=1e-9)
 
 
 # rows of a slower source
