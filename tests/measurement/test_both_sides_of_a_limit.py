@@ -13,14 +13,16 @@ from scipy.io import savemat
 import teleopdesign as td
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.bandwidth import LOWEST, default_bandwidth
-from teleopdesign.measurement.doors import _log, matlab
+from teleopdesign.measurement.doors import _log, json_records, matlab
 from teleopdesign.measurement.doors.bag import _check_field
 from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.reading import ReadingStep
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.repeated_rows import rows_between_readings
+from teleopdesign.measurement.resample import commands_on_clock
 from teleopdesign.measurement.soundness.encoder_steps import check_steps
 from teleopdesign.measurement.soundness.signal import signals
+from teleopdesign.measurement.tables import open_log
 from teleopdesign.measurement.time_grid import stamps_are_true
 from teleopdesign.measurement.zero_phase import filter_both_ways, margin, sections
 from teleopdesign.measurement.zero_phase_spans import reach, windows
@@ -55,6 +57,27 @@ def test_whether_stamps_are_true_is_told_as_surely_as_it_scatters(truth, noise):
 def test_stamps_of_a_body_that_rests_tell_nothing():
     clock = clock_with(1e-3 * np.arange(100.0), 1e-3)
     assert stamps_are_true(clock, [np.zeros(100)]) == (1.0, math.inf)
+
+
+@pytest.mark.parametrize("phase", [-0.3, 0.0, 0.2, 0.4])
+@pytest.mark.parametrize("scatter", [0.0, 0.1])
+def test_a_command_that_changes_between_rows_is_its_mean_over_each_sample(phase, scatter):
+    """It holds from n + phase on; a row near k has what held at its time."""
+    h, n = 1e-3, 400
+    random = np.random.default_rng(3)
+    held = random.standard_normal(n + 2)  # of cell -1, 0, 1, ...
+    at = np.arange(n) + scatter * random.uniform(-1.0, 1.0, n)
+    values = held[np.floor(at - phase).astype(int) + 1]
+    found, _ = commands_on_clock(values, clock_with(h * at, h), phase)
+    fine = (np.arange(200) + 0.5) / 200
+    times = np.arange(n)[:, None] + fine
+    mean = held[np.floor(times - phase).astype(int) + 1].mean(axis=1)
+    seen = np.isin(np.arange(-1, n + 1), np.floor(at - phase))
+    # where a row or its neighbour came too late to see a command, a line stands for it
+    whole = seen[:-2] & seen[1:-1] & seen[2:]
+    inside = np.flatnonzero(whole)[2:-2]
+    assert len(inside) > (0.25 if scatter else 0.98) * n
+    assert found[inside] == pytest.approx(mean[inside], abs=1e-9)
 
 
 # rows of a slower source
@@ -147,6 +170,23 @@ def test_structs_within_structs_are_columns_to_a_depth_of_four(tmp_path, depth):
     log = matlab.open_matlab(tmp_path / "log.mat", "log.mat")
     assert any(name.endswith(".q") for name in log.names) == (depth <= 4)
     assert "t" in log.names
+
+
+@pytest.mark.parametrize("more", [0, 1])
+@pytest.mark.parametrize("as_records", [False, True])
+def test_objects_within_objects_of_a_json_file_are_columns_to_a_depth(tmp_path, more, as_records):
+    """As a record of lists, and as a list of records."""
+    value = 1.5 if as_records else [0.5 * k for k in range(100)]
+    for _ in range(json_records.DEPTH + more):
+        value = {"in": value}
+    path = tmp_path / "log.json"
+    path.write_text(json.dumps([{"t": k, **value} for k in range(100)] if as_records else value))
+    name = ".".join(["in"] * (json_records.DEPTH + more))
+    names = open_log(path, "log.json").names if as_records or not more else ()
+    assert (name in names) == (more == 0)
+    if not names:
+        with pytest.raises(ExperimentError):
+            open_log(path, "log.json")
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import teleopdesign as td
 from teleopdesign.measurement.repeated_rows import (
     LASTING,
     repeated_rows,
+    repeats,
     rows_between_readings,
     runs_of,
 )
@@ -147,3 +148,13 @@ def test_a_body_that_rests_a_good_part_of_the_time_is_no_slow_source(rest):
     moves = stamps % 2.0 >= 2.0 * rest
     x = np.where(moves, np.sin(np.pi * (stamps % 2.0)), 0.0)
     assert not rows_between_readings([x, 3 * x], [x], stamps).any()
+
+
+@pytest.mark.parametrize(
+    ("at", "found"), [(0, []), (1, [2]), (200, [201]), (397, [398]), (398, [])]
+)
+def test_a_sample_that_repeats_is_seen_where_the_motion_before_and_behind_it_is(at, found):
+    """At the ends of a record nothing says that the body went on."""
+    x = 10.0 * np.arange(400.0)
+    x[at + 1] = x[at]
+    assert repeats(x, 1.0).tolist() == found

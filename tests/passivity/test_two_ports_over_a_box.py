@@ -17,6 +17,7 @@ from teleopdesign.passivity.intervals.conditions import (
     two_port_is_passive,
     two_port_is_stable,
 )
+from teleopdesign.passivity.two_port.growing_mode import _narrow, entries_of, growing_mode
 from teleopdesign.realise.lti import S
 
 V = sp.Symbol("v", real=True)
@@ -101,3 +102,49 @@ def test_a_margin_is_what_may_be_taken_from_every_damping(margin, holds):
     assert one_port_is_passive(ask(), z, margin=Fraction(margin)) == holds
     both = sp.Matrix([[z, 0], [0, z + 1]])
     assert two_port_is_passive(ask(), both, margin=Fraction(margin)) == holds
+
+
+BAND = 2 * S / (S**2 + 2 * S + 100)
+NARROW = S / 10 / (S**2 + S / 10 + 100)
+LITTLE = sp.Rational(1, 10**6)
+TRANSFERS = {
+    # times nine, of two resistances of three; how much the product exceeds what is allowed
+    "at every frequency": (sp.S(1) + LITTLE, True),
+    "in a band": (BAND * (1 + LITTLE), True),
+    "in a narrow gap": (NARROW * (1 + LITTLE / 1000), True),
+    "turned by its phase": ((1 - S) / (1 + S) * (1 + LITTLE), True),
+    "exactly as much": (BAND, False),
+    "a little less": (NARROW * (1 - LITTLE), False),
+}
+
+
+def exact(number):
+    assert number >= 0
+    return sp.Rational(number.numerator, number.denominator)
+
+
+@pytest.mark.parametrize("case", TRANSFERS)
+@pytest.mark.parametrize("turned", [False, True])
+def test_terminations_between_which_it_grows_are_found_however_little_is_too_much(case, turned):
+    transfer, grows = TRANSFERS[case]
+    above, below = (9 * transfer, sp.S(1)) if not turned else (sp.S(1), 9 * transfer)
+    z = sp.ImmutableMatrix([[3, above], [below, 3]])
+    mode = growing_mode(z)
+    assert (mode is not None) == grows
+    near = _narrow(z, entries_of(z))
+    for found in filter(None, (mode, near)):
+        assert grows and found.is_confirmed() and found.rate > 0 and found.energy > 0
+        # both terminations take energy, and with them the loop is singular where it grows
+        s = exact(found.rate) + sp.I * exact(found.frequency)
+        first, second = (exact(t.damping) + exact(t.inertia) * s + exact(t.stiffness) / s
+                         for t in found.terminations)  # fmt: skip
+        entries = z.subs(S, s)
+        products = (
+            (entries[0, 0] + first) * (entries[1, 1] + second),
+            entries[0, 1] * entries[1, 0],
+        )
+        passing, back = (sp.N(product, 60) for product in products)
+        if not any(t.clamped for t in found.terminations):
+            assert abs(passing - back) < 1e-40 * abs(passing)
+    if "band" in case or "gap" in case:
+        assert near is not None
