@@ -67,7 +67,7 @@ def test_no_limit_lag_or_delay_is_sought_in_a_force_that_was_measured(model, tmp
     model = replace(model, known=catalogue([path]))
     measured = {c.effect.name for c in candidates(model, measured={"device"})}
     stages = {n for n, e in model.known.items() if e.role == "actuation"}
-    scales_only = {"actuator_gain", "torque_ripple"}
+    scales_only = {"actuator_gain", "position_dependent_gain", "torque_ripple"}
     assert stages - measured == stages - scales_only and "soft_limit" in stages - measured
     assert names(model) - measured == stages - scales_only
 

@@ -71,6 +71,12 @@ SAID = {
     ),
     "hardening_spring": ({"neutral": 0.1}, {"neutral": -2.0}, "a spring and a constant force"),
     "gravity": ({"amplitude": 2.0}, {"amplitude": -40.0}, "a spring"),
+    "cogging_harmonic": ({"period": 0.5}, {"period": 2.0}, "varies slowly along the travel"),
+    "position_dependent_gain": (
+        {"fall": 0.1, "centre": 0.4},
+        {"fall": 0.1, "centre": -7.0},
+        "varies along the travel",
+    ),
     "tip_friction": ({"level": 0.1}, {"level": 1e-5}, "friction of the actuator"),
     "viscous_temperature": ({"coefficient": 0.01}, {"coefficient": -0.01}, "a preload"),
     "position_dependent_friction": (
