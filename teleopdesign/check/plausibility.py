@@ -157,14 +157,15 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
     quantities = {n: body.parameter(n).quantity for n in ratios}
     causes = slips(body.axis, ratios, quantities)
     strengths = ", ".join(
-        f"{n} {balance.strengths[n].value:.3g} where the model says {body.parameters[n].value:.3g}"
+        f"{n} {balance.strengths[n].value:.3g} {body.unit(n)} where the model says "
+        f"{body.parameters[n].value:.3g} {body.unit(n)}"
         for n in ratios
     )
     why = " or ".join(causes) if causes else "a unit, or a guess that is far off"
     yield Finding(
         "units",
         "warning",
-        f"the motion asks for {strengths} ({body.unit('inertia')} for the inertia): {why}.",
+        f"the motion asks for {strengths}: {why}.",
         {f"ratio.{n}": r for n, r in ratios.items()},
         balance.body,
     )
@@ -244,7 +245,7 @@ def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Findin
     else:
         text = (
             f"signs and units agree: the motion asks for an inertia of {inertia.value:.3g} "
-            f"{body.unit('inertia')}, the model says {said:.3g}"
+            f"{body.unit('inertia')}, the model says {said:.3g} {body.unit('inertia')}"
         )
     if balance.other:
         gain = with_standard_error(balance.gain.value, balance.gain.error)

@@ -60,14 +60,20 @@ def candidate_effects(
 
 
 def experiment_of(folder: Path) -> Experiment:
-    """The experiment of a folder; an answer in its place has no records, and a line says so."""
+    """The experiment of a folder, or of an answer in its place."""
     from ..measurement import load_experiment
 
-    if folder.suffix == ".json" and folder.is_file():
-        raise ExperimentError(
-            f"{folder}: holds no records: give the folder of its experiment, and --answer {folder}"
-        )
-    return load_experiment(folder)
+    return load_experiment(folder_of(folder))
+
+
+def folder_of(path: Path) -> Path:
+    """The folder of an experiment, or of the experiment that an answer is of."""
+    answer = _answer_in(path)
+    if answer is None:
+        return path
+    from ..diagnose.answers import load_answer
+
+    return load_answer(answer).folder
 
 
 def experiment_and_answer(options: argparse.Namespace) -> Experiment:

@@ -12,7 +12,11 @@ from ._terminal import replace_line
 
 def add_folder(parser: argparse.ArgumentParser) -> None:
     """The experiment's folder."""
-    parser.add_argument("folder", type=Path, help="folder with experiment.toml and its records")
+    parser.add_argument(
+        "folder",
+        type=Path,
+        help="folder with experiment.toml and its records, or an answer of it (.json)",
+    )
 
 
 def add_effect_files(parser: argparse.ArgumentParser) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError
 from ..plain_data import write_json
-from ._diagnosis import experiment_of, stated_model
+from ._diagnosis import experiment_of, folder_of, stated_model
 from ._options import add_experiment, check_output, say_written
 from ._paths import shell_word
 
@@ -43,10 +43,11 @@ def run(options: argparse.Namespace) -> int:
     from ..check.soundness_check import check_experiment
     from ..measurement.experiment import describe_content
 
+    folder = folder_of(options.folder)
     try:
-        experiment = experiment_of(options.folder)
+        experiment = experiment_of(folder)
     except ExperimentError as problem:
-        findings = _unreadable(options.folder, problem)
+        findings = _unreadable(folder, problem)
         if not findings:
             raise
     else:

@@ -113,9 +113,14 @@ def _draw(diagram: Diagram, path: Path) -> None:
 
 
 def _page(transfers: Transfers, speed: float) -> str:
+    from ..diagrams.units import first_axis
+    from ..quantity import unit_of
+
     lines = [repr(transfers.diagram), "", transfers.text()]
     if transfers.has_values:
-        lines += ["", f"With values, one degree of freedom, SI, frozen at speed {abs(speed):g}:"]
+        unit = unit_of("velocity", first_axis(transfers.diagram))
+        at = f"frozen at a speed of {abs(speed):g} {unit}"
+        lines += ["", f"With values, one degree of freedom, SI, {at}:"]
         lines += _numbers(transfers, speed)
     return "\n".join(lines)
 

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..plain_data import write_beside
-from ._diagnosis import diagnose_experiment, experiment_of, print_diagnosis, search_missing
+from ._diagnosis import (
+    diagnose_experiment,
+    experiment_of,
+    folder_of,
+    print_diagnosis,
+    search_missing,
+)
 from ._folders import diagnose_all
 from ._options import add_effect_files, add_search, check_output, count_argument, say, say_written
 from ._paths import shell_word
@@ -101,7 +107,7 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     from ..diagnose.answer import write_answer, write_predictions
 
-    (folder,) = options.folder
+    folder = folder_of(*options.folder)
     experiment = experiment_of(folder)
     print(experiment)
     print()

@@ -255,6 +255,8 @@ def _describe_device(
 
 def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
     from ..passivity import z_width
+    from ..quantity import unit_of
+    from ..rounding import round_down
 
     width = z_width(
         damping=device.damping.low,
@@ -264,8 +266,11 @@ def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> 
     )
     k, b = width.stiffest
     checked = "exact test agrees at each limit" if width.verified else "evidence"
+    stiff, damped = (unit_of(q, device.body.axis) for q in ("stiffness", "damping"))
+    k, b = (round_down(x, digits=4) for x in (k, b))
     return (
-        f"Z-width at {period:g} s: stiffest passive wall {k:.4g} with damping {b:.4g} (SI), "
+        f"Z-width at {period:g} s: stiffest passive wall {k:.4g} {stiff} with "
+        f"damping {b:.4g} {damped}, "
         f"{width.width(1.0):.1f} dB above the free device at 1 Hz ({checked})"
     )
 

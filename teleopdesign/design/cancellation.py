@@ -17,9 +17,9 @@ from ..quantity import unit_of
 from ..realise.acting_bound import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
+from ..rounding import round_down, round_up
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
-from .rounding import round_down, round_up
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
 STIFFNESS_FRACTION = 0.9
@@ -58,7 +58,7 @@ def cancelled_level(
     known = body.parameters.get("coulomb.level")
     why += ")" if known is None else f"; the identified Coulomb level is {known.value:.4g} {unit})"
     if gain != 1.0:
-        why += f", over the {gain:.4g} that acts of a commanded force of 1"
+        why += f", over the {gain:.4g} {unit} that acts of a commanded {unit}"
     return Reason("level", value, unit, why + ", so that f_D <= f_C (P37 to P39)")
 
 
@@ -94,15 +94,17 @@ def dahl_cancellation(
             return None
         passive = softest * math.sqrt(acting / most)
         why = f"{STIFFNESS_FRACTION:g} of the stiffest with sigma_D^2/f_D <= sigma_p^2/f_C over "
-        why += f"the whole interval, sigma_p >= {softest:.4g}, f_C <= {most:.4g} (P43, P44)"
+        stiff, force, damped = (unit_of(q, axis) for q in ("stiffness", "force", "damping"))
+        why += f"the whole interval, sigma_p >= {softest:.4g} {stiff}, f_C <= {most:.4g} {force} "
+        why += "(P43, P44)"
         limits = {why: STIFFNESS_FRACTION * passive}
         from ..passivity.theorems.delayed_compensation import SINC_LEAST
 
         if late > 0:
             needed = damping / (float(SINC_LEAST) * late)
             limits[
-                f"damping of at least 0.2172 sigma_D tau in small motion, {damping:.4g} at "
-                f"{1e3 * late:.3g} ms (P49)"
+                f"damping of at least 0.2172 sigma_D tau in small motion, {damping:.4g} {damped} "
+                f"at {1e3 * late:.3g} ms (P49)"
             ] = needed
     why = min(limits, key=limits.__getitem__)
     stiffness = round_down(limits[why] / gain)

@@ -20,9 +20,9 @@ from ..controllers import scheduled_force_feedback
 from ..quantity import unit_of
 from ..realise.lti import S
 from ..realise.reach import Reach
+from ..rounding import round_down, round_up
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
-from .rounding import round_down, round_up
 
 #: largest gain proposed: beyond it what is left of friction is a few percent already
 MOST_GAIN = 20.0

@@ -59,7 +59,7 @@ def _friction(design: Design) -> list[str]:
         stiff = unit_of("stiffness", design.body.axis)
         lines.append(
             f"  presliding stiffness {f.presliding.estimate:.4g} {stiff}, at least "
-            f"{f.presliding.low:.4g}"
+            f"{f.presliding.low:.4g} {stiff}"
         )
     return lines
 

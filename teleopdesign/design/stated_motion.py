@@ -11,9 +11,9 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..quantity import unit_of
 from ..realise.reach import Reach
+from ..rounding import round_down
 from ..simulate import Trajectory, sine
 from .assumptions import Assumptions
-from .rounding import round_down
 
 #: Hz, slowest motion chosen: slower ones cost time and say nothing else
 SLOWEST = 0.2
@@ -72,7 +72,8 @@ def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMo
     if 2 * amplitude > reach.travel:
         raise ModelError(
             f"design: amplitude: {amplitude:g} {unit_of('position', axis)} leaves the recorded "
-            f"travel of {reach.travel:.3g}, expected at most {reach.travel / 2:.3g}"
+            f"travel of {reach.travel:.3g} {unit_of('position', axis)}, expected at most "
+            f"{reach.travel / 2:.3g} {unit_of('position', axis)}"
         )
     if motion.peak_speed > reach.peak_speed:
         unit = unit_of("velocity", axis)

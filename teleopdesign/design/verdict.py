@@ -25,9 +25,9 @@ from ..passivity.theorems.lugre import add_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.reach import Reach
+from ..rounding import round_down, round_near, round_up
 from .chosen import ProposedController
 from .linear import without_friction
-from .rounding import round_down, round_up
 
 
 def compliant_claim(
@@ -52,12 +52,16 @@ def compliant_claim(
     return any_environment(
         motor_level=_decimal(round_down(friction.lowest.low, digits=4)),
         link_level=0,
-        transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
-        transmission_damping=_decimal(values["transmission_compliance.damping"]),
+        transmission_stiffness=_decimal(
+            round_near(values["transmission_compliance.stiffness"], digits=6)
+        ),
+        transmission_damping=_decimal(
+            round_near(values["transmission_compliance.damping"], digits=6)
+        ),
         compensator_level=_decimal(round_up(level * gain, digits=6)),
         compensator_stiffness=_decimal(round_up(stiffness * gain, digits=6)),
-        motor_inertia=_decimal(motor),
-        link_inertia=_decimal(tip),
+        motor_inertia=_decimal(round_near(motor, digits=6)),
+        link_inertia=_decimal(round_near(tip, digits=6)),
     )
 
 
@@ -111,20 +115,21 @@ def _friction_claims(
     )
     damped = body.parameters.get("presliding.bristle_damping", Value(0.0, fixed=True))
     bristle = value_interval(damped, errors=errors)
+    viscous = damping_interval(body, reach, errors=errors).least
     claims = [
         add_bristle_damping(
             pair,
             coulomb_level=_decimal(least),
             highest_level=most,
             stiffness=presliding,
-            bristle_damping=_decimal(bristle.high),
-            viscous_damping=_decimal(damping_interval(body, reach, errors=errors).least.low),
+            bristle_damping=_decimal(round_up(bristle.high, digits=4)),
+            viscous_damping=_decimal(round_down(viscous.low, digits=4)),
         )
     ]
     if late > 0:
         claims.append(
             delayed_small_motion(
-                damping=_decimal(small_motion_damping(body, errors=errors)),
+                damping=_decimal(round_down(small_motion_damping(body, errors=errors), digits=4)),
                 compensator_stiffness=_decimal(stiffness),
                 delay=_decimal(late),
                 presliding_stiffness=presliding,

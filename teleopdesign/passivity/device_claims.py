@@ -11,9 +11,10 @@ import numpy as np
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..errors import ModelError
+from ..rounding import round_down, round_up
 from ..simulate import Sampling
 from .claims.claim import Claim, Refutation, Unknown
-from .identified import IdentifiedDevice
+from .identified import DIGITS, IdentifiedDevice
 from .search.by_simulation import SimulatedMotion, search_counterexample
 from .theorems import Question, TopicClaim, Wall, settle
 
@@ -47,7 +48,10 @@ class Compensator:
 
 @dataclass(frozen=True)
 class Margin:
-    """A margin for the designer, with its meaning in words; value: SI, in `unit`."""
+    """A limit for the designer, with its meaning in words.
+
+    value: in `unit` (SI), rounded to the side on which it is kept: the printed number is safe
+    """
 
     text: str
     value: float
@@ -144,25 +148,34 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     limits = [
         Margin(text + alone, level, force)
         for text, level in (
-            ("largest f_D that is passive at the estimates", device.lowest.estimate),
-            ("largest f_D that is passive for every level in the interval", device.lowest.low),
+            ("largest f_D that is passive at the estimates", _round_limit(device.lowest.estimate)),
+            (
+                "largest f_D that is passive for every level in the interval",
+                _round_limit(device.lowest.low),
+            ),
         )
     ]
     presliding = device.presliding
     if presliding is None:
         text = "largest f_D that drives no motion, viscous damping counted"
-        return [*limits, Margin(text + alone, device.least_resistance.low, force)]
+        return [*limits, Margin(text + alone, _round_limit(device.least_resistance.low), force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
     if device.damping.low * device.lowest.low < recoil:
         return []  # no limit is known where the bristle's damping may release energy
     if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
         return []  # no limit is known for such a law on a contact that deflects
     level = min(compensator.level if compensator else math.inf, device.lowest.low)
-    softest = presliding.low * math.sqrt(level / device.highest.high)
+    softest = _round_limit(presliding.low * math.sqrt(level / device.highest.high))
     limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
         least = device.highest.high * (compensator.second / presliding.low) ** 2
+        least = round_up(least, digits=DIGITS)
         limits.append(
             Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )
     return limits
+
+
+def _round_limit(limit: float) -> float:
+    """A limit from above with the digits of claims, on its safe side."""
+    return round_down(limit, digits=DIGITS)

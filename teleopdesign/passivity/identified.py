@@ -29,6 +29,9 @@ from .claims.claim import Claim, Unknown
 from .declarations import unchecked_energy
 
 _PRESLIDING = EFFECTS["presliding"]
+#: digits of a measured number in a claim: standard errors are rarely known better than to two, of
+#: estimates with three or four; what is rounded outward costs a thousandth of a level at most
+DIGITS = 4
 #: roles of the friction level: their laws are in the interval of the level, whatever they do
 _LEVEL = ("friction_level", "friction_factor", "friction_speed")
 
@@ -103,8 +106,9 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
         raise ModelError("passivity: the device has no friction to compensate")
     if friction.lowest.low <= 0:
         raise ModelError(
-            f"passivity: the friction level may be as low as {friction.lowest.low:.3g} within its "
-            f"95 % interval (at {friction.where_lowest}): nothing can be compensated for certain"
+            f"passivity: the friction level may be as low as {friction.lowest.low:.3g} "
+            f"{unit_of('force', body.axis)} within its 95 % interval (at {friction.where_lowest}): "
+            "nothing can be compensated for certain"
         )
     if friction.presliding is not None and math.isinf(friction.highest.high):
         raise ModelError(
@@ -113,13 +117,17 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
         )
     damping = damping_interval(body, reach, errors=NINETY_FIVE)
     bristle = body.parameters.get("presliding.bristle_damping")
+    bristles = Interval(0.0, 0.0, 0.0)
+    if bristle is not None:
+        bristles = value_interval(bristle, errors=NINETY_FIVE)
+    resistance = _resistance(body, damping.least, reach)
     return IdentifiedDevice(
         body,
         reach,
-        friction,
-        _resistance(body, damping.least, reach),
-        damping.least,
-        Interval(0.0, 0.0, 0.0) if bristle is None else value_interval(bristle, errors=NINETY_FIVE),
+        _round_friction(friction),
+        resistance.round_outward(digits=DIGITS),
+        damping.least.round_outward(digits=DIGITS),
+        bristles.round_outward(digits=DIGITS),
         effects_left_open(body, reach, errors=NINETY_FIVE),
         tuple(
             n
@@ -128,6 +136,17 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
             and math.isnan(v.stderr)
             and not (v.value == 0 and body.parameter(n).optional)  # one that is not there
         ),
+    )
+
+
+def _round_friction(friction: FrictionInterval) -> FrictionInterval:
+    """Levels and stiffness with as many digits as claims are about."""
+    presliding = friction.presliding
+    return replace(
+        friction,
+        lowest=friction.lowest.round_outward(digits=DIGITS),
+        highest=friction.highest.round_outward(digits=DIGITS),
+        presliding=None if presliding is None else presliding.round_outward(digits=DIGITS),
     )
 
 

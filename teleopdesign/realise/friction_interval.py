@@ -17,6 +17,8 @@ import sympy as sp
 from ..blocks import Body, Value
 from ..effects import SIGNALS, Effect, sort_by_action
 from ..errors import ModelError
+from ..quantity import unit_after_number, unit_of
+from ..rounding import round_down, round_near, round_up
 from .extremes import Least, Ranges, least_value
 from .reach import ANY_MOTION, Reach, largest_speed, signal_ranges, words_of
 from .simulated import without_absent
@@ -24,6 +26,17 @@ from .simulated import without_absent
 #: the speed of a motion in either direction; sliding, so that its sign is known
 SPEED = sp.Symbol("speed", positive=True)
 DIRECTION = SIGNALS["direction"]
+
+#: signal -> its quantity, as far as levels depend on it; a direction has none
+_QUANTITIES = {
+    "time": "time",
+    "speed": "velocity",
+    "temperature": "temperature",
+    **dict.fromkeys(("position", "other_position", "penetration"), "position"),
+    **dict.fromkeys(("velocity", "other_velocity"), "velocity"),
+    **dict.fromkeys(("acceleration", "other_acceleration"), "acceleration"),
+    **dict.fromkeys(("command", "acting_force", "interaction_force", "level"), "force"),
+}
 
 
 @dataclass(frozen=True)
@@ -33,6 +46,19 @@ class Interval:
     estimate: float
     low: float
     high: float
+
+    def round_outward(self, *, digits: int) -> Interval:
+        """With so many digits, ends outward, so that the interval loses nothing; exact ones stay.
+
+        What is claimed of an interval is then about the numbers that are printed.
+        """
+        if self.low == self.high:
+            return self
+        return Interval(
+            round_near(self.estimate, digits=digits),
+            round_down(self.low, digits=digits),
+            round_up(self.high, digits=digits),
+        )
 
     def __str__(self) -> str:
         if self.low == self.high:
@@ -181,7 +207,7 @@ def _signals(
         if not stays_within(effect, state, every):
             raise ModelError(
                 f"friction level: {effect.name}: its speed can leave those of the motion, 0 to "
-                f"{speeds[1]:.4g}: no guaranteed bound"
+                f"{speeds[1]:.4g} {unit_of('velocity', body.axis)}: no guaranteed bound"
             )
     return known | dict.fromkeys(lagging, speeds)
 
@@ -225,10 +251,21 @@ def _list_lagging_speeds(body: Body) -> dict[sp.Symbol, Effect]:
 
 
 def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
-    """The signals of a point, in words; parameters left out."""
+    """The signals of a point, in words with units; parameters left out."""
     said = {SPEED: "speed"} | dict.fromkeys(_list_lagging_speeds(body), "speed")
     said |= {s: n for n, s in SIGNALS.items()}
-    return ", ".join(f"{said[s]} {x:.3g}" for s, x in point.items() if s in said) or ANY_MOTION
+    return (
+        ", ".join(
+            f"{said[s]} {x:.3g}{_unit_of(said[s], body)}" for s, x in point.items() if s in said
+        )
+        or ANY_MOTION
+    )
+
+
+def _unit_of(signal: str, body: Body) -> str:
+    """The unit of a signal behind its number; "" where it has none, as a direction."""
+    quantity = _QUANTITIES.get(signal)
+    return "" if quantity is None else unit_after_number(unit_of(quantity, body.axis))
 
 
 def _explain_unbounded(level: sp.Expr, reach: Reach | None) -> str:

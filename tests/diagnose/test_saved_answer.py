@@ -321,14 +321,23 @@ def test_every_command_refuses_the_answer_to_another_experiment(command, path, c
     assert error.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", ["check", "diagnose"])
-def test_an_answer_in_the_place_of_a_folder_is_told_where_it_goes(command, path, capsys):
-    assert main([command, str(path)]) == 2
-    error = capsys.readouterr().err
-    assert error == (
-        f"teleopdesign: {path}: holds no records: give the folder of its experiment, and "
-        f"--answer {path}\n"
-    )
+def test_an_answer_in_the_place_of_a_folder_leads_to_its_experiment(path, stribeck_case, capsys):
+    assert main(["check", str(stribeck_case)]) == 0
+    said = capsys.readouterr().out
+    assert main(["check", str(path)]) == 0
+    assert capsys.readouterr().out == said
+    assert main(["diagnose", str(path), "--quick", "--only", "stribeck"]) == 0
+    assert "verdict: effects_missing: stribeck at device" in capsys.readouterr().out
+
+
+def test_an_answer_whose_experiment_is_gone_says_so_in_every_command(path, tmp_path, capsys):
+    content = json.loads(path.read_text())
+    content["experiment"]["folder"] = "../elsewhere"
+    lost = tmp_path / "lost.json"
+    lost.write_text(json.dumps(content))
+    for command in ("check", "diagnose", "describe"):
+        assert main([command, str(lost)]) == 2
+        assert "its experiment was in" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -112,3 +112,24 @@ def test_each_guess_says_what_to_type_where_it_is_wrong():
     for option in ("--time COLUMN", "--position COLUMN", "--axis revolute",
                    "--unit 'column 2=UNIT'", '--torque-constant "VALUE N/A"'):  # fmt: skip
         assert f"    otherwise: {option}" in text
+
+
+@pytest.mark.parametrize(
+    ("torque", "current"),
+    [
+        ("target_moment_3", "actual_current_3"),
+        ("tau_cmd", "iq"),
+        ("Sollmoment", "Motorstrom"),
+        ("torque [N*m]", "drive [A]"),
+    ],
+)
+def test_a_motors_constant_is_that_of_a_current(torque, current):
+    """Beside a torque the current is taken; a torque alone is not multiplied by it."""
+    columns = {"time [s]": T, "q [rad]": Q, torque: U}
+    survey = look({**columns, current: U / 9}, torque_constant=(9.0, "N*m/A"))
+    force = survey.channels["actuator_force"]
+    assert (force["column"], force["unit"]) == (current, "A")
+    survey = look(columns, torque_constant=(9.0, "N*m/A"))
+    force = survey.channels["actuator_force"]
+    assert (force["unit"], force.get("torque_constant")) == ("N*m", None)
+    assert "the motor's constant is not used" in survey.guesses["channels.actuator_force.column"]

@@ -180,7 +180,7 @@ def test_a_level_that_falls_without_end_is_refused_with_what_to_give():
         friction_interval(with_own(falling), errors=2.0)
     found = friction_interval(with_own(falling), REACH, errors=2.0)
     assert found.lowest.low == pytest.approx(0.5 - 0.1 * 0.05, rel=1e-4)
-    assert found.where_lowest == "position 0.05"
+    assert found.where_lowest == "position 0.05 m"
 
 
 def test_a_law_without_known_bounds_is_refused_by_name():

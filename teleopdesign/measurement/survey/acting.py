@@ -24,6 +24,11 @@ CURRENT = (
     "current", "curr", "cur", "strom", "courant", "corriente", "corrente", "i", "iq", "amps",
     "電流", "电流", "전류", "ток",
 )  # fmt: skip
+#: words of a torque or force, which is no current
+TORQUE = (
+    "torque", "moment", "drehmoment", "couple", "coppia", "force", "kraft", "fuerza", "forza",
+    "tau", "トルク", "力矩", "扭矩", "토크", "момент", "сила",
+)  # fmt: skip
 
 
 def current_that_acted(
@@ -57,6 +62,15 @@ def _is_current(column: SurveyedColumn) -> bool:
 
 def names_current(name: str) -> bool:
     """Whether a name is that of a motor's current, whatever its unit."""
+    return _has_word_of(name, CURRENT)
+
+
+def names_torque(name: str) -> bool:
+    """Whether a name is that of a torque or force, and of no current."""
+    return _has_word_of(name, TORQUE) and not names_current(name)
+
+
+def _has_word_of(name: str, listed: tuple[str, ...]) -> bool:
     return any(
         word == known
         or not known.isascii()
@@ -64,7 +78,7 @@ def names_current(name: str) -> bool:
         or len(known) > 4
         and word.endswith(known)  # the last part of a compound: "Motorstrom"
         for word in words_of(name)
-        for known in CURRENT
+        for known in listed
     )
 
 

@@ -9,7 +9,7 @@ from ...quantity import measures, unit_of
 from ..column_names import unit_in_name
 from ..conversion import conversion_of
 from ..toml_table import Table
-from .acting import names_current
+from .acting import names_current, names_torque
 from .content import Choices, Survey
 from .remarks import torque_constant_in
 
@@ -26,7 +26,8 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
     entry: dict[str, Any] = {"column": name}
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
-        unit = choices.torque_constant[1].rpartition("/")[2]
+        if not names_torque(name):
+            unit = choices.torque_constant[1].rpartition("/")[2]
     if unit is None and names_current(name):
         unit = "A"
         survey.guesses[f"channels.{key}.unit"] = f"A: {name!r} is a current by its name"
@@ -54,6 +55,11 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         if PER_CENT.search(name):
             why = f"{name!r} counts parts of a rated force: `scale` is one part in {unit}"
         survey.guesses[f"channels.{key}.unit"] = f"{unit}: {why}"
+    if choices.torque_constant is not None and key == "actuator_force":
+        survey.guesses["channels.actuator_force.column"] = (
+            f"{name!r} is no current in {unit}: the motor's constant is not used; --force COLUMN "
+            "takes a current"
+        )
     return {**entry, "unit": unit}
 
 

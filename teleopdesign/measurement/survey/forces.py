@@ -10,7 +10,7 @@ from ...quantity import is_unit, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force
-from .acting import current_that_acted
+from .acting import current_that_acted, names_current
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
@@ -33,6 +33,8 @@ from .position import unwrap_column, wrap_of
 
 #: part that the motion explains by chance; a column with less needs a force's name or unit
 CHANCE = 0.1
+#: a motor's constant that is stated is that of a current: more than any name adds to a score
+OF_CURRENT = 2.0
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
 
@@ -65,6 +67,7 @@ def describe_forces(
         n: _score_force(c, physics[n])
         + BESIDE * stand_together(n, position)
         - ANOTHER_AXIS * of_another_axis(n, position)
+        + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
         for n, c in free.items()
     }
     force, measured = _find_driving_force(survey, free, physics, scores, choices, file)
@@ -139,6 +142,13 @@ def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     # the command is wanted, not what a drive says that it reached
     score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
+
+
+def _is_for_constant(column: SurveyedColumn) -> bool:
+    """Whether unit or name say that a column is what a motor's constant makes a force of."""
+    if column.unit is not None:
+        return column.unit in ("A", "mA", "V")
+    return names_current(column.name)
 
 
 def _find_hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:

@@ -59,7 +59,7 @@ class Proof(ByValue):
         number = len(self.certificates)
         lines = [f"by {self.method}; {number} certificate{'s' * (number > 1)}"]
         if not math.isnan(self.margin):
-            lines.append(f"margin {self.margin:.6g} {self.unit}".rstrip())
+            lines.append(f"margin {self.margin:.4g} {self.unit}".rstrip())
         if self.equality:
             lines.append(f"with equality {self.equality}")
         return "; ".join(lines)
@@ -83,7 +83,7 @@ class Refutation(ByValue):
     holds = False
 
     def __str__(self) -> str:
-        return f"{self.method}: gives out {self.record.energy:.6g} J"
+        return f"{self.method}: gives out {self.record.energy:.4g} J"
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +103,7 @@ class Evidence(ByValue):
 
     def __str__(self) -> str:
         side = "for" if self.holds else "against"
-        margin = "" if math.isnan(self.margin) else f"; margin {self.margin:.6g} {self.unit}"
+        margin = "" if math.isnan(self.margin) else f"; margin {self.margin:.4g} {self.unit}"
         return f"{side} it: {self.searched}{margin}".rstrip()
 
 
@@ -156,8 +156,8 @@ class Claim(ByValue):
         verdict = self.verdict
         if isinstance(verdict, Refutation) and not (verdict.replayed > 0 < verdict.record.energy):
             why = (
-                f"{verdict.method}: a motion that should give out {verdict.record.energy:.6g} J "
-                f"gives out {verdict.replayed:.6g} J where it is replayed: it shows nothing"
+                f"{verdict.method}: a motion that should give out {verdict.record.energy:.4g} J "
+                f"gives out {verdict.replayed:.4g} J where it is replayed: it shows nothing"
             )
             object.__setattr__(self, "verdict", Unknown(why))
 

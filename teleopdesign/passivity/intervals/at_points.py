@@ -36,7 +36,7 @@ def judge_at_points(
     worst = search_worst(margin, box, points=points, seed=seed, downhill=False)
     name = getattr(claim, "__name__", "the claim")
     failed = not worst.margin >= 0
-    how = f"{name} is {worst.margin:.6g} there" if failed else f"{name}: nothing is proved"
+    how = f"{name} is {worst.margin:.4g} there" if failed else f"{name}: nothing is proved"
     status: Status = "refuted" if failed else "unknown" if unknown else "evidence"
     how = f"unknown at {len(unknown)} points: {unknown[0]}" if status == "unknown" else how
     return parts_of(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)

@@ -73,9 +73,9 @@ class IntervalClaim(ByValue):
         lines = [f"{self.known}: {self.statement}", f"    {self.how}"]
         unit = unit_after_number(self.unit)
         if not np.isnan(self.margin):
-            lines.append(f"    worst margin {self.margin:.6g}{unit} at {where or 'its values'}")
+            lines.append(f"    worst margin {self.margin:.4g}{unit} at {where or 'its values'}")
         if not np.isnan(self.proved_margin):
-            lines.append(f"    proved to be at least {self.proved_margin:.6g}{unit}")
+            lines.append(f"    proved to be at least {self.proved_margin:.4g}{unit}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
@@ -84,7 +84,7 @@ class IntervalClaim(ByValue):
             for n, (low, high) in self.intervals.items()
         ]
         head = ("value", "from", "to", "at the worst point", "unit")
-        note = f"{self.statement}; margin {self.margin:.6g} {self.unit}. {self.how}"
+        note = f"{self.statement}; margin {self.margin:.4g} {self.unit}. {self.how}"
         return html_table(self.known, head, rows, note=note)
 
 

@@ -60,7 +60,7 @@ def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int)
         root = rightmost_root(terms.at(worst.point))
         radius = holds_root(terms.exactly_at(worst.point), root) if root.real > 0 else None
         if radius is not None and root.real > radius:
-            how = f"a pole at {root:.6g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
+            how = f"a pole at {root:.4g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
             return parts_of(_STATEMENT, "refuted", worst, box, "1/s", how)
         how = "at the worst point found a pole is beyond the axis, or too near to it, and not shown"
         return parts_of(_STATEMENT, "unknown", worst, box, "1/s", how)

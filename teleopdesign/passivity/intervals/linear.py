@@ -52,7 +52,7 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
     worst = search_worst(pole_margin(polynomial, ask.symbols), box, points=points, seed=seed)
     if worst.margin <= 0 and not is_hurwitz(_polynomial_at(polynomial, ask, worst.point)):
         how = (
-            f"a pole with real part {-worst.margin:.6g} 1/s; not Hurwitz by Routh's scheme, exactly"
+            f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
         return parts_of(statement, "refuted", worst, box, "1/s", how)
     if not ask.is_hurwitz(polynomial):

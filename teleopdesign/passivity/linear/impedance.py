@@ -66,8 +66,13 @@ def _impedance_of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Imp
 
 
 def decimal(number: sp.Expr) -> str:
-    """A number as text for people: up to twelve digits."""
-    return f"{float(number):.12g}"
+    """An exact number as text for people: a short fraction as it is, else up to twelve digits.
+
+    A claim is about this number exactly: what was measured is rounded before (`identified.DIGITS`).
+    """
+    text = f"{float(number):.12g}"
+    is_short = isinstance(number, sp.Rational) and len(str(number)) <= _LONGEST
+    return str(number) if is_short and sp.Rational(text) != number else text
 
 
 def readable(expression: sp.Expr) -> str:

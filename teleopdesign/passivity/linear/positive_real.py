@@ -69,7 +69,7 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
             return Claim(statement, Unknown(why))
         w, a = float(wave.frequency), float(wave.rate)
         method = (
-            f"Re Z = {wave.value[0, 0].real:.6g} N s/m at s = {a:.6g} + {w:.6g} j, a growing wave"
+            f"Re Z = {wave.value[0, 0].real:.4g} N s/m at s = {a:.4g} + {w:.4g} j, a growing wave"
         )
         return Claim(statement, Refutation(method, wave))
     if grows_unseen(system):
@@ -112,7 +112,7 @@ def _equality(z: Impedance, margin: Excess) -> str:
     if real.is_zero:
         return "at every frequency: it stores, and loses nothing"
     if real.eval(0) == 0 or has_positive_root(real.sqf_part()):
-        return f"at {margin.frequency:.6g} rad/s"
+        return f"at {margin.frequency:.4g} rad/s"
     return "in the limit of high frequency" if real.degree() < size.degree() else ""
 
 

@@ -14,7 +14,9 @@ from typing import Literal
 import numpy as np
 
 from ...diagrams import Diagram
+from ...diagrams.units import first_axis
 from ...errors import ModelError
+from ...quantity import unit_of
 from ...simulate import Sampling, simulate
 from ..claims.claim import Claim, Evidence, Refutation, Unknown
 from .stroke_motion import Strokes, families
@@ -191,9 +193,10 @@ def search_counterexample(
     """
     if stroke <= 0 or speed <= 0:
         raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")
+    length, rate = (unit_of(q, first_axis(diagram)) for q in ("position", "velocity"))
     statement = (
         f"the port {port[0]}, {port[1]} of the {diagram.name} gives out no energy over any motion "
-        f"that returns, within {stroke:g} and {speed:g} (SI)"
+        f"that returns, within {stroke:.3g} {length} and {speed:.3g} {rate}"
     )
     on_the_way = [(0.0, 0.0)]
 

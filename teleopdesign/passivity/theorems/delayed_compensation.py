@@ -83,7 +83,7 @@ def delayed_small_motion(
     if wave is None:
         return Claim(statement, Unknown("the condition fails, but no wave was found"))
     f = float(wave.frequency) / (2 * np.pi)
-    return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+    return Claim(statement, Refutation(f"a growing wave at {f:.4g} Hz", wave))
 
 
 def _wave(z: sp.ImmutableMatrix, tau: float) -> GrowingWave | None:

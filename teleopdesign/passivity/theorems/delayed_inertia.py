@@ -115,7 +115,7 @@ def cancelled_inertia(
         w, most = _maximum(float(tau), float(t))
         margin = float(b) - float(c) * most
         if margin >= 0:
-            searched = f"least Re Z over frequency, at {w / (2 * np.pi):.6g} Hz"
+            searched = f"least Re Z over frequency, at {w / (2 * np.pi):.4g} Hz"
             return Claim(statement, Evidence(True, searched, margin, "N s/m"))
         where = [w]
     else:  # the phase of jw at the peaks; far enough up for a margin of 1e-3
@@ -124,7 +124,7 @@ def cancelled_inertia(
     if wave is None:
         return Claim(statement, Unknown("the condition fails, but no wave was found"))
     f = float(wave.frequency) / (2 * np.pi)
-    return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+    return Claim(statement, Refutation(f"a growing wave at {f:.4g} Hz", wave))
 
 
 def _check(damping: Any, cancelled: Any, delay: Any, time_constant: Any, order: int) -> None:

@@ -19,8 +19,10 @@ import sympy as sp
 
 from ...effects import EFFECTS, SIGNALS
 from ...errors import ModelError
+from ...rounding import round_near
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ._dahl_certificates import Values, abs_v, dahl_rate, v
@@ -258,12 +260,18 @@ def _applies(question: Question) -> bool:
 def _claims(question: Question) -> list[TopicClaim]:
     device = question.device
     assert device.presliding is not None
-    values = {n: v.value for n, v in device.body.parameters.items()}
+    values = {
+        # estimates with the digits of all claims; what has no error is as it was stated
+        n: round_near(v.value, digits=DIGITS) if v.stderr > 0 else v.value
+        for n, v in device.body.parameters.items()
+    }
     low, high = device.lowest.estimate, device.highest.estimate
     plain = sum((EFFECTS[n].expression() for n in ("coulomb", "stribeck")), sp.S(0))
     if device.body.level() == plain:
         low = values["coulomb.level"]
-        high = low + values["stribeck.extra_static_level"]
+        high = float(
+            f"{low + values['stribeck.extra_static_level']:.12g}"
+        )  # of decimals, a decimal
     claim = lugre_passivity(
         coulomb_level=low,
         static_level=high,

@@ -81,7 +81,7 @@ def sampled_passivity(
         return Claim(statement, Unknown(NO_WAVE))
     motion = sampled_wave(law, b, late, k, wave.rate, wave.frequency)
     z = motion.factor
-    method = f"travel that grows by {abs(z):.6g} a sample and turns by {np.angle(z):.6g} rad"
+    method = f"travel that grows by {abs(z):.6g} a sample and turns by {np.angle(z):.4g} rad"
     return Claim(statement, Refutation(method, motion))
 
 

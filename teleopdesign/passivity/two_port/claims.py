@@ -73,7 +73,7 @@ def passive(system: TwoPort) -> Claim:
         wave = wave or select_fastest(find_wave_at(system.z, f) for f in frequencies)
         if wave is not None:
             f = float(wave.frequency) / (2 * np.pi)
-            return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+            return Claim(statement, Refutation(f"a growing wave at {f:.4g} Hz", wave))
         why = "; ".join(hidden) or "no certificate is accepted"
         return Claim(statement, Unknown(f"{why}; no wave that takes energy out was found"))
     return Claim(statement, Evidence(True, _describe_sweep(), margin, "N s/m"))
@@ -104,9 +104,9 @@ def _judge_stability(system: TwoPort, statement: str) -> Verdict:
     if mode is None:
         return Unknown(f"{failed[0]}; no termination that makes it grow was found")
     first, second = mode.terminations
-    method = f"{failed[0]}; port 1 {first}, port 2 {second}, it grows at {float(mode.rate):.6g} 1/s"
+    method = f"{failed[0]}; port 1 {first}, port 2 {second}, it grows at {float(mode.rate):.4g} 1/s"
     if mode.frequency:
-        method += f" and swings at {float(mode.frequency):.6g} rad/s"
+        method += f" and swings at {float(mode.frequency):.4g} rad/s"
     return Refutation(method, mode)
 
 

@@ -195,7 +195,7 @@ def _check_on_axis(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Itera
         s = 1j * x**0.5
         k = [_residue(terms, s) for terms in z]
         if not _is_allowed(k, criterion, _ROUNDING):
-            yield f"the residues at {x**0.5:.6g} rad/s do not meet the criterion"
+            yield f"the residues at {x**0.5:.4g} rad/s do not meet the criterion"
 
 
 def _positive_roots(p: Polynomial) -> list[float]:

@@ -50,7 +50,7 @@ def passive_together(z: sp.Matrix) -> Claim:
     wave = _wave_out_of(matrix)
     if wave is not None:
         f = float(wave.frequency) / (2 * np.pi)
-        return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+        return Claim(statement, Refutation(f"a growing wave at {f:.4g} Hz", wave))
     return Claim(statement, Unknown(f"{why}; no wave that takes energy out was found"))
 
 

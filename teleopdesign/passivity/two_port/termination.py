@@ -54,9 +54,9 @@ class Termination:
         if self.clamped:
             return "clamped"
         parts = (
-            (self.damping, "a damper of {:.6g} N s/m"),
-            (self.inertia, "a mass of {:.6g} kg"),
-            (self.stiffness, "a spring of {:.6g} N/m"),
+            (self.damping, "a damper of {:.4g} N s/m"),
+            (self.inertia, "a mass of {:.4g} kg"),
+            (self.stiffness, "a spring of {:.4g} N/m"),
         )
         shown = [text.format(float(size)) for size, text in parts if size]
         return "held by " + " and ".join(shown) if shown else "free"

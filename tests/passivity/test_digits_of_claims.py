@@ -1,0 +1,131 @@
+"""Claims about a measured device are about the numbers that are printed, and these are few."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from teleopdesign import EFFECTS, Body
+from teleopdesign.cli import main
+from teleopdesign.passivity.identified import DIGITS, identify_device
+from teleopdesign.realise.friction_interval import Interval
+from teleopdesign.rounding import round_down, round_near, round_up
+
+#: a number as texts print it
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+#: parameters as an estimator leaves them: (value, standard error, unit on a revolute axis)
+AS_ESTIMATED = {
+    "inertia": (0.0120278431, 3.21e-5, "kg*m^2"),
+    "coulomb.level": (0.200348834924, 5.0283e-4, "N*m"),
+    "viscous.damping": (0.0501132199, 2.4627e-4, "N*m*s/rad"),
+}
+PRESLIDING = {"presliding.stiffness": (1987.654321, 12.3456, "N*m/rad")}
+STRIBECK = {
+    "stribeck.extra_static_level": (0.0482773312, 0.0011234, "N*m"),
+    "stribeck.stribeck_velocity": (0.2487123123, 0.0056321, "rad/s"),
+}
+#: laws whose numbers a user types
+LAWS = (
+    ["--dahl", "0.15", "1200"],
+    ["--dahl", "0.8", "20000"],
+    ["--smoothed-coulomb", "0.15", "0.02"],
+    ["--dahl", "0.15", "1200", "--period", "0.001"],
+    ["--smoothed-coulomb", "0.8", "0.01", "--period", "0.001", "--wall", "200", "1"],
+    ["--period", "0.001", "--wall", "20", "0", "--encoder-step", "1e-4"],
+)
+
+
+def significant(number):
+    """Digits of a printed number between its first and last one that is not 0."""
+    return len(number.partition("e")[0].replace(".", "").strip("0"))
+
+
+def answer_with(path, parameters):
+    values = {
+        f"device.{name}": {"value": value, "stderr": error, "unit": unit}
+        for name, (value, error, unit) in parameters.items()
+    }
+    row = {"added": None, "fit_error": 0.02, "check_error": 0.02}
+    content = {
+        "verdict": "model_adequate",
+        "noise_floor": 0.02,
+        "indistinguishable": [],
+        "ladder": [row],
+        "missing": [],
+        "model_parameters": values,
+        "candidates": [],
+    }
+    path.write_text(json.dumps(content))
+    return str(path)
+
+
+@pytest.mark.parametrize("more", [{}, PRESLIDING | STRIBECK])
+def test_no_number_has_digits_that_nobody_measured(tmp_path, capsys, more):
+    answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED | more)
+    for law in LAWS:
+        assert main(["passivity", answer, *law]) == 0
+        text = capsys.readouterr().out
+        numbers = NUMBER.findall(text)
+        assert len(numbers) > 10
+        # six digits: how fast a travel grows in a sample counts from 1 on; a level is a sum of two
+        more_digits = [n for n in numbers if f"grows by {n}" in text or f"F_S {n}" in text]
+        long = [n for n in numbers if significant(n) > (6 if n in more_digits else DIGITS)]
+        assert long == [], (law, long)
+        assert "(SI)" not in text
+
+
+@pytest.mark.parametrize("more", [{}, STRIBECK])
+def test_the_limit_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys, more):
+    """0.19936 was printed as 0.1994, and what is typed so was refuted."""
+    answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED | more)
+    assert main(["passivity", answer]) == 0
+    said = capsys.readouterr().out
+    limit = re.search(r"passive for every level in the interval: (\S+)", said)[1]
+    out = tmp_path / "claims.json"
+    assert main(["passivity", answer, "--dahl", limit, "20000", "--json", str(out)]) == 0
+    claims = {c["topic"]: c["status"] for c in json.loads(out.read_text())["claims"]}
+    assert claims["any law within the level"] == claims["95 % interval"] == "proved"
+    assert "refuted" not in claims.values()
+
+
+def test_the_wall_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys):
+    answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED)
+    assert main(["passivity", answer, "--period", "0.001"]) == 0
+    said = capsys.readouterr().out
+    stiffness, damping = re.search(
+        r"wall (\S+) N\*m/rad with damping (\S+) N\*m\*s/rad", said
+    ).groups()
+    out = tmp_path / "claims.json"
+    wall = ["--period", "0.001", "--wall", stiffness, damping, "--json", str(out)]
+    assert main(["passivity", answer, *wall]) == 0
+    (claim,) = json.loads(out.read_text())["claims"]
+    assert claim["status"] == "proved", claim["verdict"]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_rounded_interval_holds_the_whole_interval(seed):
+    rng = np.random.default_rng(seed)
+    value = rng.choice([-1, 1]) * 10 ** rng.uniform(-5, 6)
+    half = abs(value) * 10 ** rng.uniform(-6, 1)
+    interval = Interval(value, value - half, value + half)
+    wide = interval.round_outward(digits=DIGITS)
+    scale = max(abs(interval.low), abs(interval.high))
+    # 1e-9: a number with few digits stays what it is though no float is exactly that
+    assert wide.low <= interval.low + 1e-9 * scale and wide.high >= interval.high - 1e-9 * scale
+    assert abs(wide.low - interval.low) <= 1e-3 * abs(interval.low)
+    assert abs(wide.high - interval.high) <= 1e-3 * abs(interval.high)
+    assert wide.round_outward(digits=DIGITS) == wide
+
+
+@pytest.mark.parametrize("value", [0.0, float("inf"), -float("inf")])
+def test_zero_and_infinity_have_no_digits_to_lose(value):
+    assert round_down(value) == round_up(value) == round_near(value) == value
+
+
+def test_what_a_user_states_exactly_stays_as_it_was_stated():
+    body = Body("prismatic", {"inertia": 0.15})
+    body = body.with_effect(EFFECTS["coulomb"], {"level": 0.123456})
+    device = identify_device(body.with_effect(EFFECTS["viscous"], {"damping": 1.234567}))
+    assert device.lowest == Interval(0.123456, 0.123456, 0.123456)
+    assert device.damping.estimate == 1.234567
