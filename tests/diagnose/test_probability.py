@@ -8,7 +8,9 @@ from hypothesis import strategies as st
 
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.evidence import whole_score
 from teleopdesign.diagnose.learnable import Learnable
+from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
@@ -92,6 +94,16 @@ def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
     rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]
     assert len(found) == sum(len(k.ranked) for k in rankings)
     assert [e.ranked.candidate.key for e in found if e.accepted] == [("stribeck", "device")]
+
+
+def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosis):
+    for ranking in (*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last):
+        first, *others = ranking.ranked
+        assert first.behind == 0.0
+        for one in others:
+            assert one.behind == whole_score(one.fit, first.fit)
+        counted = [rank_key(r) for r in ranking.ranked]
+        assert counted == sorted(counted)
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
