@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.evidence import whole_score
+from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.probability import (
@@ -104,6 +106,25 @@ def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosi
             assert one.behind == whole_score(one.fit, first.fit)
         counted = [rank_key(r) for r in ranking.ranked]
         assert counted == sorted(counted)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(("share", "is_told"), [(0.0, False), (0.019, False), (0.021, True)])
+def test_a_new_parameter_is_told_by_the_part_that_no_other_imitates_whatever_its_unit(
+    diagnosis, size, share, is_told
+):
+    fit, base = diagnosis.after, diagnosis.before
+    new = [i for i, n in enumerate(fit.free) if n not in base.free]
+    old = [i for i in range(len(fit.free)) if i not in new]
+    assert is_identifiable(fit, base)
+    columns = fit.jacobian.copy()
+    span, _ = np.linalg.qr(columns[:, old])
+    alone = np.random.default_rng(0).standard_normal(len(columns))
+    alone -= span @ (span.T @ alone)
+    alone /= np.linalg.norm(alone)
+    alike = columns[:, old[0]] / np.linalg.norm(columns[:, old[0]])
+    columns[:, new] = size * ((1 - share**2) ** 0.5 * alike + share * alone)[:, None]
+    assert is_identifiable(replace(fit, jacobian=columns), base) == is_told
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
