@@ -108,6 +108,19 @@ def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosi
         assert counted == sorted(counted)
 
 
+def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(diagnosis):
+    floor = 0.9 * diagnosis.after.check_error
+    found = evidence_of(replace(diagnosis, floor=replace(diagnosis.floor, value=floor)))
+    bases = [r.ranking.base for r in diagnosis.rungs if r.ranking for _ in r.ranking.ranked]
+    bases += [diagnosis.last.base for _ in diagnosis.last.ranked]
+    for one, base in zip(found, bases, strict=True):
+        before, after = base.check_error, one.ranked.fit.check_error
+        above = before**2 - min(floor, after) ** 2
+        part = (before**2 - after**2) / above if above > 0 else 0.0
+        assert one.explained == pytest.approx(min(max(part, 0.0), 1.0))
+    assert max(one.explained for one in found) > 0.5
+
+
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize(("share", "is_told"), [(0.0, False), (0.019, False), (0.021, True)])
 def test_a_new_parameter_is_told_by_the_part_that_no_other_imitates_whatever_its_unit(
