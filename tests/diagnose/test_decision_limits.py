@@ -123,6 +123,8 @@ def test_a_floor_may_rise_to_nearly_twice_the_first_or_to_a_tenth_of_what_is_sta
     held = allowed_floor(floor(0.3), floor(0.1), fit(0.5))
     assert held.value == pytest.approx(0.18) and held.held
     assert allowed_floor(floor(0.3), floor(0.1), fit(2.5)).value == pytest.approx(0.25)
+    assert floor(0.3).at_most(0.3) == floor(0.3), "at its limit nothing is held"
+    assert floor(0.3).at_most(0.3 * LESS).held
 
 
 def test_a_floor_is_no_more_than_the_records_leave():

@@ -2,13 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.evidence import whole_score
+from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.learnable import Learnable
+from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
@@ -101,6 +105,48 @@ def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
     rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]
     assert len(found) == sum(len(k.ranked) for k in rankings)
     assert [e.ranked.candidate.key for e in found if e.accepted] == [("stribeck", "device")]
+
+
+def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosis):
+    for ranking in (*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last):
+        first, *others = ranking.ranked
+        assert first.behind == 0.0
+        for one in others:
+            assert one.behind == whole_score(one.fit, first.fit)
+        counted = [rank_key(r) for r in ranking.ranked]
+        assert counted == sorted(counted)
+
+
+def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(diagnosis):
+    floor = 0.9 * diagnosis.after.check_error
+    found = evidence_of(replace(diagnosis, floor=replace(diagnosis.floor, value=floor)))
+    bases = [r.ranking.base for r in diagnosis.rungs if r.ranking for _ in r.ranking.ranked]
+    bases += [diagnosis.last.base for _ in diagnosis.last.ranked]
+    for one, base in zip(found, bases, strict=True):
+        before, after = base.check_error, one.ranked.fit.check_error
+        above = before**2 - min(floor, after) ** 2
+        part = (before**2 - after**2) / above if above > 0 else 0.0
+        assert one.explained == pytest.approx(min(max(part, 0.0), 1.0))
+    assert max(one.explained for one in found) > 0.5
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(("share", "is_told"), [(0.0, False), (0.019, False), (0.021, True)])
+def test_a_new_parameter_is_told_by_the_part_that_no_other_imitates_whatever_its_unit(
+    diagnosis, size, share, is_told
+):
+    fit, base = diagnosis.after, diagnosis.before
+    new = [i for i, n in enumerate(fit.free) if n not in base.free]
+    old = [i for i in range(len(fit.free)) if i not in new]
+    assert is_identifiable(fit, base)
+    columns = fit.jacobian.copy()
+    span, _ = np.linalg.qr(columns[:, old])
+    alone = np.random.default_rng(0).standard_normal(len(columns))
+    alone -= span @ (span.T @ alone)
+    alone /= np.linalg.norm(alone)
+    alike = columns[:, old[0]] / np.linalg.norm(columns[:, old[0]])
+    columns[:, new] = size * ((1 - share**2) ** 0.5 * alike + share * alone)[:, None]
+    assert is_identifiable(replace(fit, jacobian=columns), base) == is_told
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])

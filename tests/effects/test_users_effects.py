@@ -72,6 +72,7 @@ BAD = {
         "import sympy\n    return sympy.Symbol('mystery') * p.drag",
         "law uses mystery",
     ),
+    "a law in text": ("return p.drag", "return '1' or p.drag", "law: SympifyError"),
     "syntax": ("def law(now, p):", "def law(now, p)", "SyntaxError"),
     "import": ("from teleopdesign import Effect", "from teleopdesign import Efect", "Efect"),
     "failure of its own": ("def law", "1 / 0\n\n\ndef law", "ZeroDivisionError"),

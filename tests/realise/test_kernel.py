@@ -19,6 +19,7 @@ from teleopdesign.realise.kernel import (
     RELOAD,
     Timing,
     execute,
+    fastest_rate,
     fastest_rates,
     refine_factor,
     round_up_steps,
@@ -363,6 +364,11 @@ def test_the_measure_of_a_run_is_that_of_its_worst_bristle(reloads):
             made, {"mass": 2.0}, timing, inputs=none, sampled=none, start={}, every_step=every_step
         )
         assert worst == max(reloads, default=0.0) and out.shape == (count, 1)
+
+
+def test_what_has_no_state_has_no_fastest_rate():
+    layout = Layout((), (), (), (), (), (), (), (), ())
+    assert fastest_rate(SimpleNamespace(layout=layout), {}) == (0.0, "")
 
 
 @given(needed=st.integers(1, 4000), least=st.integers(1, 20))
