@@ -43,7 +43,8 @@ class AvailableStorage(ByValue):
     gain: energy released per travel in steady state, N; 0 where it is finite
     travel: m, of one move;  moves: how many were made
     growth: what the storage still gained over the second half of the moves, J, where it gained most
-    coarse: largest storage on a grid of half the points, J: how far that of the grid may be off
+    coarse: largest storage on a grid of half the points, J: by about as much as it differs, that
+        of the grid may be off, to either side; the error falls as the points grow
     """
 
     storage: Array

@@ -1,7 +1,7 @@
 """Margins of loops that sample and hold, against the eigenvalues of one sample.
 
-The attacker parts a sample into equal steps, of which each dead time is a whole number, and steps
-the plant through them with a line of its own for the inputs on their way.
+Dead times of the loops are eighths of a sample. The attacker has an own step over one sample, exact
+for any dead time: a loop may grow at one dead time alone, or over a hundredth of a sample.
 """
 
 from collections import Counter
@@ -9,6 +9,7 @@ from fractions import Fraction
 
 import control as ct
 import numpy as np
+import pytest
 import scipy.linalg
 from passivity.attacks.budget import attacked
 
@@ -54,6 +55,13 @@ class Sampled:
         zero = float(f"{rng.uniform(-0.5, 0.95):.3g}")
         self.law = [[1.0, -zero], [1.0, -pole]] if rng.random() < 0.6 else [[1.0], [1.0]]
 
+    @classmethod
+    def of(cls, period, below, above, law):
+        """One that is not drawn."""
+        made = object.__new__(cls)
+        made.period, made.below, made.above, made.law = period, below, above, law
+        return made
+
     def loop(self):
         exact = [tuple(Fraction(repr(c)) for c in p) for p in (*self.law, self.below)]
         period = Fraction(repr(self.period))
@@ -68,57 +76,71 @@ class Sampled:
         return SampledLoop(period, (exact[0], exact[1]), exact[2], tuple(sorted(late.items())))
 
     def radius(self, factor=1.0, further=0):
-        """Largest size of an eigenvalue of one sample; further: dead time in steps."""
+        """Largest size of an eigenvalue of one sample; further: dead time in steps, any part too.
+
+        State: plant, the commands before this sample (newest first), law. What is `m` samples
+        and a part late acts by the command of `m` samples ago, and until that part by one before.
+        """
         systems = [ct.ssdata(ct.tf2ss(ct.tf(p, self.below))) for _, p in self.above]
-        late = [steps + further for steps, _ in self.above]
-        n = len(self.below) - 1
+        late = [divmod((steps + Fraction(further)) / STEPS, 1) for steps, _ in self.above]
+        n, line = len(self.below) - 1, max(int(m) for m, _ in late) + 1
         # one realisation for all inputs: that of the transposed systems shares A and C
-        a = np.asarray(systems[0][0]).T
-        b = [np.asarray(c).reshape(-1, 1) if n else np.zeros((0, 1)) for _, _, c, _ in systems]
-        c = np.asarray(systems[0][1]).T.reshape(1, n)
-        d = [float(np.asarray(x).squeeze()) for *_, x in systems]
-        line = max(late) + 1
-        law = [
-            np.asarray(x, dtype=float) for x in ct.ssdata(ct.tf2ss(ct.tf(*self.law, self.period)))
-        ]
-        m, size = len(law[0]), n + line + len(law[0])
-        h = self.period / STEPS
-        moves = []
-        for column in b:
-            block = np.zeros((n + 1, n + 1))
-            block[:n, :n], block[:n, n:] = a * h, column * h
-            stepped = scipy.linalg.expm(block)
-            moves.append((stepped[:n, :n], stepped[:n, n:]))
-        # state: plant, inputs of the last `line` steps (newest first), law
+        a, c = np.asarray(systems[0][0]).T, np.asarray(systems[0][1]).T.reshape(1, n)
+        law_a, law_b, law_c, law_d = (
+            np.asarray(x, float) for x in ct.ssdata(ct.tf2ss(ct.tf(*self.law, self.period)))
+        )
+        size = n + line + len(law_a)
         measured = np.zeros((1, size))
         measured[:, :n] = c
-        for x, steps in zip(d, late, strict=True):
-            measured[0, n + steps] += x
-        command = np.zeros((1, size))
-        command[:, n + line :] = -factor * law[2].reshape(1, m)
-        command -= factor * float(law[3].squeeze()) * measured
-        after_law = np.eye(size)
-        after_law[n + line :, :] = law[1].reshape(m, 1) @ measured
-        after_law[n + line :, n + line :] += law[0].reshape(m, m)
-        whole = np.eye(size)
-        for k in range(STEPS):
-            step = np.zeros((size, size))
-            step[n + 1 : n + line, n : n + line - 1] = np.eye(line - 1)
-            step[n + line :, n + line :] = np.eye(m)
-            step[n, n] = 1.0
-            first = np.eye(size)
-            if k == 0:  # the computer reads, gives out, and its output begins the line
-                step[n] = 0
-                step[n] = command
-                step[n + line :] = after_law[n + line :]
-            # the input that acts in this step is that of `late` steps before, the new one first
-            acts = step.copy()
-            step[:n, :n] = moves[0][0] if n else 0
-            for (_, move), steps in zip(moves, late, strict=True):
-                if n:
-                    step[:n] += move @ acts[n + steps : n + steps + 1]
-            whole = step @ first @ whole
-        return np.abs(np.linalg.eigvals(whole)).max()
+        for (*_, d), (m, _) in zip(systems, late, strict=True):
+            # what passes straight through shows the command that acts up to the reading
+            measured[0, n + int(m)] += float(np.asarray(d).squeeze())
+        command = -factor * float(law_d.squeeze()) * measured
+        command[:, n + line :] -= factor * law_c.reshape(1, -1)
+        commands = np.vstack([command, np.eye(size)[n : n + line]])
+        after = np.zeros((size, size))
+        after[n : n + line] = commands[:line]
+        after[n + line :] = law_b.reshape(-1, 1) @ measured
+        after[n + line :, n + line :] += law_a
+        after[:n, :n] = scipy.linalg.expm(a * self.period)
+        for (*_, out, _), (m, part) in zip(systems, late, strict=True):
+            column = np.asarray(out).reshape(-1, 1)
+            rest, first = (_moved(a, column, self.period * float(x)) for x in (1 - part, part))
+            after[:n] += rest[1] @ commands[int(m)][None]
+            after[:n] += rest[0] @ first[1] @ commands[int(m) + 1][None]
+        return np.abs(np.linalg.eigvals(after)).max()
+
+
+def _moved(a, column, time):
+    """e^(A t) and its integral times B."""
+    n = len(a)
+    block = np.zeros((n + 1, n + 1))
+    block[:n, :n], block[:n, n:] = a * time, column * time
+    stepped = scipy.linalg.expm(block)
+    return stepped[:n, :n], stepped[:n, n:]
+
+
+def in_steps(drawn, delay):
+    return Fraction(delay) / Fraction(repr(drawn.period)) * STEPS
+
+
+def before(rng, drawn, delay):
+    """Dead times in steps below a margin (s): shares of it, any, and all at which what passes
+    straight through comes a whole sample later, or a hair before or behind there.
+    """
+    most = 12 * STEPS if np.isinf(delay) else min(in_steps(drawn, delay), Fraction(12 * STEPS))
+    hair = Fraction(1, 10**6)
+    drawn_ones = [Fraction(float(x)) for x in rng.random(12)]
+    shares = [most * x for x in (*drawn_ones, Fraction(19, 20), 1 - hair)]
+    whole = [k + x for k in range(int(most) + 1) for x in (-hair, 0, hair)]
+    return [x for x in (*shares, *whole) if 0 <= x <= most * (1 - hair / 2)]
+
+
+def behind(drawn, delay):
+    """Dead times in steps at a margin (s) and a hair behind it; an eighth that it is near to."""
+    at = in_steps(drawn, delay)
+    near = [Fraction(round(at))] if abs(at - round(at)) < 1e-6 else []
+    return [*near, at * (1 + Fraction(1, 10**8)), at * (1 + Fraction(1, 10**6))]
 
 
 @attacked(6, 60)
@@ -141,13 +163,40 @@ def test_a_sampled_loop_grows_from_its_margins_on_and_not_before(seed, number):
             beyond = [drawn.radius(gain**share) for share in (1.01, -1.01)]
             assert max(beyond) > 1 - NEAR or gain < 1.02, (vars(drawn), gain, beyond)
         delay = sampled_margins.delay_margin(loop)
-        step = drawn.period / STEPS
-        steps = min(delay / step, 12 * STEPS)
-        for share in (0.25, 0.5, 0.75, 0.95):
-            assert drawn.radius(further=int(share * steps)) < 1 + NEAR, (vars(drawn), delay, share)
+        for steps in before(rng, drawn, delay):
+            assert drawn.radius(further=steps) < 1 + NEAR, (vars(drawn), delay, steps)
         if np.isfinite(delay) and delay < 40 * drawn.period:
-            after = [drawn.radius(further=int(np.ceil(delay / step + 1e-6)) + k) for k in (0, 1)]
+            after = [drawn.radius(further=steps) for steps in behind(drawn, delay)]
             assert max(after) > 1 - NEAR, (vars(drawn), delay, after)
         counts["no delay limits" if np.isinf(delay) else "delay limits"] += 1
     print(dict(counts))
     assert counts["delay limits"] and counts["grows"]
+
+
+@pytest.mark.parametrize(
+    ("period", "below", "above", "law"),
+    [
+        (  # what passes straight through makes it grow from 5 to 6 eighths of a sample
+            0.013,
+            [1.0, 0.5168, 4.867],
+            [(18, [0.3344, 0.5754, -0.299]), (11, [0.2541, 1.93, 0.7546])],
+            [[1.0, -0.934], [1.0, 0.3]],
+        ),
+        (  # it grows from 5.955 to 6 eighths, and each sample later again
+            0.67,
+            [1.0, 16.49, 456.8, 0.0],
+            [(18, [0.4214, 4.586, 8.7, 3.336])],
+            [[1.0, 0.124], [1.0, 0.3]],
+        ),
+    ],
+)
+def test_a_loop_that_grows_over_a_part_of_a_sample_alone_has_its_margin_there(
+    period, below, above, law
+):
+    drawn = Sampled.of(period, below, above, law)
+    delay = sampled_margins.delay_margin(drawn.loop())
+    steps = in_steps(drawn, delay)
+    assert 5 - 1e-9 < steps < 6
+    assert max(drawn.radius(further=x) for x in behind(drawn, delay)) > 1 + NEAR
+    assert drawn.radius(further=steps * (1 - Fraction(1, 10**6))) < 1
+    assert drawn.radius(further=6) < 1

@@ -33,7 +33,7 @@ def slid(force, travel, level, stiffness):
 
 def pulled(force, travel, level, stiffness, spring):
     """(force after, work taken) of a bristle behind a spring: ln y + r y falls by the travel."""
-    s, r = np.sign(travel), stiffness / spring
+    s, r = np.where(travel < 0, -1.0, 1.0), stiffness / spring  # a leg of 0 keeps the force
     y = np.maximum(1 - s * force / level, 1e-300)
     goal = np.log(y) + r * y - stiffness * np.abs(travel) / level
     u = np.minimum(goal, np.log(2))  # Newton's steps come down to ln y on a convex function
@@ -52,22 +52,36 @@ def leg(element, force, travel):
     return laws[type(element)](force, travel, *numbers)
 
 
+def press(element, force, travel):
+    """Integral of |force| of a spring over the way: where the force comes through 0 it turns."""
+    ways = {
+        Dahl: lambda e, f: np.log1p(f / e.level) * e.level / e.stiffness,
+        Spring: lambda e, f: f / e.stiffness,
+        DahlBehindSpring: lambda e, f: np.log1p(f / e.level) * e.level / e.stiffness + f / e.spring,
+    }
+    way = np.where(force * travel < 0, ways[type(element)](element, np.abs(force)), 0.0)
+    back = np.sign(travel) * np.minimum(way, np.abs(travel))
+    between, given = leg(element, force, back)
+    return leg(element, between, travel - back)[1] - given
+
+
 def run(elements, paths, starts, rounds=1, load=0.0):
     """(most given out at any turn, J; given out in the last round over its travel, N) of travels.
 
     elements: compensator, then friction;  paths: (n, legs) of travels, m;  starts: forces (n, ...)
-    load: the second element grows by this much of the last one's force, mean of a leg's ends
+    load: the second element grows by this much of the last one's force
     """
     forces, out, most = list(starts.T), np.zeros(len(paths)), np.zeros(len(paths))
     before = out
     for _ in range(rounds):
         before = out
         for k in range(paths.shape[1]):
-            travel, pressed = paths[:, k], np.abs(forces[-1])
+            travel = paths[:, k]
+            pressed = press(elements[-1], forces[-1], travel) if load else 0.0
             for i, element in enumerate(elements):
                 forces[i], work = leg(element, forces[i], travel)
                 out = out + (work if i == 0 else -work)
-            out = out - load * (pressed + np.abs(forces[-1])) / 2 * np.abs(travel)
+            out = out - load * pressed
             most = np.maximum(most, out)
     return most, (out - before) / np.abs(paths).sum(axis=1)
 
@@ -143,8 +157,10 @@ def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
         beaten = forever > found.tolerance
         if found.evidence().holds:
             assert not beaten, case
-            # a motion may turn between two travels and two forces of the grid
+            # a motion may turn between two travels of the grid, whose storage is off by as much as
+            # half the points say
             blur = compensator.level * found.travel + 0.02 * found.storage.max()
+            blur += abs(found.storage.max() - found.coarse)
             assert above <= blur, case
             nearest.append(above / blur)
         counts[found.is_finite, bool(beaten)] += 1
@@ -152,6 +168,16 @@ def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
     # some that do not settle are beaten, and storages that settle are reached: it is not blind
     assert counts[True, False] and counts[False, True] and max(nearest) > -0.1
     assert counts["refused"] < 0.1 * number
+
+
+def test_a_storage_is_off_by_no_more_than_half_the_points_say():
+    """Three springs of lengths 21 to 1: a motion takes out 5 % more than 25 points give."""
+    friction = [Spring(532.34, 8706.7), Dahl(872.29, 978.46)]
+    storages = [available_storage(Dahl(354.47, 276.7), friction, points=n) for n in (13, 19, 25)]
+    best = storages[-1].storage.max()
+    for one in storages[:-1]:
+        assert one.coarse < one.storage.max() < best  # from below, so that it is not beaten by luck
+        assert best - one.storage.max() < one.storage.max() - one.coarse
 
 
 def test_the_attack_beats_a_storage_of_other_friction():
@@ -163,6 +189,19 @@ def test_the_attack_beats_a_storage_of_other_friction():
     above, forever = attack(rng, [compensator, *friction], claimed.storage)
     assert forever > claimed.tolerance
     assert above > compensator.level * claimed.travel
+
+
+@pytest.mark.parametrize("travel", [3e-5, -4e-4, 2e-2])
+def test_the_attackers_load_of_a_leg_is_that_of_small_steps(travel):
+    for element in (Spring(2.0, 1e4), DahlBehindSpring(2.0, 5e4, 1e4), Dahl(2.0, 1e4)):
+        for start in (1.5, 0.0, -0.3):
+            force, pressed = np.array([start]), 0.0
+            once = press(element, force, np.array([travel]))
+            for _ in range(5000):
+                before = np.abs(force)
+                force, _ = leg(element, force, np.array([travel / 5000]))
+                pressed += (before + np.abs(force)) / 2 * abs(travel) / 5000
+            assert once[0] == pytest.approx(pressed[0], rel=1e-4)
 
 
 @pytest.mark.parametrize("travel", [3e-5, -4e-4, 2e-2])
