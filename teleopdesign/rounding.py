@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import math
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 
-def _scale(value: float, digits: int) -> float:
-    return 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
+def _round_to(value: float, digits: int, side: str) -> float:
+    """By the decimals that a number is printed with: one that has few digits stays as it is."""
+    if value == 0 or not math.isfinite(value):
+        return value
+    exact = Decimal(repr(float(value)))
+    step = Decimal(1).scaleb(exact.adjusted() - digits + 1)
+    return float((exact / step).to_integral_value(rounding=side) * step)
 
 
 def round_down(value: float, *, digits: int = 3) -> float:
     """The largest number of so many digits that is not above a value; 0 and infinity stay."""
-    if value == 0 or not math.isfinite(value):
-        return value
-    step = _scale(value, digits)
-    # a part in 1e9: a number that has few digits already stays what it is
-    return float(f"{math.floor(value / step * (1 + math.copysign(1e-9, value))) * step:.{digits}g}")
+    return _round_to(value, digits, ROUND_FLOOR)
 
 
 def round_up(value: float, *, digits: int = 3) -> float:
     """The smallest number of so many digits that is not below a value; 0 and infinity stay."""
-    if value == 0 or not math.isfinite(value):
-        return value
-    step = _scale(value, digits)
-    return float(f"{math.ceil(value / step * (1 - math.copysign(1e-9, value))) * step:.{digits}g}")
+    return _round_to(value, digits, ROUND_CEILING)
 
 
 def round_near(value: float, *, digits: int = 3) -> float:

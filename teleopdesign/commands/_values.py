@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ..errors import ExperimentError
-from ..measurement.value_text import split_value
 from ..quantity import to_si
 
 
@@ -12,6 +11,8 @@ def value_from(text: str, *, quantity: str, axis: str, where: str) -> float:
 
     where: what errors call it;  raises ExperimentError: no number, or a unit of another quantity
     """
+    from ..measurement.value_text import split_value  # heavy: not for --help
+
     parts = split_value(text)
     if parts is None:
         raise ExperimentError(f"{where}: found {text!r}, expected a number and a unit")

@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
 
 from ..measurement.filtering import Array
 from ..model import Model
@@ -127,6 +126,8 @@ class _LinearProblem:
 
     def refine(self, course: _Course, plan: SearchPlan) -> _Solved:
         """The best course near by."""
+        from scipy.optimize import minimize  # half a second: only where a gear is sought
+
         start = np.array([v for v in (course.gap, course.swing, course.slowing) if v])
 
         def course_at(x: Array) -> _Course:

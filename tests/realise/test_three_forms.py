@@ -27,6 +27,7 @@ TYPICAL = {
     "position": 0.01,
     "drag": 1.0,
     "cubic_stiffness": 1e5,
+    "per_square_of_position": 500.0,
     "angle": 0.3,
     "frequency": 10.0,
 }
