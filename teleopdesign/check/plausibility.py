@@ -19,7 +19,7 @@ from ..quantity import unit_of
 from ..standard_error import with_standard_error
 from .force_balance import ForceBalance, force_balances
 from .swapped_columns import check_swapped
-from .unit_slips import NEAR, POWERS, slips
+from .unit_slips import NEAR, POWERS, scale_of_forces, slips
 
 #: a gain or an inertia off by more than this factor is a unit, not a calibration or a poor guess
 FAR = 10.0
@@ -29,6 +29,9 @@ CALIBRATED, UNSURE = 1.25, 0.05
 #: logarithm by which ratios may differ and still be one scale, and the least factor that is
 #: reported: a user's first values are commonly 20 % off
 ONE_SCALE, OFF_SCALE = 0.15, 2.0
+#: decades between the two values of a device that is known and those of a slip of units, where the
+#: slip is less than `FAR`: first values are commonly 20 % off; turns are 0.8 decades off radians
+CLEAR = 0.2
 #: force left unexplained above which a shift is not all that is wrong
 UNEXPLAINED = 0.25
 #: force left unexplained above which nothing is said about signs, units and shifts
@@ -152,10 +155,11 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
     if balance.left > NOTHING:
         return
     if 1 / FAR < inertia < FAR:
-        yield from _force_scale(balance, ratios)
+        scale = tuple(_force_scale(balance, ratios))
+        yield from scale or _poor_guess(model, balance, ratios)
         return
     quantities = {n: body.parameter(n).quantity for n in ratios}
-    causes = slips(body.axis, ratios, quantities)
+    causes = slips(body.axis, ratios, quantities) or scale_of_forces(ratios)
     strengths = ", ".join(
         f"{n} {balance.strengths[n].value:.3g} {body.unit(n)} where the model says "
         f"{body.parameters[n].value:.3g} {body.unit(n)}"
@@ -186,6 +190,29 @@ def _force_scale(balance: ForceBalance, ratios: Mapping[str, float]) -> Iterator
         f"these are known, the forces are {factor:.3g} times too large, as by a torque constant or "
         f"a gear ratio; write scale = {1 / factor:.4g} at channels.actuator_force.",
         {"factor": factor, "spread": spread},
+        balance.body,
+    )
+
+
+def _poor_guess(
+    model: Model, balance: ForceBalance, ratios: Mapping[str, float]
+) -> Iterator[Finding]:
+    """An inertia several times the model's: no agreement, though the first value may be a guess."""
+    inertia = ratios.get("inertia", 1.0)
+    if 1 / OFF_SCALE < inertia < OFF_SCALE:
+        return
+    body = model.body(balance.body)
+    known = {n: r for n, r in ratios.items() if n in ("inertia", "coulomb.level")}
+    quantities = {n: body.parameter(n).quantity for n in known}
+    causes = slips(body.axis, known, quantities, near=CLEAR) if len(known) > 1 else []
+    why = " or ".join([*causes, "the first value is a guess", "the scale of the forces is off"])
+    unit, moved = body.unit("inertia"), balance.strengths["inertia"].value
+    yield Finding(
+        "units",
+        "note",
+        f"the motion asks for an inertia of {moved:.3g} {unit}, {inertia:.2g} times the model's "
+        f"{body.parameters['inertia'].value:.3g} {unit}: {why}.",
+        {f"ratio.{n}": r for n, r in ratios.items()},
         balance.body,
     )
 

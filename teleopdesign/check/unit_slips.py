@@ -36,10 +36,13 @@ _INERTIA_SLIPS = {
 }
 
 
-def slips(axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str]) -> list[str]:
+def slips(
+    axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str], *, near: float = NEAR
+) -> list[str]:
     """The slips of units that put every strength near the model's, best first, in words.
 
     ratios: strength -> what the motion asks for over what the model says;  quantities: of each
+    near: decades that count as near
     """
     position, force, inertia = (unit_of(q, axis) for q in ("position", "force", "inertia"))
     alternatives: dict[str, dict[str, float]] = {}
@@ -62,5 +65,18 @@ def slips(axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str])
         text: max(abs(math.log10(ratios[n] / expected[n])) for n in ratios)
         for text, expected in alternatives.items()
     }
-    near = [t for t in sorted(worst, key=lambda t: worst[t]) if worst[t] < NEAR]
-    return [t for t in near if worst[t] < worst[near[0]] + 0.1]
+    likely = [t for t in sorted(worst, key=lambda t: worst[t]) if worst[t] < near]
+    return [t for t in likely if worst[t] < worst[likely[0]] + 0.1]
+
+
+def scale_of_forces(ratios: Mapping[str, float]) -> list[str]:
+    """In words, that all strengths are about as many times the model's; none where they are not."""
+    if len(ratios) < 2:
+        return []
+    factor = 10 ** (sum(math.log10(r) for r in ratios.values()) / len(ratios))
+    if max(abs(math.log10(r / factor)) for r in ratios.values()) > NEAR:
+        return []
+    return [
+        f"the forces are about {factor:.1g} times what the model asks for, as by a torque constant "
+        "or a gear ratio"
+    ]

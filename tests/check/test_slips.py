@@ -7,11 +7,14 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.check.mixed_columns import check_clock_unit, check_mixed_columns
+from teleopdesign.check.plausibility import check_plausibility
 from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import EFFECTS, find_effect
 from teleopdesign.errors import ModelError
 from teleopdesign.measurement.soundness.held_samples import stuck_stretches
+from teleopdesign.model import Model
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +65,45 @@ def test_forces_of_two_scales_are_a_note_that_says_what_to_type(rod, channel, fa
     assert min(abs(gain - expected), abs(gain - 1 / expected)) < 0.05 * gain
     assert f"scale = {gain:.4g} at channels." in note.sentence
     assert not [f for f in check_experiment(rod) if f.topic == "force scales"]
+
+
+def joint(factor):
+    """A joint of 0.02 kg*m^2 and 0.3 N*m, its angle as a log with a slip of units has it."""
+    t = np.arange(6000) / 500
+    q = 0.6 * np.sin(2 * t) + 0.2 * np.sin(7.3 * t)
+    v = 1.2 * np.cos(2 * t) + 1.46 * np.cos(7.3 * t)
+    u = 0.02 * (-2.4 * np.sin(2 * t) - 10.658 * np.sin(7.3 * t)) + 0.3 * np.sign(v)
+    columns = {"t": t, "q": factor * q, "u": u}
+    names = {"time": "t", "position": "q", "actuator_force": "u"}
+    units = {"t": "s", "q": "rad", "u": "N*m"}
+    experiment = td.experiment(columns, axis="revolute", units=units, **names)
+    model = Model.from_experiment(experiment)
+    known = {"device.inertia": 0.02, "device.coulomb.level": 0.3, "device.viscous.damping": 0.001}
+    return model.with_values(known), prepare(experiment)
+
+
+def test_a_position_in_turns_that_is_given_as_radians_is_named():
+    (found,) = check_plausibility(*joint(1 / (2 * np.pi)))
+    assert found.concern == "note" and "the position is in turns, given as rad" in found.sentence
+    (right,) = check_plausibility(*joint(1.0))
+    assert right.concern == "fine" and "signs and units agree" in right.sentence
+
+
+@pytest.mark.parametrize("times", [0.2, 3.0])
+def test_an_inertia_several_times_the_models_is_no_agreement(times):
+    model, prepared = joint(1.0)
+    wrong = model.with_values({"device.inertia": 0.02 / times})
+    (found,) = check_plausibility(wrong, prepared)
+    assert found.concern == "note" and "times the model's" in found.sentence
+    assert "turns" not in found.sentence
+    assert found.numbers["ratio.inertia"] == pytest.approx(times, rel=0.1)
+
+
+def test_forces_of_another_scale_are_named_beside_first_values_that_are_guesses():
+    model, prepared = joint(1.0)
+    rough = {"device.inertia": 1.2, "device.coulomb.level": 12.0, "device.viscous.damping": 0.02}
+    (found,) = check_plausibility(model.with_values(rough), prepared)
+    assert found.concern == "warning" and "a torque constant or a gear ratio" in found.sentence
 
 
 @pytest.mark.parametrize(("word", "meant"), [("stiction", "stribeck"), ("LuGre", "presliding")])
