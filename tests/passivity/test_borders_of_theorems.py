@@ -31,6 +31,7 @@ from teleopdesign.passivity import (
     wave_channel,
     wave_teleoperator,
 )
+from teleopdesign.passivity.claims.claim import Claim, Evidence, Unknown
 from teleopdesign.realise.lti import S
 
 Z = sp.Symbol("z")
@@ -208,3 +209,18 @@ def test_many_of_these_are_decided():
     """Not all are: a hair beyond a border no motion can show in floats what numbers decide."""
     decided = [theorem(**numbers).status for theorem, numbers, truth in NUMBERS if truth]
     assert decided.count("proved") >= len(decided) - 1
+
+
+def test_what_is_proved_holds_what_is_refuted_does_not_and_of_the_unknown_neither_is_said():
+    """And of evidence what its numbers say."""
+    proved, refuted = positive_real(S + 2), positive_real(S - 2)
+    assert (proved.status, proved.holds, proved.heading) == ("proved", True, "proved")
+    assert (refuted.status, refuted.holds, refuted.heading) == ("refuted", False, "refuted")
+    assert refuted.record.replay() > 0 and proved.certificates and not refuted.certificates
+    with pytest.raises(TeleopDesignError, match="no motion refutes it"):
+        _ = proved.record
+    unknown = Claim("anything", Unknown("no reason"))
+    assert (unknown.status, unknown.holds, unknown.heading) == ("unknown", None, "unknown")
+    for holds, heading in ((True, "evidence"), (False, "evidence against")):
+        seen = Claim("anything", Evidence(holds, "a sweep", 0.5, "N s/m"))
+        assert (seen.status, seen.holds, seen.heading) == ("evidence", holds, heading)

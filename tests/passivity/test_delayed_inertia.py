@@ -92,3 +92,22 @@ def test_wrong_input_is_named():
         cancelled_inertia(**DEVICE, cancelled=-0.1, delay=0)
     with pytest.raises(ModelError, match="1 or 2, found 3"):
         cancelled_inertia(**DEVICE, cancelled=0.1, delay=0, time_constant=0.01, order=3)
+
+
+@pytest.mark.parametrize("part", [0.3, 0.9, 1.1])
+def test_between_the_proof_and_the_limit_the_margin_is_the_least_real_part(part):
+    """By a fine grid of frequencies; beyond the limit a growing wave refutes."""
+    delay, constant = 0.004, 0.01
+    limit = largest_passive_inertia(damping=1.0, delay=delay, time_constant=constant, order=2)
+    proved = 2.0 * constant
+    cancelled = proved + part * (limit - proved)
+    claim = cancelled_inertia(
+        **DEVICE, cancelled=cancelled, delay=delay, time_constant=constant, order=2
+    )
+    s = 1j * np.linspace(1.0, 2000.0, 400_001)
+    real = 1.0 - (cancelled * s * np.exp(-s * delay) / (1.0 + s * constant) ** 2).real
+    if part < 1.0:
+        assert (claim.status, claim.holds) == ("evidence", True)
+        assert claim.verdict.margin == pytest.approx(real.min(), abs=1e-6)
+    else:
+        assert claim.status == "refuted" and real.min() < 0.0

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -15,6 +16,7 @@ from teleopdesign.passivity import (
     observe_simulation,
     passivity_controlled,
 )
+from teleopdesign.passivity.observer import PortEnergy
 from teleopdesign.simulate import simulate
 
 STROKES = Strokes((2e-3, -2e-3), speed=0.3, rounds=12)
@@ -116,3 +118,26 @@ def test_what_cannot_be_observed_is_refused():
         observe(np.arange(2.0), np.arange(2.0), np.arange(2.0))
     with pytest.raises(ModelError, match="a period > 0"):
         passivity_controlled(np.ones(2), np.ones(2), period=0.0)
+
+
+@pytest.mark.parametrize(
+    ("stderr", "falls"),
+    [(0.0, [(1.0, 2.5, 3.0), (3.0, 3.5, 1.0)]), (0.6, [(1.0, 2.5, 3.0)]), (1.6, [])],
+)
+def test_each_time_in_which_energy_came_out_is_told_with_how_much_beyond_doubt(stderr, falls):
+    """From 5 J to 2 J in three steps, from 4 J to 3 J in one; 1.96 errors are in doubt."""
+    time = 0.5 * np.arange(9)
+    energy = np.array([0.0, 3.0, 5.0, 4.5, 4.0, 2.0, 4.0, 3.0, 3.0])
+    data = {"energy": ("time", energy), "stderr": ("time", np.linspace(0.0, stderr, 9))}
+    found = PortEnergy(xarray.Dataset(data, coords={"time": time}))
+    assert found.given_out() == falls
+    assert (found.lowest, found.when, found.certain) == (0.0, 0.0, False)
+
+
+@pytest.mark.parametrize(("lowest", "is_certain"), [(-1.95, False), (-1.97, True), (0.5, False)])
+def test_energy_is_surely_below_zero_from_196_errors_of_it(lowest, is_certain):
+    energy, stderr = np.array([2.0, 1.0, lowest, 1.5]), np.array([0.0, 0.5, 1.0, 9.0])
+    data = {"energy": ("time", energy), "stderr": ("time", stderr)}
+    found = PortEnergy(xarray.Dataset(data, coords={"time": 0.1 * np.arange(4)}))
+    assert found.certain == is_certain
+    assert (found.lowest, found.when) == (lowest, pytest.approx(0.2))

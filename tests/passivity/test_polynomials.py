@@ -56,3 +56,10 @@ def test_roots_of_very_different_size_are_as_exact():
     p = sp.Poly(sp.prod([X - sp.Rational(str(r)) for r in roots]), X, domain="QQ")
     for found, r in zip(positive_roots(p), roots, strict=True):
         assert abs(found - r) <= r / 2**79
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "holds"), [([0], False), ([3], True), ([-3], True), ([1, 0], False)]
+)
+def test_a_constant_has_no_root_and_zero_has_every_root(coefficients, holds):
+    assert is_hurwitz(sp.Poly(coefficients, S, domain="QQ")) == holds
