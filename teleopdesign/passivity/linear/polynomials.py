@@ -49,7 +49,7 @@ def is_non_negative(polynomial: sp.Poly) -> bool:
 
 def has_positive_root(polynomial: sp.Poly) -> bool:
     """Whether a polynomial of simple roots has one at x > 0."""
-    return any(high > 0 for _, high in polynomial.intervals(inf=0, sqf=True))
+    return any(high > 0 for _, high in _isolate(polynomial))
 
 
 def where_negative(polynomial: sp.Poly) -> list[Fraction]:
@@ -78,7 +78,7 @@ def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
         return end == 0 or start * end < 0
 
     roots = []
-    for low, high in ((fraction(a), fraction(b)) for a, b in plain.intervals(inf=0, sqf=True)):
+    for low, high in _isolate(plain):
         while low == 0 and high > 0:  # a relative error needs an end that is not 0
             middle = high / 2
             low, high = (low, middle) if between(low, middle) else (middle, high)
@@ -88,6 +88,16 @@ def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
         if high > 0:
             roots.append((low + high) / 2)
     return roots
+
+
+def _isolate(polynomial: sp.Poly) -> list[tuple[Fraction, Fraction]]:
+    """Ends of intervals, each about one root x >= 0 of a polynomial of simple roots.
+
+    fast: x is scaled by its lower bound at each step. Else roots of 1e10 beside pairs of size 1
+    are walked to by small steps: 24 s at degree 18, not 2 ms. All is exact either way
+    """
+    ends = polynomial.intervals(inf=0, sqf=True, fast=True)
+    return [(fraction(a), fraction(b)) for a, b in ends]
 
 
 def _sign_of(polynomial: sp.Poly) -> Callable[[Fraction], int]:

@@ -9,7 +9,23 @@ import numpy as np
 
 #: of the largest size of a pole: real parts within this are undecided, as both grids must agree
 NEAR = 1e-7
-GRIDS = (30, 60)
+#: points of the history: more where two do not agree, as a fast mode turns often in a long history
+GRIDS = (30, 60, 90, 135, 200)
+#: share within which two grids agree
+AGREEMENT = 1e-3
+
+
+def rightmost_of_two(now, late):
+    """Largest real part of the modes by two grids that agree, or the finest; late: as below."""
+    before = rightmost(now, late, GRIDS[0])
+    size = np.abs(np.linalg.eigvals(now)).max()
+    for points in GRIDS[1:]:
+        after = rightmost(now, late, points)
+        pair = np.array([before, after])
+        if abs(after - before) <= AGREEMENT * abs(after) + NEAR * size:
+            break
+        before = after
+    return pair
 
 
 def rightmost(now, late, points):

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 import sympy as sp
 from passivity.attacks.budget import attacked
-from passivity.attacks.late_modes import GRIDS, NEAR, rightmost
+from passivity.attacks.late_modes import NEAR, rightmost_of_two
 
 from teleopdesign.errors import UnstableLoop
 from teleopdesign.frequency import LoopGain, delay_margin, gain_margin
@@ -68,7 +68,18 @@ class LateLoop:
             more = 0.0 if self.inner and k == 1 else further
             late.append((-enters @ leaves, self.times[k] + more))
         size = np.abs(np.linalg.eigvals(now)).max()
-        return np.array([rightmost(now, late, points) for points in GRIDS]) / size
+        return rightmost_of_two(now, late) / size
+
+
+def test_the_attacker_sees_a_fast_mode_of_a_long_history():
+    """220 rad/s over 0.57 s: 30 points, and 60, make it grow where it decays."""
+    loop = object.__new__(LateLoop)
+    fast = [218.6, 12.13, -8.588], [1.0, 0.4877, 51.82, 23.11]
+    loop.parts = [([0.1131, 0.8512], [1.0, 1.771, 0.7818]), fast]
+    loop.times, loop.inner, loop.plain = [0.574, 0.0], False, False
+    margin = delay_margin(loop.gain())
+    assert (loop.modes(0.99 * margin) < NEAR).all()
+    assert (loop.modes(1.01 * margin) > -NEAR).all()
 
 
 @attacked(5, 150)
