@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 import threading
+import warnings
 import webbrowser
 from pathlib import Path
 from typing import NoReturn
@@ -31,6 +32,8 @@ def serve(host: str, port: int, token: str, *, open_browser: bool) -> NoReturn:
         listener.bind((host, port))
     except OSError as error:
         raise ExperimentError(f"--port {port}: {error.strerror}") from error
+    # where a figure has no room for its layout the page shows it: nothing to say on the terminal
+    warnings.filterwarnings("ignore", message="constrained_layout not applied")
     address = f"http://{host}:{listener.getsockname()[1]}/?access_token={token}"
     page = marimo.create_asgi_app(quiet=True, token=token).with_app(path="", root=str(NOTEBOOK))
     config = uvicorn.Config(page.build(), log_level="error", timeout_graceful_shutdown=1)
