@@ -172,7 +172,8 @@ def test_design_and_passivity_have_one_interval():
         lowest=same.lowest.round_outward(digits=DIGITS),
         highest=same.highest.round_outward(digits=DIGITS),
     )
-    assert found.lowest.low == pytest.approx(0.4, rel=1e-4)
+    # 0.4 N by hand; what is guaranteed is a hair less, and rounded outward
+    assert found.lowest.low == pytest.approx(0.4, rel=3e-4) and found.lowest.low <= 0.4
     claim = claims_on(body, level=0.3, reach=REACH)["any law within the level"]
     assert claim.status == "proved"
     assert "levels over speed 0 to 3 m/s, position -0.05 to 0.05 m" in claim.statement
