@@ -85,9 +85,10 @@ def doubt(fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA) -> s
     By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
     of its parameters may be open, and so may those of which a product is known. "": none
     """
-    together = list_known_in_product(fit, f"{candidate.at}.{candidate.effect.name}")
+    start = f"{candidate.at}.{candidate.effect.name}"
+    together = list_known_in_product(fit, start, criteria=criteria)
     for name, declared in candidate.effect.parameters.items():
-        full = f"{candidate.at}.{candidate.effect.name}.{name}"
+        full = f"{start}.{name}"
         if full not in fit.free or declared.optional or full in together:
             continue
         if not (is_strength(fit.model, full) or declared.search.essential):

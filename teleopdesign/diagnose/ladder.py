@@ -85,7 +85,7 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
     Where no effect is supported alone, a straight line is fitted in place of bends, and effects
     that explained equally well are compared again; then, where more than a tone is left, a pair is
     sought, then a transmission with friction behind it, then an exchange, then a pair in place of
-    all rungs.
+    all rungs, then many effects at once.
     """
     if state.step > search.plan.most_effects:
         return straighten(search, state)

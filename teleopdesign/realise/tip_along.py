@@ -21,8 +21,8 @@ import numpy as np
 from ..machine_code import compile_and_keep
 from ..measurement.filtering import Array
 
-#: rad by which the tip swings in one step: a twelfth of a turn about doubles the work of a sixth,
-#: and moves no best start by as much as two starts lie apart
+#: rad by which the tip swings in one step, some 38 steps a turn: held to 10 % of the force against
+#: an integration. Smaller: slower; larger: courses drift from those that the effects' laws give
 SWING = 1.0 / 6.0
 
 
