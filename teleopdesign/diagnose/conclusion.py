@@ -12,6 +12,7 @@ from itertools import pairwise
 
 from ..measurement.motion import Motion
 from .adequacy import moment_above_noise
+from .between_rows import floor_between_rows
 from .candidates import Candidate
 from .corrected_fit import correct_fit
 from .criteria import CRITERIA, Criteria
@@ -65,6 +66,8 @@ def conclude(
     model = rungs[-1].fit.model
     search.progress("what could be learned")
     trees = learnable(model, search.whole, beside=beside, seed=search.seed)
+    last, whole = rungs[-1].fit, search.whole
+    floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,

@@ -98,6 +98,10 @@ class Criteria:
     #: recordings, boosted trees recovered 0.54 to 1.03 of the squares, 0.98 in the middle. Lower:
     #: what they miss is taken for what does not repeat; higher: that stands against every name
     missed: float = 0.5
+    #: part of what is left that a black box may learn where what is left is said not to repeat. A
+    #: tenth: its own errors add as much. Lower: a slow log's scatter is called missing physics;
+    #: higher: physics is called scatter
+    repeats: float = 0.1
     #: check error over fit error from which the text says that the records differ: 0.7 to 1.6 on
     #: nine recordings of real machines. Lower: said of chance; higher: of other machines only
     differ: float = 3.0

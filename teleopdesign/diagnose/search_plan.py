@@ -96,6 +96,9 @@ class SearchPlan:
     #: sought, as at the joints of an arm, where it was not measured
     tip_starts: int = 2
     tip_refined: int = 60
+    #: factor within which the best near by is sought: neighbours on the grid are 2.0 apart at most.
+    #: Without one a search that nothing holds ran off to tips that swing at 1e9 rad/s, for hours
+    tip_near: float = 4.0
     #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
     #: between two
     tone_fineness: int = 4

@@ -129,6 +129,7 @@ class _LinearProblem:
         from scipy.optimize import minimize  # half a second: only where a gear is sought
 
         start = np.array([v for v in (course.gap, course.swing, course.slowing) if v])
+        near = np.log(plan.tip_near)
 
         def course_at(x: Array) -> _Course:
             values = (start * np.exp(x)).tolist()
@@ -138,6 +139,7 @@ class _LinearProblem:
             lambda x: self.solve(course_at(x)).squares,
             np.zeros(len(start)),
             method="Nelder-Mead",
+            bounds=[(-near, near)] * len(start),
             options={"maxfev": plan.tip_refined, "initial_simplex": _simplex(len(start), 0.3)},
         )
         return self.solve(course_at(best.x))

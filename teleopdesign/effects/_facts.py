@@ -33,6 +33,9 @@ ALIKE = 0.9
 #: travels per period from which something is seen to repeat. One and a half: half of it comes
 #: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
 REPEATS = 1.5
+#: part of its variation that models of real machines leave: a function of the place that bends by
+#: less over the travel is hardly distinguished from a straight line. Higher: doubted if it bends
+STRAIGHT = 0.1
 
 
 @dataclass(frozen=True)

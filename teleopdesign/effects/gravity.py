@@ -11,9 +11,7 @@ import numpy as np
 from sympy import sin
 
 from ._effect import Effect, FitSearch, Parameter, positive_amplitude
-
-#: part of its variation that models of real machines leave. Higher: gravity is doubted if it bends
-STRAIGHT = 0.1
+from ._facts import STRAIGHT
 
 
 def law(now, p):

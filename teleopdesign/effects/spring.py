@@ -3,14 +3,28 @@
     F = K x
 
 Cables, bushings, gravity near the bottom of a pendulum. Counted from the encoder's zero: elsewhere
-a spring comes with a `bias`.
+a spring comes with a `bias`. On a revolute axis `gravity` does nearly the same where the travel is
+much less than half a turn to either side.
 """
 
+import numpy as np
+
 from ._effect import Effect, Parameter
+from ._facts import STRAIGHT
 
 
 def law(now, p):
     return p.stiffness * now.position
+
+
+def untold(p, facts):
+    if facts.axis != "revolute" or (bend := facts.bend(np.sin)) >= STRAIGHT:
+        return None
+    travel = facts.text(facts.travel, "position")
+    return (
+        f"over a travel of {travel} the gravity of a link that hangs down at 0 gives this torque "
+        f"within {100 * bend:.2g} % of its variation: hardly distinguished from `gravity`"
+    )
 
 
 EFFECT = Effect(
@@ -20,5 +34,6 @@ EFFECT = Effect(
     linear=True,
     parameters={"stiffness": Parameter("stiffness", "K: force per travel")},
     absent={"stiffness": 0.0},
+    untold=untold,
     source="Hooke's law",
 )

@@ -1,5 +1,7 @@
 """Gears: a gap or a spring, with dry friction behind it, found together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from effects.recorded import write_recorded
@@ -9,7 +11,8 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import base_of
-from teleopdesign.diagnose.tip_start import tip_starts
+from teleopdesign.diagnose.search_plan import PLAN
+from teleopdesign.diagnose.tip_start import _Course, _linear_problem, tip_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.model import Model
 
@@ -41,6 +44,21 @@ def test_searches_begin_near_the_true_gap(gear):
     assert values["device.tip_friction.level"] == pytest.approx(0.3, rel=0.5)
     # what the friction behind the gap does is no more put down to the friction before it
     assert values["device.coulomb.level"] < base.model.parameters["device.coulomb.level"].value
+
+
+def test_a_search_that_nothing_holds_stays_near_its_grid(gear):
+    """Where no gap helps, squares fall a hair to where the tip swings ever faster."""
+    prepared = prepare(gear)
+    base = estimate(Model.from_experiment(gear), prepared)
+    problem = _linear_problem(base, prepared.of("fit"), "device", PLAN)
+    flat = replace(problem, left=problem.left * 0.0)
+    for one in (problem, flat):
+        for swing in (PLAN.tip_swings[1] * 300.0, 20.0):
+            start = _Course(1e-3, swing, 5.0)
+            best = one.refine(start, replace(PLAN, tip_refined=400)).course
+            for name in ("gap", "swing", "slowing"):
+                ratio = getattr(best, name) / getattr(start, name)
+                assert 1 / PLAN.tip_near <= ratio * 1.001 and ratio <= PLAN.tip_near * 1.001
 
 
 def test_no_search_begins_where_a_hand_moves_the_tip(gear):

@@ -1,5 +1,6 @@
-"""Gravity's own file says where a spring and a constant force would do as well."""
+"""Gravity and a spring: each one's file says where the other would do as well."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -44,3 +45,11 @@ def test_without_samples_or_travel_nothing_is_said():
     p = SimpleNamespace(amplitude=2.0, phase=0.0)
     still = facts(0.3, 0.3)
     assert EFFECTS["gravity"].untold(p, still) is None
+
+
+def test_a_spring_says_where_a_hanging_link_would_do_as_well():
+    spring, p = EFFECTS["spring"].untold, SimpleNamespace(stiffness=2.0)
+    assert "`gravity`" in spring(p, facts(-1.2, 1.2)) and "2.4 rad" in spring(p, facts(-1.2, 1.2))
+    assert spring(p, facts(-2.0, 2.0)) is None, "there a link's torque falls again"
+    linear = facts(-0.5, 0.5)
+    assert spring(p, replace(linear, axis="prismatic")) is None

@@ -1,0 +1,85 @@
+"""A command that changes between the rows of a log: what its scatter alone would leave.
+
+A controller that is faster than the log changes its command within a row. The log holds one value
+of many, and what lies between them acts unseen: steps of an encoder that the controller
+differentiates, corners at reversals. In the log that is a scatter from row to row, as of a sensor.
+
+Where the log is as fast as the controller the same scatter is held for the whole row, acts, and
+moves the body: there it is no noise. So it counts only at the end of a search, and only where
+
+- the command is late by about half a row: the value that is logged lies amid those that act;
+- a black box learns nothing of what is left from the motion, and no effect explains it;
+- what is left is as small as the scatter makes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from ..measurement.encoder import reading_noise
+from ..measurement.experiment import Experiment
+from .adequacy import is_adequate
+from .criteria import CRITERIA, Criteria
+from .fit import Fit
+from .learnable import Learnable
+from .noise_floor import NoiseFloor, noise_floor
+from .prepare import Prepared
+from .record_shift import CLOCK, LoggerClock, RecordShift, shifts_of
+
+
+def floor_between_rows(
+    fit: Fit,
+    floor: NoiseFloor,
+    learned: Learnable | None,
+    prepared: Prepared,
+    generator: np.random.Generator,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> NoiseFloor:
+    """The noise floor, with the scatter of sampled commands where all of the above holds.
+
+    fit: the last of a ladder;  learned: what a black box learns of what it leaves, None: not asked
+    """
+    if is_adequate(fit, floor, criteria=criteria) or learned is None:
+        return floor
+    if learned.part > criteria.repeats * learned.left:
+        return floor
+    shifts = shifts_of(fit.model, prepared.stretches)
+    scatter = command_scatter(prepared.experiment, {s.at for s in shifts if is_amid_a_row(s)})
+    if not scatter:
+        return floor
+    experiment = with_noise(prepared.experiment, scatter)
+    drawn = noise_floor(fit.model, replace(prepared, experiment=experiment), generator)
+    # no floor lies above what a right model leaves
+    limited = replace(drawn, value=min(drawn.value, fit.check_error))
+    source = f"{floor.source}, and a command that changes within a row"
+    return replace(limited, source=source) if is_adequate(fit, limited) else floor
+
+
+def is_amid_a_row(shift: RecordShift, *, clock: LoggerClock = CLOCK) -> bool:
+    """Whether a command is surely late by about half a row, or its force was measured."""
+    rows, error = shift.late / shift.row, shift.stderr / shift.row
+    return shift.measured or abs(rows - 0.5) + error <= clock.amid
+
+
+def command_scatter(experiment: Experiment, bodies: set[str]) -> Mapping[str, float]:
+    """Channel ("device.actuator_force") -> rms scatter of its rows, where no noise is stated."""
+    scatter = {}
+    for body in bodies:
+        name = f"{body}.actuator_force"
+        if name in experiment.channels and experiment.channels[name].noise is None:
+            sizes = [reading_noise(r.signals[name]) for r in experiment.records]
+            scatter[name] = float(np.median(sizes))
+    return {name: size for name, size in scatter.items() if size > 0.0}
+
+
+def with_noise(experiment: Experiment, noise: Mapping[str, float]) -> Experiment:
+    """The experiment with these channels' noise (rms, SI) stated."""
+    channels = {
+        name: replace(channel, noise=noise[name]) if name in noise else channel
+        for name, channel in experiment.channels.items()
+    }
+    return replace(experiment, channels=channels)
