@@ -84,6 +84,12 @@ WANTED = (
 )
 
 
+#: words and units of what is neither place nor speed nor force
+OTHER_QUANTITIES = frozenset(
+    "pressure press druck pression bar mbar psi pa kpa mpa hpa temperature temp temperatur celsius "
+    "degc kelvin humidity flow".split()
+)
+
 #: beginnings of words that say the same: "Sollwinkel", "targetPosition"
 WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consigne", "目標", "指令")
 
@@ -169,6 +175,11 @@ def likeness(name: str, quantity: str) -> float:
             if exact or ends or len(known) > 3 and word.startswith(known):
                 best = max(best, (1.0 if exact else 0.9) - 0.02 * min(rank, LAST_RANK))
     return best
+
+
+def is_another_quantity(name: str) -> bool:
+    """Whether a name says a pressure, a temperature or the like."""
+    return bool(OTHER_QUANTITIES.intersection(words_of(name)))
 
 
 def is_wanted(name: str) -> bool:

@@ -26,6 +26,11 @@ _SLOW = 0.02
 #: low-pass carries such a force into rows beside: one period at 20 Hz. On a simulated joint whose
 #: friction has a Stribeck peak, the error of a balance falls from 13 % to 0.5 % with both
 _AT_REST, _REACH = 0.1, 0.05
+#: standard errors from which the sign of a part of the force is told; three: one in 700 by chance
+_SURELY = 3.0
+#: part of its rms by which a direction or speed must vary, or the motion goes one way: a twentieth,
+#: as noise and the low-pass at the ends bring
+_ONE_WAY = 0.05
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,39 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
     m, c, b = solution[:3].tolist()
     of_each = float(errors[0]), float(errors[1]), float(errors[2])
     return FirstGuess(m, c, b, explained, of_each, left)
+
+
+def is_turned(force: Array, position: Array, sample_time: float) -> bool:
+    """Whether a force (n,) drives where friction brakes, so that position or force has the other
+    sign.
+
+    Friction and damping take energy out, and inertia is positive. Of these two, what makes more of
+    the force decides, where the motion tells it surely: in slow motions inertia is lost among all
+    that is late, and a motion in one direction tells a friction from no constant force.
+    """
+    stretch = _stretch((force,), position, sample_time)
+    if stretch is None:
+        return False
+    (acceleration, direction, velocity, _), (target,) = stretch
+    force = target - target.mean()
+    parts: list[tuple[float, float, float]] = []  # size of its force, value, what is left
+    inertia: list[tuple[float, float]] = []
+    for braked in (direction, velocity):
+        apart = braked - braked.mean()  # from a constant force, which belongs to neither
+        if np.std(braked) <= _ONE_WAY * np.sqrt(np.mean(braked**2)):
+            continue
+        columns = np.stack([acceleration - acceleration.mean(), apart])
+        fit = _least_squares(columns, force, sample_time)
+        if fit is None:
+            return False
+        solution, errors, left = fit
+        if np.abs(solution[1]) > _SURELY * errors[1]:
+            parts.append((float(np.abs(solution[1]) * np.std(braked)), float(solution[1]), left))
+        if np.abs(solution[0]) > _SURELY * errors[0]:
+            size = float(np.abs(solution[0]) * np.std(acceleration))
+            inertia.append((size, float(solution[0])))
+    sizes = [*(p[:2] for p in sorted(parts, key=lambda p: p[2])[:1]), *inertia[:1]]
+    return bool(sizes) and max(sizes)[1] < 0.0
 
 
 def balance_factor(

@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from shared_data import shared_folder
 
 from teleopdesign.commands.new import survey_text
 from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement import load_experiment
 from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.first_guess import explain_force, is_turned
 from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey.forces import DRIVES
 from teleopdesign.measurement.survey.remarks import counts_per_turn_in, torque_constant_in
 
 ROWS = 1200
@@ -53,6 +57,72 @@ def test_the_angle_of_a_wheel_that_only_turns_forward_is_a_position():
     survey = look({"t_s": T, "angle_deg": np.rad2deg(q), "current_A": U})
     assert survey.channels["position"]["column"] == "angle_deg"
     assert survey.channels["time"]["column"] == "t_s"
+
+
+def strokes(forward, back, seconds=2.0):
+    """Places (m) of strokes at two speeds, with round turns."""
+    speed = np.where(np.sin(np.pi * T / seconds) > 0, forward, -back)
+    smooth = np.convolve(speed, np.ones(21) / 21, "same")
+    return np.cumsum(smooth) * 0.005
+
+
+@pytest.mark.parametrize(
+    ("name", "by_speed"), [("p_2", 0.0), ("pressure_bar", 4.0), ("Druck [bar]", 40.0)]
+)
+def test_a_pressure_that_friction_asks_for_is_no_velocity(name, by_speed):
+    """It goes by the direction, or its name says what it is."""
+    x = strokes(0.005, 0.011)
+    rng = np.random.default_rng(2)
+    v = np.gradient(x, T)
+    pressure = 5.0 + 0.04 * np.sign(v) + by_speed * v + 0.003 * rng.standard_normal(ROWS)
+    columns = {"t_s": T, "x_mm": 1e3 * x, name: pressure, "F_N": 250 + 8 * pressure}
+    survey = look(columns)
+    assert "velocity" not in survey.channels and survey.channels["position"]["column"] == "x_mm"
+    assert not any("derivative" in note for note in survey.notes)
+    columns["rate"] = np.gradient(x, T)
+    assert look(columns).notes == ["'rate' is the derivative of 'x_mm'"]
+
+
+def friction_of_strokes(late=0):
+    """Force of seal friction and damping in slow strokes, logged so many rows late."""
+    x = strokes(0.005, 0.011)
+    v = np.gradient(x, T)
+    force = 7.0 * np.tanh(v / 2e-4) + 300.0 * v + 250.0
+    force += 0.1 * np.random.default_rng(4).standard_normal(ROWS)
+    return x, np.r_[np.full(late, force[0]), force[: ROWS - late]]
+
+
+@pytest.mark.parametrize("late", [0, 4, 8])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_friction_tells_the_sign_where_a_late_force_makes_a_negative_inertia(late, side):
+    x, force = friction_of_strokes(late)
+    survey = look({"t_s": T, "x_mm": 1e3 * x, "F_N": side * force})
+    assert ("channels.position.sign" in survey.guesses) == (side < 0)
+
+
+def test_a_motion_in_one_direction_tells_no_sign():
+    """Chatter about one speed: a constant force is no friction."""
+    x = 0.02 * T + 2e-5 * np.sin(2 * np.pi * 3.0 * T)
+    for seed in range(20):
+        force = 5.0 + 2.0 * np.random.default_rng(seed).standard_normal(ROWS)
+        for side in (1.0, -1.0):
+            assert not is_turned(side * force, x, 0.005)
+
+
+@pytest.mark.parametrize(
+    "name", ["cicese_gravity", "cicese_presliding", "dm8009", "emps", "hsm150", "mtm_wrist",
+             "psm_insertion", "ur10e_joint1"],
+)  # fmt: skip
+def test_on_real_recordings_the_sign_is_as_it_was_logged(name):
+    experiment = load_experiment(shared_folder("data") / name)
+    for record in experiment.records:
+        signals, rows = record.signals, max(record.segments, key=lambda s: s.stop - s.start)
+        position = signals["device.position"][rows]
+        forces = ("device.actuator_force", "device.interaction_force")
+        force = sum(signals[n][rows] for n in forces if n in signals)
+        assert not is_turned(force, position, record.sample_time)
+        told = explain_force(force, position, record.sample_time).explained > DRIVES
+        assert is_turned(-force, position, record.sample_time) or not told
 
 
 @pytest.mark.parametrize("name", ["current_A", "Torque [Nm]", "speed [rad/s]", "F (N)"])

@@ -9,7 +9,7 @@ from ...errors import ExperimentError
 from ...quantity import is_unit, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
-from ..first_guess import FirstGuess, explain_force
+from ..first_guess import FirstGuess, explain_force, is_turned
 from .acting import current_that_acted, names_current
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
@@ -176,7 +176,7 @@ def _choose_signs(
     x, h = motion
     u = survey.columns[force].values * force_to_si(survey, "actuator_force")
     whole = explain_force(u, x, h)
-    with_hand = whole
+    with_hand, total = whole, u
     if hand is not None:
         f = survey.columns[hand].values * force_to_si(survey, "interaction_force")
         by_sign = {s: explain_force(u + s * f, x, h) for s in (1.0, -1.0)}
@@ -190,16 +190,13 @@ def _choose_signs(
             )
         else:
             better = 1.0
-        with_hand = by_sign[better]
-    turned = with_hand.inertia < -3.0 * with_hand.errors[0] or (
-        abs(with_hand.inertia) < 3.0 * with_hand.errors[0] and with_hand.level < 0
-    )
-    if turned and with_hand.explained > DRIVES:
+        with_hand, total = by_sign[better], u + better * f
+    if with_hand.explained > DRIVES and is_turned(total, x, h):
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1
         survey.guesses["channels.position.sign"] = (
-            "-1: as logged, friction would drive the motion and inertia be negative"
+            "-1: as logged, friction would drive the motion, or inertia be negative"
         )
         with_hand = FirstGuess(
             -with_hand.inertia,

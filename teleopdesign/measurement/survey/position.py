@@ -9,9 +9,10 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ...quantity import measures, si_factor
-from ..column_names import is_wanted, likeness, words_of
+from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
+from ..first_guess import motion_columns
 from .content import (
     SURE_NAME,
     Array,
@@ -76,6 +77,18 @@ def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, fl
     return float(a @ b) / power, float(a @ b) / math.sqrt(power * float(b @ b))
 
 
+def follows_direction(x: Array, v: Array, sample_time: float) -> bool:
+    """Whether a column goes by the direction of a motion rather than by its speed.
+
+    So do friction, and the pressure that it needs.
+    """
+    velocity, _, direction = motion_columns(x, sample_time)
+    inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        alike = np.corrcoef([v[inner], velocity[inner], direction[inner]])[0]
+    return bool(alike[2] > alike[1])
+
+
 def find_position(
     survey: Survey, time_name: str | None, choices: Choices, file: str
 ) -> tuple[str, str | None]:
@@ -91,9 +104,12 @@ def find_position(
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
-            if other == name or _is_force(column_2):  # friction alone is much like a velocity
+            # friction, and the pressure that it asks for, are much like a velocity
+            if other == name or _is_force(column_2) or is_another_quantity(other):
                 continue
             _, agree = derivative_factor(flat[name], column_2.values, h)
+            if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
+                continue
             if agree > max(DERIVATIVE, derivative.get(name, ("", 0.0))[1]):
                 derivative[name] = (other, agree)
         scores[name] = score + 0.4 * (name in derivative)
@@ -141,6 +157,13 @@ def _may_be_position(column: SurveyedColumn) -> bool:
         return True
     said = likeness(column.name, "position") >= SURE_NAME or is_unit_of(column.unit, "position")
     return said and not is_unit_of(column.unit, "time")
+
+
+def _is_velocity(column: SurveyedColumn) -> bool:
+    """Whether unit or name say that a column is a velocity."""
+    if is_unit_of(column.unit, "velocity"):
+        return True
+    return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
 
 
 def _is_force(column: SurveyedColumn) -> bool:
