@@ -79,6 +79,7 @@ def test_a_pressure_that_friction_asks_for_is_no_velocity(name, by_speed):
     survey = look(columns)
     assert "velocity" not in survey.channels and survey.channels["position"]["column"] == "x_mm"
     assert not any("derivative" in note for note in survey.notes)
+    assert ("a pressure that acts on the body" in survey.unused[name]) == (name != "p_2")
     columns["rate"] = np.gradient(x, T)
     assert look(columns).notes == ["'rate' is the derivative of 'x_mm'"]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ...quantity import is_unit
-from ..column_names import is_wanted, likeness
+from ..column_names import is_another_quantity, is_wanted, likeness
 from ..doors._log import Log
 from .content import (
     SURE_NAME,
@@ -58,6 +58,11 @@ def _why_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
     if unit is not None and is_unit(unit) and not kinds:
         return f"in {unit}: no position, velocity or force"
+    if is_another_quantity(name) and not kinds:
+        return (
+            "by its name no position, velocity or force; a pressure that acts on the body is one: "
+            f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
+        )
     if is_wanted(name) and "force" not in kinds:
         return "what was wanted, not what was measured"
     x = survey.columns[position].values
