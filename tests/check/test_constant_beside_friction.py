@@ -1,0 +1,48 @@
+"""A weight or a pressure of many times the friction turns no sign."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.check import check_experiment
+
+EXPERIMENT = """title = "Cylinder"
+[model.device]
+axis = "prismatic"
+inertia = { value = 0.5, unit = "kg", fixed = false }
+[model.device.effects]
+coulomb = { level = { value = 7.0, unit = "N" } }
+viscous = { damping = { value = 100.0, unit = "N*s/m" } }
+[channels]
+time = { column = "t", unit = "s" }
+position = { column = "x", unit = "m", resolution = 1e-6 }
+actuator_force = { column = "f", unit = "N" }
+[[records]]
+file = "strokes.csv"
+use = "fit"
+"""
+
+
+def write_strokes(folder, side, pressure):
+    """Strokes at two speeds against a pressure (N) that the model lacks."""
+    folder.mkdir()
+    t = 0.01 * np.arange(2000)
+    speed = np.where(np.sin(np.pi * t / 2.5) > 0, 0.005, -0.011)
+    x = np.cumsum(np.convolve(speed, np.ones(15) / 15, "same")) * 0.01
+    v = np.gradient(x, t)
+    force = pressure + 7.0 * np.tanh(v / 2e-4) + 100.0 * v
+    force += 0.1 * np.random.default_rng(1).standard_normal(len(t))
+    rows = np.column_stack([t, x, side * force])
+    np.savetxt(folder / "strokes.csv", rows, delimiter=",", header="t,x,f", comments="")
+    (folder / "experiment.toml").write_text(EXPERIMENT)
+    return td.load_experiment(folder)
+
+
+@pytest.mark.parametrize(
+    ("side", "pressure", "is_said"),
+    [(1.0, 250.0, False), (1.0, 15.0, False), (1.0, 0.0, False), (-1.0, 0.0, True)],
+)
+def test_friction_beside_a_pressure_tells_the_sign(side, pressure, is_said, tmp_path):
+    findings = check_experiment(write_strokes(tmp_path / "strokes", side, pressure))
+    said = [f for f in findings if "opposite sign" in f.sentence]
+    assert bool(said) == is_said, [f.sentence for f in findings]
