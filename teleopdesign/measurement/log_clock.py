@@ -260,7 +260,8 @@ def _stamps(
         done = ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)
         return True, [replace(done, interpolates=True)]
     slope, error = stamps_are_true(clock, positions)
-    text = f"stamps {100 * clock.jitter / h:.2g} % of a row off an even clock"
+    off = float(f"{100 * clock.jitter / h:.2g}")
+    text = f"stamps {off:g} % of a row off an even clock"
     share = f"{slope:.2f} +- {error:.1g} of what they say"
     sure = abs(slope - 0.5) > SURE * error
     stamped = slope > 0.5 and math.isfinite(error)
@@ -270,7 +271,7 @@ def _stamps(
         )
         effect = _effect_of_even_stamps(clock, positions)
     else:
-        rule = f"an even clock: the position does not follow the stamps ({share})"
+        rule = f"read on an even clock, for the position does not follow the stamps ({share})"
         effect = "none"
     if not sure:
         effect = "the position hardly tells, so that it makes little difference"
