@@ -28,14 +28,14 @@ class ByValue:
 
 
 def _repr_by_fields(self: Any) -> str:
-    shown = (f"{f.name}={_short(getattr(self, f.name))}" for f in fields(self) if f.repr)
+    shown = (f"{f.name}={_shorten(getattr(self, f.name))}" for f in fields(self) if f.repr)
     return f"{type(self).__qualname__}({', '.join(shown)})"
 
 
-def _short(value: Any) -> str:
+def _shorten(value: Any) -> str:
     """The `repr` of a value, with shape and range in place of an array's numbers."""
     if type(value) in (list, tuple) and any(hasattr(v, "dtype") for v in value):
-        return f"[{', '.join(map(_short, value))}]"
+        return f"[{', '.join(map(_shorten, value))}]"
     if not hasattr(value, "dtype") or hasattr(value, "identical") or not value.shape:
         return repr(value)
     entries = " x ".join(map(str, value.shape))

@@ -20,7 +20,7 @@ def check_swapped(
     model: Model, prepared: Prepared, balances: Mapping[str, ForceBalance]
 ) -> Iterator[Finding]:
     """Columns that fit far better if swapped; tested only where the residual is large."""
-    before = _worst(balances)
+    before = _find_worst(balances)
     if before < UNEXPLAINED or len(model.bodies) < 2:
         return
     keys = prepared.experiment.channels
@@ -32,7 +32,7 @@ def check_swapped(
             other = prepare(
                 _exchange_columns(prepared.experiment, a, b), bandwidth=prepared.bandwidth
             )
-            after = _worst(force_balances(model, other, timed=False))
+            after = _find_worst(force_balances(model, other, timed=False))
             if after < SWAPPED * before:
                 yield Finding(
                     "swapped columns",
@@ -43,7 +43,7 @@ def check_swapped(
                 )
 
 
-def _worst(balances: Mapping[str, ForceBalance]) -> float:
+def _find_worst(balances: Mapping[str, ForceBalance]) -> float:
     return max((b.left for b in balances.values()), default=0.0)
 
 

@@ -115,9 +115,9 @@ def visibilities(
 
 def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> Visibility:
     shapes = _shapes(candidate, scene.base.model, unit)
-    best, shaped = _best(candidate, shapes, 1.0, scene)
+    best, shaped = _find_best(candidate, shapes, 1.0, scene)
     if best.unique_share < CRITERIA.least_unique_share:
-        best, shaped = _best(candidate, shapes, STRONG, scene)
+        best, shaped = _find_best(candidate, shapes, STRONG, scene)
     if best.unique_share >= CRITERIA.least_unique_share:
         best = _strength_at_threshold(candidate, best, shaped, scene)
     shows = best.unique_share >= CRITERIA.least_unique_share and best.part >= scene.threshold
@@ -134,7 +134,7 @@ def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> 
     )
 
 
-def _best(
+def _find_best(
     candidate: Candidate, shapes: Sequence[Model], factor: float, scene: _Scene
 ) -> tuple[_Trial, Model]:
     """The shape that shows most at equal strength; one that nothing imitates goes first."""

@@ -30,17 +30,17 @@ def failure(error: BaseException, options: argparse.Namespace | None) -> tuple[s
     if isinstance(error, TeleopDesignError):
         return str(error), BAD_INPUT
     if (place := _place_in(error, tuple(python_files(options)))) is not None:
-        return _short(f"{place}: {_error_text(error)}"), BAD_INPUT
+        return _shorten(f"{place}: {_error_text(error)}"), BAD_INPUT
     read = ", ".join(map(str, inputs(options))) or "the command"
     if isinstance(error, MemoryError):
         return f"{read}: needs more memory than there is: use shorter records", BAD_INPUT
     if isinstance(error, RecursionError):
         return f"{read}: nested too deeply, expected some ten levels at most", BAD_INPUT
     if isinstance(error, UnicodeError):
-        return _short(f"{read}: expected UTF-8 text: {error}"), BAD_INPUT
+        return _shorten(f"{read}: expected UTF-8 text: {error}"), BAD_INPUT
     if isinstance(error, OSError):
-        return _short(_describe_system_error(error, read)), BAD_INPUT
-    return _short(
+        return _shorten(_describe_system_error(error, read)), BAD_INPUT
+    return _shorten(
         f"internal error in {_origin(error)}: {_error_text(error)}: please report it"
     ), INTERNAL
 
@@ -83,6 +83,6 @@ def _origin(error: BaseException) -> str:
     return "teleopdesign"
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     line = printable(text)
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 3]}..."

@@ -67,7 +67,7 @@ def _table(results: list[Result], width: int) -> str:
         known = textwrap.wrap(r.outcome, second - 1) + [""] * len(cell)
         rows = zip(named, known, cell, strict=False)
         lines += [f"{a:<{first}}{b:<{second}}{c}".rstrip() for a, b, c in rows]
-        lines += [f"{'':<{first + second}}{why}" for why in _why_failed(r)]
+        lines += [f"{'':<{first + second}}{why}" for why in _explain_failure(r)]
         lines.append("")
     head = f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it"
     return "\n".join([head, "-" * width, *lines])
@@ -79,7 +79,7 @@ def _code(statement: Statement) -> str:
     return f"no code, see {', '.join(f'P{n}' for n in statement.see)}"
 
 
-def _why_failed(result: Result) -> list[str]:
+def _explain_failure(result: Result) -> list[str]:
     if result.outcome != "failed":
         return []
     return [*result.details, *(str(f) for f in result.figures if not f.margin >= 0)]

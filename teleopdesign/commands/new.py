@@ -142,8 +142,8 @@ def survey_text(survey: Survey, name: str) -> str:
     for key, entry in survey.channels.items():
         said = ("column", "unit") if "column" in entry else entry
         rest = {k: v for k, v in entry.items() if k not in said}
-        more = ", ".join(f"{k} {_short(v)}" for k, v in rest.items())
-        column = f'"{entry["column"]}"' if "column" in entry else _short(entry)
+        more = ", ".join(f"{k} {_shorten(v)}" for k, v in rest.items())
+        column = f'"{entry["column"]}"' if "column" in entry else _shorten(entry)
         unit = f" in {entry['unit']}" if "column" in entry else ""
         lines.append(f"  {key:<18} {column}{unit}{', ' + more if more else ''}")
     lines += [f"  {note}" for note in survey.notes]
@@ -182,7 +182,7 @@ def _option_of(key: str, survey: Survey) -> str:
     }.get(key, "")
 
 
-def _short(value: object) -> str:
+def _shorten(value: object) -> str:
     if isinstance(value, dict):
         return f"{value['value']:g} {value['unit']}"
     return f"{value:g}" if isinstance(value, int | float) and value is not True else str(value)

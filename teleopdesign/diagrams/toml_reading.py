@@ -50,13 +50,13 @@ def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -
     head = root.table("diagram")
     try:
         if "kind" in head.content:
-            return _short(root, head, effects)
+            return _read_short_form(root, head, effects)
         return _read_free_diagram(root, head, effects)
     except ModelError as error:
         raise ExperimentError(f"{path.name}: {error}") from error
 
 
-def _short(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
+def _read_short_form(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
     """The wiring is that of the package: blocks only."""
     root.allow(("diagram", "blocks"))
     head.allow(("kind", "name"))

@@ -38,12 +38,12 @@ def _sentences(proposal: Proposal) -> list[str]:
     decided = [p for p in pairs if proposal.decides(p)]
     left_open = [p for p in pairs if not proposal.decides(p)]
     if proposal.is_useful:
-        said.append(_what_to_do(proposal))
+        said.append(_describe_motion(proposal))
     if len(decided) > FEW:
-        said.append(_how_many(proposal, decided))
+        said.append(_describe_count(proposal, decided))
     else:
-        said += [_what_it_shows(proposal, p) for p in decided]
-    said += [_what_stays_open(proposal, p) for p in left_open]
+        said += [_describe_gain(proposal, p) for p in decided]
+    said += [_describe_rest(proposal, p) for p in left_open]
     if proposal.diagnosis.more_is_missing:
         said.append(
             f"None of these models explains the present records: {proposal.diagnosis.left:.1f} "
@@ -71,7 +71,7 @@ def select_pair(proposal: Proposal, pair: tuple[int, int]) -> list[Separation]:
     return [s for s in proposal.separations if {id(s.truth), id(s.other)} == ids]
 
 
-def _what_to_do(proposal: Proposal) -> str:
+def _describe_motion(proposal: Proposal) -> str:
     reference = proposal.reference
     assert reference is not None
     all_bodies = " and the ".join(reference.position)
@@ -85,7 +85,7 @@ def _what_to_do(proposal: Proposal) -> str:
     )
 
 
-def _how_many(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
+def _describe_count(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
     both = [s for p in decided for s in select_pair(proposal, p)]
     return (
         f"That tells {len(decided)} of {len(list_pairs_once(proposal))} pairs of "
@@ -96,7 +96,7 @@ def _how_many(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
     )
 
 
-def _what_it_shows(proposal: Proposal, pair: tuple[int, int]) -> str:
+def _describe_gain(proposal: Proposal, pair: tuple[int, int]) -> str:
     first, second = select_pair(proposal, pair)
     return (
         f"If {first.truth} is right, {first.other} then leaves {first.predicted:.1f} noise floors "
@@ -105,7 +105,7 @@ def _what_it_shows(proposal: Proposal, pair: tuple[int, int]) -> str:
     )
 
 
-def _what_stays_open(proposal: Proposal, pair: tuple[int, int]) -> str:
+def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     a, b = (proposal.rivals[i] for i in pair)
     most = min(s.predicted for s in select_pair(proposal, pair))
     said = (
@@ -224,7 +224,7 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
         if not both:
             continue
         decides = proposal.decides(pair)
-        text = _what_it_shows(proposal, pair) if decides else _what_stays_open(proposal, pair)
+        text = _describe_gain(proposal, pair) if decides else _describe_rest(proposal, pair)
         numbers = {f"present {i}": s.present for i, s in enumerate(both)}
         numbers |= {f"predicted {i}": s.predicted for i, s in enumerate(both)}
         findings.append(

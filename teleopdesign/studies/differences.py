@@ -135,7 +135,7 @@ def slopes_of(
         raise ModelError(reasons[0])
     beside = values[1:].reshape(len(names), len(SIZES), 2, len(signals), len(time))
     ladder = _difference(values[0], beside, offsets[..., None, None])
-    return SignalSlopes(time, values[0], *_best(ladder, np.abs(offsets).min(axis=2)))
+    return SignalSlopes(time, values[0], *_find_best(ladder, np.abs(offsets).min(axis=2)))
 
 
 def _offsets(case: SimulatedCase, name: str, value: float, scale: float) -> np.ndarray:
@@ -160,7 +160,7 @@ def _difference(centre: np.ndarray, beside: np.ndarray, offsets: np.ndarray) -> 
     return np.asarray((first * b - second * a) / (b - a))
 
 
-def _best(ladder: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _find_best(ladder: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slopes, how far apart, and sizes, where two neighbours of a ladder agree best.
 
     ladder: (parameters, sizes, signals, rows);  sizes: (parameters, sizes)

@@ -43,7 +43,7 @@ def difference(expected: Mapping[str, Any], experiment: Experiment) -> str | Non
     present = experiment_data(experiment)
     for key, words in (("title", "title"), ("axes", "bodies"), ("records", "records")):
         if expected[key] != present[key]:
-            return f"{words} {_short(expected[key])}, found {_short(present[key])}"
+            return f"{words} {_shorten(expected[key])}, found {_shorten(present[key])}"
     if expected["digest"] != present["digest"]:
         return "records of the same names, but they read differently now"
     return None
@@ -54,7 +54,7 @@ def bodies_text(axes: Mapping[str, str]) -> str:
     return ", ".join(f"{place} ({axis})" for place, axis in axes.items())
 
 
-def _short(entry: Any) -> str:
+def _shorten(entry: Any) -> str:
     if isinstance(entry, str):
         return f'"{entry}"' if len(entry) <= 60 else f'"{entry[:57]}..."'
     if isinstance(entry, Mapping):

@@ -31,10 +31,10 @@ def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[s
     used = {entry["column"] for entry in survey.channels.values() if "column" in entry}
     used |= {log.clocks[name] for name in used if name in log.clocks}
     left = [name for name in dict.fromkeys(log.names) if name not in used]
-    return {name: _why(name, log, raw, survey) for name in left}
+    return {name: _explain_unused(name, log, raw, survey) for name in left}
 
 
-def _why(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
+def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
     if (count := log.names.count(name)) > 1:
         return f"{count} columns have this name"
     if name not in raw:
@@ -49,10 +49,10 @@ def _why(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
         return "does not change"
     if rises(column.values):
         return "only rises, as a second clock or a counter does"
-    return _why_no_channel(column, survey)
+    return _explain_no_channel(column, survey)
 
 
-def _why_no_channel(column: SurveyedColumn, survey: Survey) -> str:
+def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     """Why a signal that changes is taken for neither position, nor velocity, nor force."""
     name, unit, position = column.name, column.unit, survey.channels["position"]["column"]
     kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
@@ -79,10 +79,10 @@ def _why_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     ):
         if quantity in kinds or not kinds and likeness(name, quantity) >= SURE_NAME:
             return why
-    return _why_no_force(name, survey)
+    return _explain_no_force(name, survey)
 
 
-def _why_no_force(name: str, survey: Survey) -> str:
+def _explain_no_force(name: str, survey: Survey) -> str:
     """By how much the motion explains it, beside the column that was taken."""
     force = survey.channels["actuator_force"]["column"]
     share, best = (survey.explained.get(n) for n in (name, force))

@@ -159,7 +159,7 @@ def sampled_compensation(
         f"{decimal(period)} s, is passive"
     )
     helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(presliding))
-    motion = _best(helps, against, float(b), float(period), late)
+    motion = _find_best(helps, against, float(b), float(period), late)
     if motion is None:
         why = f"a motion gives out energy, but one of more than {LONGEST:g} samples"
         return Claim(statement, Unknown(why))
@@ -170,7 +170,9 @@ def sampled_compensation(
     return Claim(statement, Refutation(how, motion))
 
 
-def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) -> Trembling | None:
+def _find_best(
+    helps: Dahl, against: Dahl, damping: float, period: float, late: int
+) -> Trembling | None:
     """The trembling that releases most power, of a length that can be written down."""
     bristle = against.level / against.stiffness
     longest = bristle
