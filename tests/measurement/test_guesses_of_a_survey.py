@@ -59,6 +59,16 @@ def test_the_angle_of_a_wheel_that_only_turns_forward_is_a_position():
     assert survey.channels["time"]["column"] == "t_s"
 
 
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [("ODrive 3 Position", "turns"), ("moteus_position", "turns"), ("motor position", "rad")],
+)
+def test_what_a_motor_reports_turns(name, unit):
+    survey = look({"time": T, name: Q, "current": U})
+    assert survey.axis == "revolute" and survey.channels["position"]["unit"] == unit
+    assert "channels.position.unit" in survey.guesses
+
+
 def strokes(forward, back, seconds=2.0):
     """Places (m) of strokes at two speeds, with round turns."""
     speed = np.where(np.sin(np.pi * T / seconds) > 0, forward, -back)

@@ -34,6 +34,11 @@ DERIVATIVE = 0.9
 #: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
 MOST_ANGLE = 50
+#: drives that report positions in turns; and words of what turns
+IN_TURNS = frozenset(("odrive", "moteus"))
+TURNING = IN_TURNS | set(
+    "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
+)
 #: part by which a velocity may differ from the position's derivative: filters, and its own rounding
 SAME_TIME = 0.1
 
@@ -189,7 +194,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         why, axis = "forces are in N", "prismatic"
     else:
         words = words_of(position)
-        turning = {"q", "angle", "winkel", "theta", "phi", "enc", "encoder", "joint"} & set(words)
+        turning = TURNING.intersection(words)
         axis = "revolute" if turning or unit == "counts" or "A" in units else "prismatic"
         why = f"the position is called {position!r}" if turning else "no unit or name says which"
     survey.guesses["model.device.axis"] = f'"{axis}": {why}'
@@ -302,6 +307,8 @@ def _position_unit(
         for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
             if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < 0.05:
                 return unit, f"{unit}: then it agrees with {velocity!r} in {said}"
+    if axis == "revolute" and (drives := IN_TURNS.intersection(words_of(column.name))):
+        return "turns", f"turns, in which {' and '.join(sorted(drives))} report positions"
     if axis == "revolute":
         unit = "deg" if reach > 50 else "rad"
     else:
