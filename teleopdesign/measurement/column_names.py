@@ -84,6 +84,9 @@ WANTED = (
 )
 
 
+#: two words that are one term, as controllers of ROS write them; and marks of a place's derivatives
+TERMS = {("set", "point"): "setpoint", ("process", "value"): "position"}
+DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
 #: words and units of what is neither place nor speed nor force
 OTHER_QUANTITIES = frozenset(
     "pressure press druck pression bar mbar psi pa kpa mpa hpa temperature temp temperatur celsius "
@@ -156,7 +159,22 @@ def words_of(name: str) -> list[str]:
     bare = re.sub(r"([a-z])([A-Z])", r"\1 \2", bare)
     letters = unicodedata.normalize("NFD", bare.lower())
     plain = "".join(c for c in letters if not "\u0300" <= c <= "\u036f")
-    return [w for w in re.split(r"[\W\d_]+", unicodedata.normalize("NFC", plain)) if w]
+    words = [w for w in re.split(r"[\W\d_]+", unicodedata.normalize("NFC", plain)) if w]
+    return _join_terms(words)
+
+
+def _join_terms(words: list[str]) -> list[str]:
+    """The words with terms of several of them as one: "set point", "process value", "theta dot"."""
+    joined: list[str] = []
+    for word in words:
+        pair = (joined[-1] if joined else "", word)
+        if pair in TERMS:
+            joined[-1] = TERMS[pair]
+        elif word in DERIVATIVES and joined and pair[0] in WORDS["position"]:
+            joined[-1] = DERIVATIVES[word]
+        else:
+            joined.append(word)
+    return joined
 
 
 def likeness(name: str, quantity: str) -> float:

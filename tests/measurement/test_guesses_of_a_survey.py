@@ -7,6 +7,7 @@ from shared_data import shared_folder
 from teleopdesign.commands.new import survey_text
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
+from teleopdesign.measurement.column_names import likeness
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.first_guess import explain_force, is_turned
 from teleopdesign.measurement.survey import Choices, survey_log
@@ -67,6 +68,32 @@ def test_what_a_motor_reports_turns(name, unit):
     survey = look({"time": T, name: Q, "current": U})
     assert survey.axis == "revolute" and survey.channels["position"]["unit"] == unit
     assert "channels.position.unit" in survey.guesses
+
+
+@pytest.mark.parametrize("name", ["torque", "tau", "effort", "Drehmoment"])
+def test_a_torque_turns_what_it_drives(name):
+    survey = look({"time": T, "position": Q, name: U})
+    assert survey.axis == "revolute" and survey.channels["actuator_force"]["unit"] == "N*m"
+    assert look({"time": T, "position": Q, "force": U}).axis == "prismatic"
+
+
+def test_the_state_of_a_controller_of_ros_is_read_by_its_terms():
+    rate = np.gradient(Q, T)
+    columns = {
+        "%time": 1e9 * T, "field.set_point": Q + 0.01, "field.process_value": Q,
+        "field.process_value_dot": rate, "field.error": 0.01 + 0.001 * rate, "field.command": U,
+        "field.measured_effort": U + 0.2 * np.random.default_rng(1).standard_normal(ROWS),
+    }  # fmt: skip
+    survey = look(columns)
+    assert survey.channels["position"]["column"] == "field.process_value"
+    assert "'field.process_value_dot' is the derivative of 'field.process_value'" in survey.notes
+    assert survey.channels["actuator_force"]["column"] == "field.command"
+    assert survey.axis == "revolute", "there is an effort"
+
+
+@pytest.mark.parametrize("name", ["theta_dot", "q_dot", "x dot", "pos_dot"])
+def test_a_dot_is_a_derivative(name):
+    assert likeness(name, "velocity") == 1.0 and likeness(name, "position") == 0.0
 
 
 def strokes(forward, back, seconds=2.0):

@@ -34,10 +34,16 @@ DERIVATIVE = 0.9
 #: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
 MOST_ANGLE = 50
+#: correlation that a name is worth: the error of a controller follows the velocity as well
+BY_NAME = 0.1
 #: drives that report positions in turns; and words of what turns
 IN_TURNS = frozenset(("odrive", "moteus"))
 TURNING = IN_TURNS | set(
     "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
+)
+#: words of a force that turns
+TORQUES = frozenset(
+    "torque torques drehmoment moment couple coppia tau effort トルク 力矩 扭矩 토크 момент".split()
 )
 #: part by which a velocity may differ from the position's derivative: filters, and its own rounding
 SAME_TIME = 0.1
@@ -115,8 +121,9 @@ def find_position(
             _, agree = derivative_factor(flat[name], column_2.values, h)
             if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
-            if agree > max(DERIVATIVE, derivative.get(name, ("", 0.0))[1]):
-                derivative[name] = (other, agree)
+            sure = agree + BY_NAME * likeness(other, "velocity")
+            if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
+                derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
     # what says that it is something else is no position, whatever is left
     known = choices.units  # a unit that was chosen is refused by its name, if it is wrong
@@ -190,13 +197,18 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     if choices.torque_constant is not None:
         return "revolute" if choices.torque_constant[1].startswith("N*m") else "prismatic"
     units = [c.unit for c in survey.columns.values() if c.unit]
+    names = {word for name in survey.columns for word in words_of(name)}
     if "N" in units or any(measures(u, "position") for u in units if u != "counts"):
         why, axis = "forces are in N", "prismatic"
     else:
         words = words_of(position)
         turning = TURNING.intersection(words)
-        axis = "revolute" if turning or unit == "counts" or "A" in units else "prismatic"
+        torques = TORQUES.intersection(names)
+        revolute = turning or torques or unit == "counts" or "A" in units
+        axis = "revolute" if revolute else "prismatic"
         why = f"the position is called {position!r}" if turning else "no unit or name says which"
+        if torques and not turning:
+            why = f"a column is called {min(torques)!r}"
     survey.guesses["model.device.axis"] = f'"{axis}": {why}'
     return axis
 
@@ -308,7 +320,7 @@ def _position_unit(
             if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < 0.05:
                 return unit, f"{unit}: then it agrees with {velocity!r} in {said}"
     if axis == "revolute" and (drives := IN_TURNS.intersection(words_of(column.name))):
-        return "turns", f"turns, in which {' and '.join(sorted(drives))} report positions"
+        return "turns", f"turns, the unit of an {' and '.join(sorted(drives))}"
     if axis == "revolute":
         unit = "deg" if reach > 50 else "rad"
     else:
