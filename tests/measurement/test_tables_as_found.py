@@ -13,7 +13,8 @@ from teleopdesign.measurement.doors._cells import NO_READING
 from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.content import SURE_NAME
-from teleopdesign.measurement.survey.position import _seen_step, wrap_of
+from teleopdesign.measurement.survey.derivative import wrap_of
+from teleopdesign.measurement.survey.position import _seen_step
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = np.arange(400) / 200.0

@@ -28,8 +28,8 @@ from .content import (
     rises,
     sample_time_of,
 )
+from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si
-from .position import unwrap_column, wrap_of
 
 #: part that the motion explains by chance; a column with less needs a force's name or unit
 CHANCE = 0.1

@@ -20,7 +20,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .position import DERIVATIVE, derivative_factor, unwrap_column, wrap_of
+from .derivative import DERIVATIVE, derivative_factor, unwrap_column, wrap_of
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
