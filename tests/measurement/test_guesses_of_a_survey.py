@@ -82,6 +82,7 @@ def test_the_state_of_a_controller_of_ros_is_read_by_its_terms():
     columns = {
         "%time": 1e9 * T, "field.set_point": Q + 0.01, "field.process_value": Q,
         "field.process_value_dot": rate, "field.error": 0.01 + 0.001 * rate, "field.command": U,
+        "field.commanded_velocity": 2.0 * U + rate,
         "field.measured_effort": U + 0.2 * np.random.default_rng(1).standard_normal(ROWS),
     }  # fmt: skip
     survey = look(columns)
@@ -94,6 +95,18 @@ def test_the_state_of_a_controller_of_ros_is_read_by_its_terms():
 @pytest.mark.parametrize("name", ["theta_dot", "q_dot", "x dot", "pos_dot"])
 def test_a_dot_is_a_derivative(name):
     assert likeness(name, "velocity") == 1.0 and likeness(name, "position") == 0.0
+
+
+@pytest.mark.parametrize(("counts", "expected"), [(4096, 4096), (2000, 2000), (8192, 8192)])
+def test_a_velocity_in_units_tells_the_counts_of_a_turn(counts, expected):
+    turns = Q * 3.0
+    columns = {
+        "t": T, "position [inc]": np.round(turns * counts), "velocity [rpm]":
+        60.0 * np.gradient(turns, T), "current [mA]": U,
+    }  # fmt: skip
+    survey = look(columns)
+    assert survey.channels["position"]["counts_per_turn"] == pytest.approx(expected, rel=2e-3)
+    assert "velocity" in survey.guesses["channels.position.counts_per_turn"]
 
 
 def strokes(forward, back, seconds=2.0):

@@ -139,6 +139,7 @@ def _find_driving_force(
 def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
+    score -= 0.7 * (likeness(column.name, "velocity") >= SURE_NAME)  # "commanded_velocity"
     # the command is wanted, not what a drive says that it reached
     score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)

@@ -32,6 +32,14 @@ from .remarks import counts_per_turn_in
 #: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
 MOST_ANGLE = 50
+#: counts that encoders have in a turn, and the part by which an estimate may miss one of them
+USUAL_COUNTS = tuple(
+    sorted(
+        {float(2**k) for k in range(7, 25)}
+        | {m * 10.0**k for m in (1, 2, 4, 5, 8) for k in (2, 3, 4)}
+    )
+)
+NEAR_USUAL = 0.02
 #: correlation that a name is worth: the error of a controller follows the velocity as well
 BY_NAME = 0.1
 #: drives that report positions in turns; and words of what turns
@@ -187,6 +195,9 @@ def describe_position(
             if (said_above := counts_per_turn_in(survey.remarks)) is not None:
                 per_turn, line = said_above
                 why = f"the log says {line!r}"
+            elif velocity is not None and (counted := _counts_per_turn(survey, column, velocity)):
+                per_turn = counted
+                why = f"then it agrees with {velocity!r} in {survey.columns[velocity].unit}"
             survey.guesses["channels.position.counts_per_turn"] = (
                 f"{per_turn:g} counts a turn: {why}"
             )
@@ -211,6 +222,20 @@ def describe_position(
             more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
             survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
             _hold_time_against(survey, column, velocity)
+
+
+def _counts_per_turn(survey: Survey, column: SurveyedColumn, velocity: str) -> float:
+    """Counts of a turn by which a velocity in units is the derivative, as encoders have; else 0."""
+    said = survey.columns[velocity].unit
+    if said is None or not measures(said, "velocity", "revolute"):
+        return 0.0
+    whole = unwrap_column(column.values, wrap_of(column.values))
+    factor, _ = derivative_factor(whole, survey.columns[velocity].values, sample_time_of(survey))
+    if not factor > 0.0:
+        return 0.0
+    counted = 2 * math.pi / (factor * si_factor(said, quantity="velocity", axis="revolute"))
+    usual = min(USUAL_COUNTS, key=lambda one: abs(math.log(counted / one)))
+    return usual if abs(counted / usual - 1.0) < NEAR_USUAL else 0.0
 
 
 def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
