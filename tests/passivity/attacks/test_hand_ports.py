@@ -1,10 +1,10 @@
 """The impedance that a hand feels against equations that the attacker solves by numbers.
 
-    motor   (m - m_t) s^2 x + (b s + k) x + (K + C s)(x - y) = (1 + H) F + G x
+    motor   (m - m_t) s^2 x + (b s + k) x + (K + C s)(x - y) = H F + G x
     tip     m_t s^2 y + (K + C s)(y - x) = F
 
-F is the hand's force on the device, H the force feedback, G the cancellation. Without a tip x = y.
-What the equations leave out is to be named as left out.
+F is the hand's force on the device, H the force feedback, G the cancellation; without a tip both
+sides are one. What the equations leave out is to be named as left out.
 """
 
 from collections import Counter
@@ -80,9 +80,9 @@ def random_port(rng):
     diagram = haptic_interface(body(m, **device), **given, analog=("C", "H"))
 
     def z(s):
-        rest, drive = b * s + k - cancels(s), 1 + feedback(s)
+        rest, drive = b * s + k - cancels(s), feedback(s)
         if tip is None:
-            return (m * s**2 + rest) / drive / s
+            return (m * s**2 + rest) / (1 + drive) / s
         m_t, stiff, damp = tip
         joint = stiff + damp * s
         motor = (m - m_t) * s**2 + rest + joint
