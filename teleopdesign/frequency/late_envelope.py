@@ -79,14 +79,13 @@ def halve_steps(
     wide: np.ndarray,
     at: Callable[[np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(w, points, steps that were halved): with the middle of each wide step, (n - 1,).
+    """(w, points, steps that were halved): with the middle of each wide step.
 
-    points: (k, n), of `at` at w
+    points: (k, n), of `at` at w;  wide: indices of steps, in order
     raises ModelError: there are too many
     """
-    steps = np.flatnonzero(wide)
-    middle = (w[steps] + w[steps + 1]) / 2
-    steps, middle = (x[(middle > w[steps]) & (middle < w[steps + 1])] for x in (steps, middle))
+    middle = (w[wide] + w[wide + 1]) / 2
+    steps, middle = (x[(middle > w[wide]) & (middle < w[wide + 1])] for x in (wide, middle))
     if len(w) + len(steps) > _MOST:
         raise ModelError("margins: the phase turns more often than can be followed")
     after = np.insert(points, steps + 1, at(middle), axis=1)
@@ -107,7 +106,7 @@ def unity_grid(ratio: LateRatio, w: np.ndarray) -> np.ndarray:
         with np.errstate(invalid="ignore"):
             known = is_followed(np.abs(np.diff(size)), np.abs(size), rate, w)
             far = np.fmax(least_between(-most), least_between(least)) > 0
-        w, points, more = halve_steps(w, points, ~known & ~far, at)
+        w, points, more = halve_steps(w, points, np.flatnonzero(~known & ~far), at)
         if not len(more):
             return w
 

@@ -16,6 +16,8 @@ from .loop import LoopGain, unity_crossings
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 4001
 #: share by which a factor is to be smaller before more points are looked at for its sake
 _SMALLER = 1e-6
+#: steps that are halved at once
+_AT_ONCE = 20_000
 #: share and rad; a gain counts as level, and its phase as -180 degrees, within this: a slope of one
 #: changes it by eight times as much from point to point
 _LEVEL = 1e-3
@@ -73,9 +75,13 @@ def gain_margin(loop: LoopGain) -> float:
             crossing = brentq(height, w[k], w[k + 1], rtol=1e-12)
             best = min(best, _factor(call(np.array([1j * crossing]))[0]))
         followed |= known
-        far = np.fmax(least_between(-most), least_between(least)) > np.log(best * (1 - _SMALLER))
+        reach = np.fmax(least_between(-most), least_between(least))
+        far = reach > np.log(best * (1 - _SMALLER))
         far |= np.minimum(np.abs(clear[1:]), np.abs(clear[:-1])) > np.abs(np.diff(clear))
-        w, points, more = halve_steps(w, points, ~known & ~far, at)
+        wide = np.flatnonzero(~known & ~far)
+        # the smallest factors first, so that those that are larger need not be looked at
+        wide = np.sort(wide[np.argsort(reach[wide])[:_AT_ONCE]])
+        w, points, more = halve_steps(w, points, wide, at)
         if not len(more):
             return best
         followed = np.insert(followed, more + 1, False)
