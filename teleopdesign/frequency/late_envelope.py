@@ -8,7 +8,8 @@ they like between two points of it: a ripple there is followed by halving, where
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -109,6 +110,55 @@ def unity_grid(ratio: LateRatio, w: np.ndarray) -> np.ndarray:
         w, points, more = halve_steps(w, points, np.flatnonzero(~known & ~far), at)
         if not len(more):
             return w
+
+
+def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[float, int]:
+    """Of a ratio that stays level at high frequency: the factor by which it misses -1 there, at
+    least 1, and how many of the frequencies come before it is level within that share.
+
+    sum_k (d_k + g n_k) e^(-j w T_k) is 0 at the least change of dead times where the largest of the
+    terms is no more than the others together. That is linear in g from one corner to the next.
+    """
+    degree = max(map(len, ratio.below.values()))
+    times = sorted({*ratio.above, *ratio.below})
+    sides = [[_padded(terms.get(t), degree) for t in times] for terms in (ratio.below, ratio.above)]
+    d, n = (np.array([p[0] for p in side]) for side in sides)
+
+    def left(g: float) -> float:
+        size = np.abs(d + g * n)
+        return float(2 * size.max() - size.sum())
+
+    pairs = [(a - b, x - y) for a, x in zip(d, n, strict=True) for b, y in zip(-d, -n, strict=True)]
+    pairs += [(a - b, x - y) for a, x in zip(d, n, strict=True) for b, y in zip(d, n, strict=True)]
+    corners = sorted({-a / x for a, x in pairs if x and -a / x > 0})
+    end = 2 * max([1.0, *corners])
+    up = _first_zero(left, [1.0, *(g for g in corners if g > 1), end, 2 * end])
+    down = _first_zero(left, [1.0, *(g for g in reversed(corners) if g < 1), 0.0])
+    factor = min(up, 1 / down if 0 < down < np.inf else np.inf)
+    far = (1j * w) ** (degree - 1)
+    off = sum(
+        weight * np.abs(np.polyval(p, 1j * w) / far - p[0])
+        for side, weight in zip(sides, (1.0, factor if np.isfinite(factor) else 1.0), strict=True)
+        for p in side
+    )
+    before = np.flatnonzero(off > share * np.abs(d).max())
+    return max(float(factor), 1.0), min(int(before.max(initial=0)) + 2, len(w))
+
+
+def _padded(p: np.ndarray | None, degree: int) -> np.ndarray:
+    return np.zeros(degree) if p is None else np.pad(p, (degree - len(p), 0))
+
+
+def _first_zero(left: Callable[[float], float], points: Sequence[float]) -> float:
+    """Where a line from point to point first comes down to 0, the last one going on; else inf.
+
+    One term alone only touches 0 at its corner, within 1e-12 of rounding.
+    """
+    for k, (a, b) in enumerate(pairwise(points)):
+        high, low = left(a), left(b)
+        if low <= 1e-12 * high or (k == len(points) - 2 and low < high and b > a):
+            return a + (b - a) * high / (high - low) if high > low else a
+    return float("inf")
 
 
 class _TermsAt(NamedTuple):

@@ -8,7 +8,7 @@ from sympy.core.function import AppliedUndef
 from ..errors import ModelError
 from ..realise.lti import numerical
 from . import sampled_margins
-from .late_envelope import envelope, halve_steps, is_followed, least_between
+from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, least_between
 from .late_loop import late_ratio
 from .loop import LoopGain, unity_crossings
 
@@ -63,8 +63,10 @@ def gain_margin(loop: LoopGain) -> float:
         return np.array([gain, *[np.log(np.abs(gain))] * 2, 0 * w, 0 * w])
 
     points = at(w)
-    passes = ratio is not None and ratio.passes()
-    best = _factors_at_the_ends(points[0], float(points[2, -1].real), passes, loop.has_delay)
+    best = _factor_at_rest(points[0])
+    if ratio is not None and ratio.passes():
+        far_out, number = factor_far_out(ratio, w, share=_LEVEL)
+        best, w, points = min(best, far_out), w[:number], points[:, :number]
     followed = np.zeros(len(w) - 1, dtype=bool)
     while True:
         gain, (least, most, clear, rate) = points[0], points[1:].real
@@ -99,17 +101,8 @@ def _factor(gain: complex) -> float:
     return float(max(abs(gain), 1 / abs(gain)))
 
 
-def _factors_at_the_ends(gain: np.ndarray, most: float, passes: bool, late: bool) -> float:
-    """Of a gain that is level at the slowest or the fastest point, and turns it by 180 degrees.
-
-    passes: whether it is level at the fastest;  late: with a dead time all phases come there, of
-        several late terms together as well: `most` is then the logarithm of the largest size
-    """
-    least = np.inf
+def _factor_at_rest(gain: np.ndarray) -> float:
+    """Of a gain that is level at the slowest point, and turns it by 180 degrees; else inf."""
     if abs(abs(gain[1] / gain[0]) - 1) <= _LEVEL and abs(np.angle(-gain[0])) <= _LEVEL:
-        least = _factor(gain[0])
-    if passes and late:
-        least = min(least, max(1.0, float(np.exp(-most))))
-    elif passes and abs(np.angle(-gain[-1])) <= _LEVEL:
-        least = min(least, _factor(gain[-1]))
-    return least
+        return _factor(gain[0])
+    return float("inf")

@@ -60,6 +60,10 @@ def count_growing(terms):
 
     terms: pairs (polynomial, dead time), the first without one and of the highest degree
     """
+    together = {}
+    for p, time in terms:
+        together[time] = np.polyadd(together.get(time, [0.0]), p)
+    terms = [(p, time) for time, p in together.items()]
     halves = [_turns(terms)]  # above the real axis; f of complex numbers turns otherwise below it
     if any(np.iscomplexobj(p) for p, _ in terms):
         halves.append(_turns([(np.conj(p), t) for p, t in terms]))
