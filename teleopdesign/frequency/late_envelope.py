@@ -121,7 +121,7 @@ def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[fl
     """
     degree = max(map(len, ratio.below.values()))
     times = sorted({*ratio.above, *ratio.below})
-    sides = [[_padded(terms.get(t), degree) for t in times] for terms in (ratio.below, ratio.above)]
+    sides = [[_pad(terms.get(t), degree) for t in times] for terms in (ratio.below, ratio.above)]
     d, n = (np.array([p[0] for p in side]) for side in sides)
 
     def left(g: float) -> float:
@@ -145,7 +145,7 @@ def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[fl
     return max(float(factor), 1.0), min(int(before.max(initial=0)) + 2, len(w))
 
 
-def _padded(p: np.ndarray | None, degree: int) -> np.ndarray:
+def _pad(p: np.ndarray | None, degree: int) -> np.ndarray:
     return np.zeros(degree) if p is None else np.pad(p, (degree - len(p), 0))
 
 

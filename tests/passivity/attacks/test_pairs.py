@@ -179,7 +179,8 @@ def test_no_motion_of_two_bodies_beats_friction_that_is_proved_with_its_cancella
                 n: x for n, x in share.items() if x
             }, (vars(pair), said)
             single = drives_alone(diagram, name, moving["AB"[own]])
-            assert single == alone(pair, own, each), (vars(pair), each)
+            # a force that cancels itself on another body reaches it all the same: nothing is said
+            assert alone(pair, own, each) or not single, (vars(pair), each)
         for one in pairs:
             if one.cancellation is not None:
                 own, *_ = pair.laws[int(one.cancellation.name[-1])]
