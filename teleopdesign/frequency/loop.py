@@ -17,6 +17,7 @@ from ..errors import ModelError, UnstableLoop
 from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
+from .late_envelope import unity_grid
 from .late_loop import LateRatio, count_growing, crossings, late_ratio
 from .measured_loop import measured_crossings
 from .sampled_loop import SampledLoop, sampled_loop
@@ -153,14 +154,14 @@ def unity_crossings(
         if loop.held:
             if _grows_by_pade(loop):
                 raise _unstable()
-            return *_crossings(loop, np.zeros(0)), True
+            return *_crossings(loop, None), True
         ratio = late_ratio(loop.expression)
     else:
         ratio = _ratio_of(loop)
     if count_growing(ratio.closed):
         raise _unstable()
     if isinstance(loop, LoopGain) and loop.has_delay:
-        return *_crossings(loop, ratio.corners()), ratio.fades()
+        return *_crossings(loop, ratio), ratio.fades()
     (above,), (below,) = ratio.above.values(), ratio.below.values()
     w = crossings(above, below)
     gain = np.polyval(above, 1j * w) / np.polyval(below, 1j * w)
@@ -192,10 +193,10 @@ def _smallest_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
     return float(delays.min()) if len(delays) else float("inf")
 
 
-def _crossings(loop: LoopGain, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _crossings(loop: LoopGain, ratio: LateRatio | None) -> tuple[np.ndarray, np.ndarray]:
     """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1.
 
-    corners: frequencies that a grid may pass over, narrow resonances among them, rad/s
+    ratio: of a loop that is one, whose late terms a grid alone may pass over
     """
     from scipy.optimize import brentq
 
@@ -205,9 +206,11 @@ def _crossings(loop: LoopGain, corners: np.ndarray) -> tuple[np.ndarray, np.ndar
         return float(np.log(np.abs(call(np.array([1j * w]))[0])))
 
     slowest, fastest = _SLOWEST, min(loop.fastest, _FASTEST)
+    corners = np.zeros(0) if ratio is None else ratio.corners()
     if len(corners):
         slowest, fastest = min(slowest, corners.min() / 1e4), max(fastest, corners.max() * 1e4)
     grid = np.unique(np.concatenate([np.geomspace(slowest, fastest, _POINTS), corners]))
+    grid = grid if ratio is None else unity_grid(ratio, grid)
     size = np.abs(call(1j * grid))
     if np.isfinite(loop.fastest) and size[-1] >= 1:
         raise ModelError(

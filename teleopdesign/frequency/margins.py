@@ -8,18 +8,19 @@ from sympy.core.function import AppliedUndef
 from ..errors import ModelError
 from ..realise.lti import numerical
 from . import sampled_margins
+from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, least_between
 from .late_loop import late_ratio
 from .loop import LoopGain, unity_crossings
 
 #: rad/s; where a loop without corners and without samples is searched
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 4001
-#: rad; a larger step of the phase is halved
-_STEP = 0.5
+#: share by which a factor is to be smaller before more points are looked at for its sake
+_SMALLER = 1e-6
+#: steps that are halved at once
+_AT_ONCE = 20_000
 #: share and rad; a gain counts as level, and its phase as -180 degrees, within this: a slope of one
 #: changes it by eight times as much from point to point
 _LEVEL = 1e-3
-#: points; more are not looked at
-_MOST = 2_000_000
 
 
 def phase_margin(loop: LoopGain) -> float:
@@ -53,30 +54,39 @@ def gain_margin(loop: LoopGain) -> float:
 
     ratio = None if loop.held else late_ratio(loop.expression)
     w = _grid(loop, np.zeros(0) if ratio is None else ratio.corners())
-    gain = call(1j * w)
-    passes = ratio is not None and ratio.passes()
-    best = _factors_at_the_ends(gain, passes, loop.has_delay)
-    known = np.zeros(len(w) - 1, dtype=bool)
+
+    def at(w: np.ndarray) -> np.ndarray:
+        """Gain, and its envelope by dead times, (5, n)."""
+        if ratio is not None:
+            return np.array(envelope(ratio, w))
+        gain = call(1j * w)
+        return np.array([gain, *[np.log(np.abs(gain))] * 2, 0 * w, 0 * w])
+
+    points = at(w)
+    best = _factor_at_rest(points[0])
+    if ratio is not None and ratio.passes():
+        far_out, number = factor_far_out(ratio, w, share=_LEVEL)
+        best, w, points = min(best, far_out), w[:number], points[:, :number]
+    followed = np.zeros(len(w) - 1, dtype=bool)
     while True:
-        steps = np.abs(np.angle(gain[1:] / gain[:-1]))
-        turns = (np.imag(gain[1:]) > 0) != (np.imag(gain[:-1]) > 0)
-        turns &= (np.real(gain[1:]) < 0) & (np.real(gain[:-1]) < 0) & (steps <= _STEP) & ~known
-        for k in np.flatnonzero(turns):
-            at = brentq(height, w[k], w[k + 1], rtol=1e-12)
-            best = min(best, _factor(call(np.array([1j * at]))[0]))
-        known |= steps <= _STEP
-        size = np.abs(np.log(np.abs(gain)))
-        near = np.minimum(size[1:], size[:-1]) <= np.log(best) + 1
-        wide = np.flatnonzero(~known & near)
-        middle = (w[wide] + w[wide + 1]) / 2
-        wide, middle = (x[(middle > w[wide]) & (middle < w[wide + 1])] for x in (wide, middle))
-        if not len(wide):
+        gain, (least, most, clear, rate) = points[0], points[1:].real
+        left = np.abs(np.angle(-gain))
+        known = is_followed(np.abs(np.angle(gain[1:] / gain[:-1])), left, rate, w)
+        turns = known & ~followed & ((np.imag(gain[1:]) > 0) != (np.imag(gain[:-1]) > 0))
+        for k in np.flatnonzero(turns & (left[1:] < np.pi / 2) & (left[:-1] < np.pi / 2)):
+            crossing = brentq(height, w[k], w[k + 1], rtol=1e-12)
+            best = min(best, _factor(call(np.array([1j * crossing]))[0]))
+        followed |= known
+        reach = np.fmax(least_between(-most), least_between(least))
+        far = reach > np.log(best * (1 - _SMALLER))
+        far |= np.minimum(np.abs(clear[1:]), np.abs(clear[:-1])) > np.abs(np.diff(clear))
+        wide = np.flatnonzero(~known & ~far)
+        # the smallest factors first, so that those that are larger need not be looked at
+        wide = np.sort(wide[np.argsort(reach[wide])[:_AT_ONCE]])
+        w, points, more = halve_steps(w, points, wide, at)
+        if not len(more):
             return best
-        if len(w) + len(wide) > _MOST:
-            raise ModelError("gain margin: the phase turns more often than can be followed")
-        known[wide] = False
-        w, gain = np.insert(w, wide + 1, middle), np.insert(gain, wide + 1, call(1j * middle))
-        known = np.insert(known, wide + 1, False)
+        followed = np.insert(followed, more + 1, False)
 
 
 def _grid(loop: LoopGain, corners: np.ndarray) -> np.ndarray:
@@ -91,14 +101,8 @@ def _factor(gain: complex) -> float:
     return float(max(abs(gain), 1 / abs(gain)))
 
 
-def _factors_at_the_ends(gain: np.ndarray, passes: bool, late: bool) -> float:
-    """Of a gain that is level at the slowest or the fastest point, and turns it by 180 degrees.
-
-    passes: whether it is level at the fastest;  late: with a dead time all phases come there
-    """
-    least = np.inf
+def _factor_at_rest(gain: np.ndarray) -> float:
+    """Of a gain that is level at the slowest point, and turns it by 180 degrees; else inf."""
     if abs(abs(gain[1] / gain[0]) - 1) <= _LEVEL and abs(np.angle(-gain[0])) <= _LEVEL:
-        least = _factor(gain[0])
-    if passes and (late or abs(np.angle(-gain[-1])) <= _LEVEL):
-        least = min(least, _factor(gain[-1]))
-    return least
+        return _factor(gain[0])
+    return float("inf")

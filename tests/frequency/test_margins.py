@@ -39,6 +39,11 @@ def test_a_dead_time_of_many_turns_is_followed():
         (-HALF / (S + 1), 2.0),  # at rest
         (-HALF * S / (S + 1), 2.0),  # at high frequency
         (HALF * S / (S + 1) * sp.exp(-S / 100), 2.0),  # all phases come there
+        # of a part at once and a late one -180 degrees come only where the late one is larger
+        ((HALF / 4 + sp.exp(-S) / 4) * S / (S + 1), 8.0),
+        ((HALF / 2 + sp.exp(-S) / 8) * S / (S + 1), np.inf),
+        # 1 + exp(-s)/4 - g/2 is 0 far out from 1 - g/2 = 1/4 on
+        (-HALF * S / (S + 1) / (1 + sp.exp(-S) / 4), 1.5),
     ],
 )
 def test_the_ends_of_the_axis_count(gain, margin):

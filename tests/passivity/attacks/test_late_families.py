@@ -13,57 +13,17 @@ import numpy as np
 import pytest
 from devices import body
 from passivity.attacks.budget import attacked
+from passivity.attacks.late_modes import count_growing
 
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.passivity import claim_over_intervals
 
 TIME = "T_1.delay.time"
-#: of f over the sizes of its terms: nearer to zero on the contour a zero lies on it, or none does
-NEAR = 1e-9
 
 
 def pick(rng, low, high):
     return float(f"{10 ** rng.uniform(low, high):.3g}")
-
-
-def count_growing(terms):
-    """Zeros with Re s > 0; None where one lies too near to the axis.
-
-    terms: pairs (polynomial, dead time), the first without one and of the highest degree
-    """
-    degree = max(len(p) for p, _ in terms) - 1
-    full = [np.pad(p, (degree + 1 - len(p), 0)) for p, _ in terms]
-    lead = abs(full[0][0]) - sum(abs(p[0]) for p in full[1:])
-    if lead <= 1e-6 * abs(full[0][0]):
-        return np.inf  # a chain of zeros along the axis
-    others = sum(np.abs(p[1:]) for p in full)
-    radius = 1.0
-    while lead * radius**degree < 2 * np.polyval(others, radius):
-        radius *= 2
-    axis = np.concatenate([np.geomspace(1e-5 * radius, radius, 1500), np.linspace(0, radius, 1500)])
-    arc = radius * np.exp(1j * np.linspace(np.pi / 2, 0, 1000))
-    # by symmetry: up the axis from 0, then along the arc to the real axis
-    path = np.concatenate([1j * np.unique(axis), arc[1:]])
-
-    def values(s):
-        parts = [np.polyval(p, s) * np.exp(-s * t) for p, t in terms]
-        sizes = [np.polyval(np.abs(p), np.abs(s)) * np.exp(-s.real * t) for p, t in terms]
-        return sum(parts), sum(sizes)
-
-    f, size = values(path)
-    for _ in range(40):
-        if (np.abs(f) <= NEAR * size).any():
-            return None
-        steps = np.angle(f[1:] / f[:-1])
-        wide = np.flatnonzero(np.abs(steps) > 0.4)
-        if not len(wide):
-            return round(-steps.sum() / np.pi)
-        between = (path[wide] + path[wide + 1]) / 2
-        new = values(between)
-        path = np.insert(path, wide + 1, between)
-        f, size = (np.insert(old, wide + 1, x) for old, x in zip((f, size), new, strict=True))
-    return None
 
 
 def times(*polynomials):
@@ -296,11 +256,3 @@ def test_no_late_loop_of_this_kind_is_proved_stable_that_has_a_growing_pole(fami
     print(type(family).__name__, dict(counts))
     # of few draws of a kind all may be stable
     assert 0 < counts["proved"] and (counts["proved"] < number or number < 40)
-
-
-def test_the_attacker_counts_what_grows():
-    assert count_growing([([1.0, 0.0], 0.0), ([1.5], 1.0)]) == 0  # pi/2 is the limit
-    assert count_growing([([1.0, 0.0], 0.0), ([1.6], 1.0)]) == 2
-    assert count_growing([([1.0, -1.0], 0.0)]) == 1
-    assert count_growing([([1.0, 0.0], 0.0)]) is None
-    assert count_growing([([1.0, 1.0], 0.0), ([1.1, 1.0], 1.0)]) == np.inf

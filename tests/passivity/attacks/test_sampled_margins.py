@@ -11,9 +11,10 @@ import control as ct
 import numpy as np
 import pytest
 import scipy.linalg
+import sympy as sp
 from passivity.attacks.budget import attacked
 
-from teleopdesign.frequency import sampled_margins
+from teleopdesign.frequency import LoopGain, gain_margin, phase_margin, sampled_margins
 from teleopdesign.frequency.sampled_loop import SampledLoop
 
 STEPS = 8
@@ -98,7 +99,7 @@ class Sampled:
         command = -factor * float(law_d.squeeze()) * measured
         command[:, n + line :] -= factor * law_c.reshape(1, -1)
         commands = np.vstack([command, np.eye(size)[n : n + line]])
-        after = np.zeros((size, size))
+        after = np.zeros((size, size), dtype=np.result_type(factor, float))
         after[n : n + line] = commands[:line]
         after[n + line :] = law_b.reshape(-1, 1) @ measured
         after[n + line :, n + line :] += law_a
@@ -144,7 +145,7 @@ def behind(drawn, delay):
 
 
 @attacked(6, 60)
-def test_a_sampled_loop_grows_from_its_margins_on_and_not_before(seed, number):
+def test_a_sampled_loop_grows_from_its_delay_margin_on_and_not_before(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     while sum(counts.values()) < number:
         drawn = Sampled(rng)
@@ -155,13 +156,6 @@ def test_a_sampled_loop_grows_from_its_margins_on_and_not_before(seed, number):
         if now > 1:
             counts["grows"] += 1
             continue
-        gain = sampled_margins.gain_margin(loop)
-        for share in (0.99, 0.6, 0.3, -0.3, -0.6, -0.99):
-            factor = (gain if np.isfinite(gain) else 1e5) ** share
-            assert drawn.radius(factor) < 1 + NEAR, (vars(drawn), gain, share)
-        if np.isfinite(gain):
-            beyond = [drawn.radius(gain**share) for share in (1.01, -1.01)]
-            assert max(beyond) > 1 - NEAR or gain < 1.02, (vars(drawn), gain, beyond)
         delay = sampled_margins.delay_margin(loop)
         for steps in before(rng, drawn, delay):
             assert drawn.radius(further=steps) < 1 + NEAR, (vars(drawn), delay, steps)
@@ -171,6 +165,32 @@ def test_a_sampled_loop_grows_from_its_margins_on_and_not_before(seed, number):
         counts["no delay limits" if np.isinf(delay) else "delay limits"] += 1
     print(dict(counts))
     assert counts["delay limits"] and counts["grows"]
+
+
+@attacked(6, 100)
+def test_a_sampled_loop_grows_from_its_gain_and_phase_margins_on_and_not_before(seed, number):
+    """Its gain times a factor, or turned by an angle at all frequencies."""
+    rng, counts = np.random.default_rng(seed), Counter()
+    while sum(counts.values()) < number:
+        drawn = Sampled(rng)
+        if drawn.radius() > 1 - NEAR:
+            counts["grows"] += 1
+            continue
+        loop = LoopGain(sp.S(1), "H", (), ("H",), np.inf, sampled=drawn.loop())
+        gain, phase = gain_margin(loop), phase_margin(loop)
+        most, turn = min(gain, 1e4), 1j * np.radians(min(phase, 180.0))
+        for share in (0.3, 0.6, 0.9, 0.99, 1 - 1e-6):
+            for factor in (most**share, most**-share, np.exp(share * turn), np.exp(-share * turn)):
+                assert drawn.radius(factor) < 1 + NEAR, (vars(drawn), gain, phase, factor)
+        for limit, ends in (
+            (most == gain, (most * (1 + 1e-6), (1 - 1e-6) / most)),
+            (phase < 180, np.exp(np.array([turn, -turn]) * (1 + 1e-6))),
+        ):
+            beyond = [drawn.radius(factor) for factor in ends]
+            assert not limit or max(beyond) > 1 - NEAR, (vars(drawn), gain, phase, beyond)
+        counts["limits" if most == gain else "no gain limits"] += 1
+    print(dict(counts))
+    assert counts["limits"] and counts["grows"]
 
 
 @pytest.mark.parametrize(

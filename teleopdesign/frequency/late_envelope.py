@@ -1,0 +1,186 @@
+"""What dead times can make of a ratio of late sums between two frequencies, so that none is missed.
+
+    |p_0| - |p_1| - ...  <=  |sum_k p_k(j w) e^(-j w T_k)|  <=  |p_0| + |p_1| + ...
+
+The p_k change slowly, so that a grid with their roots follows them. Late terms turn as often as
+they like between two points of it: a ripple there is followed by halving, where it may matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import ModelError
+from .late_loop import LateRatio, Terms
+
+#: rad, or of a logarithm; a larger step is halved, and a smaller one that may reach what is looked
+#: for on its way, down to the finest: what comes so near to it for so short may be passed over
+STEP, FINEST = 0.5, 1e-3
+#: points; more are not looked at
+_MOST = 2_000_000
+
+
+class Envelope(NamedTuple):
+    """What dead times can make of a ratio at each frequency, (n,).
+
+    value: as it is
+    least, most: logarithms of its size, whatever the phases of late terms
+    clear: rad, from -180 degrees to the nearest phase that late terms make, < 0 on the side from
+        below; 0: they reach them
+    rate: s, change of its phase or of the logarithm of its size by dead times over a step of w
+    """
+
+    value: np.ndarray
+    least: np.ndarray
+    most: np.ndarray
+    clear: np.ndarray
+    rate: np.ndarray
+
+
+def envelope(ratio: LateRatio, w: np.ndarray) -> Envelope:
+    """Of the ratio at these frequencies, rad/s."""
+    above, below = (_terms_at(terms, w) for terms in (ratio.above, ratio.below))
+    phase = np.angle(-above.at_once * below.at_once.conj())
+    turn = above.turn + below.turn
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return Envelope(
+            above.value / below.value,
+            np.log(above.least) - np.log(below.most),
+            np.log(above.most) - np.log(below.least),
+            np.sign(phase) * np.maximum(np.abs(phase) - turn, 0),
+            above.rate + below.rate,
+        )
+
+
+def least_between(values: np.ndarray) -> np.ndarray:
+    """The least between neighbours: below the smaller one as far as the larger one above it."""
+    low, high = np.minimum(values[1:], values[:-1]), np.maximum(values[1:], values[:-1])
+    with np.errstate(invalid="ignore"):  # without a bound on one side: not a number
+        return np.asarray(low - (high - low))
+
+
+def is_followed(
+    change: np.ndarray, left: np.ndarray, rate: np.ndarray, w: np.ndarray
+) -> np.ndarray:
+    """Whether steps of a phase, or of the logarithm of a size, are short enough to be followed.
+
+    change: of each step, (n - 1,);  left: to what is looked for, (n,);  rate: as in `Envelope`
+    """
+    steps = change + np.maximum(rate[1:], rate[:-1]) * np.diff(w)
+    return np.asarray(steps <= np.clip(left[1:] + left[:-1], FINEST, STEP))
+
+
+def halve_steps(
+    w: np.ndarray,
+    points: np.ndarray,
+    wide: np.ndarray,
+    at: Callable[[np.ndarray], np.ndarray],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(w, points, steps that were halved): with the middle of each wide step.
+
+    points: (k, n), of `at` at w;  wide: indices of steps, in order
+    raises ModelError: there are too many
+    """
+    middle = (w[wide] + w[wide + 1]) / 2
+    steps, middle = (x[(middle > w[wide]) & (middle < w[wide + 1])] for x in (wide, middle))
+    if len(w) + len(steps) > _MOST:
+        raise ModelError("margins: the phase turns more often than can be followed")
+    after = np.insert(points, steps + 1, at(middle), axis=1)
+    return np.insert(w, steps + 1, middle), after, steps
+
+
+def unity_grid(ratio: LateRatio, w: np.ndarray) -> np.ndarray:
+    """The grid (rad/s) with points between which the size goes through 1 once, or not at all."""
+
+    def at(w: np.ndarray) -> np.ndarray:
+        here = envelope(ratio, w)
+        with np.errstate(divide="ignore"):
+            return np.array([np.log(np.abs(here.value)), here.least, here.most, here.rate])
+
+    points = at(w)
+    while True:
+        size, least, most, rate = points
+        with np.errstate(invalid="ignore"):
+            known = is_followed(np.abs(np.diff(size)), np.abs(size), rate, w)
+            far = np.fmax(least_between(-most), least_between(least)) > 0
+        w, points, more = halve_steps(w, points, np.flatnonzero(~known & ~far), at)
+        if not len(more):
+            return w
+
+
+def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[float, int]:
+    """Of a ratio that stays level at high frequency: the factor by which it misses -1 there, at
+    least 1, and how many of the frequencies come before it is level within that share.
+
+    sum_k (d_k + g n_k) e^(-j w T_k) is 0 at the least change of dead times where the largest of the
+    terms is no more than the others together. That is linear in g from one corner to the next.
+    """
+    degree = max(map(len, ratio.below.values()))
+    times = sorted({*ratio.above, *ratio.below})
+    sides = [[_pad(terms.get(t), degree) for t in times] for terms in (ratio.below, ratio.above)]
+    d, n = (np.array([p[0] for p in side]) for side in sides)
+
+    def left(g: float) -> float:
+        size = np.abs(d + g * n)
+        return float(2 * size.max() - size.sum())
+
+    pairs = [(a - b, x - y) for a, x in zip(d, n, strict=True) for b, y in zip(-d, -n, strict=True)]
+    pairs += [(a - b, x - y) for a, x in zip(d, n, strict=True) for b, y in zip(d, n, strict=True)]
+    corners = sorted({-a / x for a, x in pairs if x and -a / x > 0})
+    end = 2 * max([1.0, *corners])
+    up = _first_zero(left, [1.0, *(g for g in corners if g > 1), end, 2 * end])
+    down = _first_zero(left, [1.0, *(g for g in reversed(corners) if g < 1), 0.0])
+    factor = min(up, 1 / down if 0 < down < np.inf else np.inf)
+    far = (1j * w) ** (degree - 1)
+    off = sum(
+        weight * np.abs(np.polyval(p, 1j * w) / far - p[0])
+        for side, weight in zip(sides, (1.0, factor if np.isfinite(factor) else 1.0), strict=True)
+        for p in side
+    )
+    before = np.flatnonzero(off > share * np.abs(d).max())
+    return max(float(factor), 1.0), min(int(before.max(initial=0)) + 2, len(w))
+
+
+def _pad(p: np.ndarray | None, degree: int) -> np.ndarray:
+    return np.zeros(degree) if p is None else np.pad(p, (degree - len(p), 0))
+
+
+def _first_zero(left: Callable[[float], float], points: Sequence[float]) -> float:
+    """Where a line from point to point first comes down to 0, the last one going on; else inf.
+
+    One term alone only touches 0 at its corner, within 1e-12 of rounding.
+    """
+    for k, (a, b) in enumerate(pairwise(points)):
+        high, low = left(a), left(b)
+        if low <= 1e-12 * high or (k == len(points) - 2 and low < high and b > a):
+            return a + (b - a) * high / (high - low) if high > low else a
+    return float("inf")
+
+
+class _TermsAt(NamedTuple):
+    """A sum of late terms at each frequency, (n,): see `Envelope`; turn: inf for all phases."""
+
+    value: np.ndarray
+    at_once: np.ndarray
+    least: np.ndarray
+    most: np.ndarray
+    turn: np.ndarray
+    rate: np.ndarray
+
+
+def _terms_at(terms: Terms, w: np.ndarray) -> _TermsAt:
+    times = np.array(list(terms))[:, None]
+    values = np.array([np.polyval(p, 1j * w) for p in terms.values()])
+    size, total = np.abs(values), (np.exp(-1j * times * w) * values).sum(axis=0)
+    most = size.sum(axis=0)
+    rate = (times * size).sum(axis=0) / np.maximum(np.abs(total), 1e-12 * most)
+    # what comes at once, where it outweighs the others together, is turned by a part alone
+    at_once = (values * (times == 0)).sum(axis=0)
+    share = (most - np.abs(at_once)) / np.maximum(np.abs(at_once), 0.1 * most)
+    turn = np.where(share < 1, np.arcsin(np.minimum(share, 1)), np.inf)
+    least = np.maximum(2 * size.max(axis=0) - most, 0)
+    return _TermsAt(total, at_once, least, most, turn, rate)
