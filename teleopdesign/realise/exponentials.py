@@ -54,7 +54,7 @@ def weights(z, is_near):
 '''
 _JIT = """from numba import njit
 
-jitted = njit(cache=True, nogil=True, error_model="numpy")
+jitted = njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 """
 _NO_JIT = """
 
