@@ -1,4 +1,4 @@
-"""Numbers with few digits, rounded to the side on which a condition still holds."""
+"""Numbers with few digits, rounded to the side on which a condition still holds; durations."""
 
 from __future__ import annotations
 
@@ -28,3 +28,13 @@ def round_up(value: float, *, digits: int = 3) -> float:
 def round_near(value: float, *, digits: int = 3) -> float:
     """The nearest number of so many digits."""
     return float(f"{value:.{digits}g}")
+
+
+def duration_text(seconds: float) -> str:
+    """A duration with few digits in the unit that fits: "42 s", "7 min", "3.5 h", "12 days"."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    if seconds < 90 * 60:
+        return f"{seconds / 60:.0f} min"
+    hours = seconds / 3600
+    return f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.3g} days"

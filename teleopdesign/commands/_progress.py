@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ..rounding import duration_text
 from ._options import say
 
 if TYPE_CHECKING:
@@ -52,8 +53,6 @@ class Reporter:
         begun, total = getattr(text, "begun", 0), getattr(text, "total", 0)
         if not stage or begun < FEWEST:
             return ""
-        from ..studies.progress import duration_text
-
         # those that were begun before this one are taken as done
         left = (now - self._start) * (total - begun + 1) / (begun - 1)
         return f", about {duration_text(left)} left of {stage}"

@@ -17,7 +17,7 @@ from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 T = TypeVar("T")
 #: most threads at a time
@@ -28,8 +28,14 @@ def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> lis
     """Results of a function, called as by `map`, in the order of the arguments."""
     keep_freed_memory()
     workers = min(MOST, os.cpu_count() or 1)
-    with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
+    with _find_libraries().limit(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
         return list(pool.map(function, *arguments))
+
+
+@lru_cache(maxsize=1)
+def _find_libraries() -> ThreadpoolController:
+    """The libraries of linear algebra, all loaded by now: to look for them takes 6 ms each time."""
+    return ThreadpoolController()
 
 
 @lru_cache(maxsize=1)

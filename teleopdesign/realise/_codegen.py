@@ -11,7 +11,14 @@ from collections.abc import Callable
 import sympy as sp
 
 from ..controllers import calls_in
-from ._law_source import LawWriter, locate_entry, locate_symbols, write_function, write_reader
+from ._law_source import (
+    LawWriter,
+    list_inverses,
+    locate_entry,
+    locate_symbols,
+    write_function,
+    write_reader,
+)
 from .equations import Equations, affine_slopes
 from .layout import Layout
 from .signal_symbols import (
@@ -52,6 +59,12 @@ class Generator:
         self.sampled_inputs = [signal(s) for s in e.sampled_inputs] if e.commands else []
         used = set().union(*(x.free_symbols for x in self._expressions()))
         self.parameters = sorted(used & set(e.parameters), key=str)
+        #: what is divided by that does not change, computed once
+        laws = (*self._expressions(), *self.slopes.values())
+        self.inverses = {
+            power: sp.Symbol(f"inverse {i}")
+            for i, power in enumerate(list_inverses(laws, self.parameters))
+        }
         self.sensors = sorted(
             {s for x in self._computer_expressions() for s in x.free_symbols}
             & {reading_symbol(s) for s in (*e.signals, *self.motions)},
@@ -75,6 +88,7 @@ class Generator:
         """Private name of every symbol that the equations hold."""
         e = self.equations
         names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
+        names |= {s: f"i{i}_" for i, s in enumerate(self.inverses.values())}
         names |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
         used = set().union(*(x.free_symbols for x in self._expressions()))
         used |= {*self.states, *self.computer_states, *e.inputs, *e.commands.values(), *self.late}
@@ -153,6 +167,7 @@ class Generator:
             "COLUMNS": len(self.layout().columns),
             "SPOILED": 1,
             "PARAMETERS": len(self.parameters),
+            "INVERSES": len(self.inverses),
         }
         lines, first = [], 0
         for name, count in rows.items():
@@ -197,15 +212,26 @@ class Generator:
         return places | self._parameter_places()
 
     def _parameter_places(self) -> dict[sp.Symbol, str]:
-        return locate_symbols({"PARAMETERS": self.parameters})
+        return locate_symbols(
+            {"PARAMETERS": self.parameters, "INVERSES": list(self.inverses.values())}
+        )
+
+    def _write_inverses(self) -> str:
+        """Source of the function that computes once what laws would divide by at each step."""
+        writer = LawWriter(("memory",), locate_symbols({"PARAMETERS": self.parameters}), self.names)
+        lines = writer.lines({f"out{i}": power for i, power in enumerate(self.inverses)})
+        ends = [f"{locate_entry('INVERSES', i)} = out{i}" for i in range(len(self.inverses))]
+        return write_function("find_inverses", writer.arguments, [*lines, *ends])
 
     def _write_analog(self) -> str:
         e = self.equations
-        write = LawWriter(tuple(ANALOG), self._analog_places(), self.names, e.joined).function
+        places, arguments = self._analog_places(), tuple(ANALOG)
+        write = LawWriter(arguments, places, self.names, e.joined, self.inverses).function
         moving, bristles = ([e.rates[s] for s in g] for g in (self.moving, self.bristles))
         parts = [
             write_reader("inputs_at", len(e.inputs)),
             write_reader("sampled_inputs_at", len(self.sampled_inputs)),
+            self._write_inverses(),
             write("rates", to_states=moving, to_bristles=bristles),
             write("slopes", to=[self.slopes[s] for s in self.bristles]),
             write("signals", to=self._analog_signals().values()),
@@ -249,7 +275,7 @@ class Generator:
         read = {x: f"sampled[{i}]" for i, x in enumerate(self.sampled_inputs)}
         places = locate_symbols(rows) | read | self._parameter_places()
         names = {**self.names, TIME: "(n * period)"}
-        writer = LawWriter(tuple(DIGITAL), places, names)
+        writer = LawWriter(tuple(DIGITAL), places, names, inverses=self.inverses)
         sources = {x.name: text for x, text in read.items()}
         sources |= {name: locate_entry("MADE", i) for i, name in enumerate(made)}
         commands = [f"{locate_entry('to', i)} = {sources[c]}" for i, c in enumerate(self.commands)]

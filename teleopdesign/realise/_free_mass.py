@@ -20,41 +20,38 @@ LANES = 1
 
 
 @jitted
-def phi(z):
-    """exp, phi_1, phi_2, phi_3 of z, accurate through zero."""
-    if abs(z) < 1.0:
-        p3 = 1 / 6.0 + z * (
-            1 / 24.0
+def phi_near(z):
+    """exp, phi_1, phi_2, phi_3 of z by their series, within abs(z) < 1."""
+    p3 = 1 / 6.0 + z * (
+        1 / 24.0
+        + z
+        * (
+            1 / 120.0
             + z
             * (
-                1 / 120.0
+                1 / 720.0
                 + z
                 * (
-                    1 / 720.0
+                    1 / 5040.0
                     + z
                     * (
-                        1 / 5040.0
+                        1 / 40320.0
                         + z
                         * (
-                            1 / 40320.0
+                            1 / 362880.0
                             + z
                             * (
-                                1 / 362880.0
+                                1 / 3628800.0
                                 + z
                                 * (
-                                    1 / 3628800.0
+                                    1 / 39916800.0
                                     + z
                                     * (
-                                        1 / 39916800.0
+                                        1 / 479001600.0
                                         + z
                                         * (
-                                            1 / 479001600.0
-                                            + z
-                                            * (
-                                                1 / 6227020800.0
-                                                + z
-                                                * (1 / 87178291200.0 + z * (1 / 1307674368000.0))
-                                            )
+                                            1 / 6227020800.0
+                                            + z * (1 / 87178291200.0 + z * (1 / 1307674368000.0))
                                         )
                                     )
                                 )
@@ -64,9 +61,17 @@ def phi(z):
                 )
             )
         )
-        p2 = z * p3 + 0.5
-        p1 = z * p2 + 1.0
-        return z * p1 + 1.0, p1, p2, p3
+    )
+    p2 = z * p3 + 0.5
+    p1 = z * p2 + 1.0
+    return z * p1 + 1.0, p1, p2, p3
+
+
+@jitted
+def phi(z):
+    """exp, phi_1, phi_2, phi_3 of z, accurate through zero."""
+    if abs(z) < 1.0:
+        return phi_near(z)
     e = exp(z)
     p1 = (e - 1.0) / z
     p2 = (p1 - 1.0) / z
@@ -74,9 +79,9 @@ def phi(z):
 
 
 @jitted
-def weights(z):
-    """exp and phi_1 of z/2, exp of z, and the three weights of a step."""
-    e, p1, p2, p3 = phi(z / 2)
+def weights(z, is_near):
+    """exp and phi_1 of z/2, exp of z, and the three weights of a step;  is_near: abs(z) < 2."""
+    e, p1, p2, p3 = phi_near(z / 2) if is_near else phi(z / 2)
     q1 = 0.5 * (e + 1.0) * p1
     q2 = 0.25 * (p1 * p1 + 2 * p2)
     q3 = 0.125 * (p1 * p2 + p2 + 2 * p3)
@@ -126,6 +131,7 @@ MADE = 24
 COLUMNS = 25
 SPOILED = 31
 PARAMETERS = 32
+INVERSES = 33
 MANY_MOTIONS = 1
 MANY_STATES = 2
 MANY_BRISTLES = 0
@@ -133,7 +139,7 @@ MANY_COMMANDS = 1
 MANY_LATE = 0
 MANY_SAMPLED_LATE = 0
 MANY_COLUMNS = 6
-ROWS = 33
+ROWS = 34
 SMOOTH = (True,)
 COMPUTER = True
 OBSERVER = 0
@@ -159,13 +165,20 @@ def sampled_inputs_at(table, column):
 
 
 @jitted
+def find_inverses(memory, lane):
+    p0 = memory[PARAMETERS + lane]
+    out0 = 1 / p0
+    memory[INVERSES + lane] = out0
+
+
+@jitted
 def rates(time, states, bristles, inputs, late, memory, to_states, to_bristles, lane):
     v1_ = memory[states + 1 + lane]
     v7_ = memory[COMMANDS + lane]
     v2_ = inputs[0]
-    p0 = memory[PARAMETERS + lane]
+    i0_ = memory[INVERSES + lane]
     out0 = v1_
-    out1 = (v2_ + v7_) / p0
+    out1 = i0_ * (v2_ + v7_)
     memory[to_states + lane] = out0
     memory[to_states + 1 + lane] = out1
 
@@ -180,8 +193,8 @@ def signals(time, states, bristles, inputs, late, memory, to, lane):
     v7_ = memory[COMMANDS + lane]
     v2_ = inputs[0]
     v3_ = inputs[1]
-    p0 = memory[PARAMETERS + lane]
-    out0 = (v2_ + v7_) / p0
+    i0_ = memory[INVERSES + lane]
+    out0 = i0_ * (v2_ + v7_)
     out1 = -v2_
     out2 = v2_ + v3_
     memory[to + lane] = out0

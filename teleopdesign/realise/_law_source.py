@@ -6,7 +6,7 @@ the other, each row with an entry for each lane.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -25,6 +25,24 @@ def needed_steps(
             needed[symbol] = expression
             wanted |= expression.free_symbols
     return dict(reversed(list(needed.items())))
+
+
+def list_inverses(
+    expressions: Iterable[sp.Expr], parameters: Collection[sp.Symbol]
+) -> tuple[sp.Pow, ...]:
+    """What the expressions divide by that does not change: inverses of sums of the parameters."""
+    known = set(parameters)
+    inverses = {
+        power
+        for expression in expressions
+        for power in expression.atoms(sp.Pow)
+        if power.exp.is_Integer
+        and power.exp < 0
+        and power.base.free_symbols
+        and power.base.free_symbols <= known
+        and power.base.is_polynomial()
+    }
+    return tuple(sorted(inverses, key=sp.default_sort_key))
 
 
 #: symbol -> the text that reads it
@@ -59,16 +77,22 @@ def write_reader(name: str, many: int) -> str:
 
 @dataclass(frozen=True)
 class LawWriter:
-    """What the source of some laws is written with: arguments, and names of what they hold."""
+    """What the source of some laws is written with: arguments, and names of what they hold.
+
+    inverses: what is divided by that does not change -> the symbol that it is read by
+    """
 
     arguments: tuple[str, ...]
     places: Places
     names: Names
     joined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    inverses: Mapping[sp.Expr, sp.Symbol] = field(default_factory=dict)
 
     def lines(self, results: Mapping[str, sp.Expr]) -> list[str]:
         """Lines that compute the results under their private names, common parts once."""
         needed = needed_steps(results.values(), self.joined)
+        needed = {s: sp.sympify(e).xreplace(self.inverses) for s, e in needed.items()}
+        results = {name: sp.sympify(e).xreplace(self.inverses) for name, e in results.items()}
         expressions = (*results.values(), *needed.values())
         used = set().union(*(x.free_symbols for x in expressions))
         return [

@@ -13,21 +13,20 @@ _HEAD = """from math import *
 import numpy as np
 
 """
-# every part is inlined: then what one of them leaves in memory for the next one stays in registers
+# every part is inlined: then what one of them leaves in memory for the next one stays in registers.
+# A product and the sum it goes into are one instruction, rounded once, where the processor has it,
+# and what is divided by the same number is multiplied by its inverse: 0.75 of the time
 _COMPILED = """from numba import njit
 
+options = dict(nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 inlined = dict(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-jitted = njit(nogil=True, error_model="numpy", **inlined)
-entry = njit(nogil=True, error_model="numpy", cache=True)
+jitted = njit(**options, **inlined)
+entry = njit(cache=True, **options)
 """
 # a call of the library's exp would keep the compiler from working on several lanes at once
 _LANES = """from teleopdesign.realise.lane_exp import exp
 
 """
-# in lanes a product and the sum it goes into are one instruction, rounded once, and what is divided
-# by the same number is multiplied by its inverse: 0.7 of the time. One simulation rounds each by
-# itself: its numbers are the same on any machine
-_CONTRACTED = ('error_model="numpy"', 'error_model="numpy", fastmath={"contract", "arcp"}')
 _PLAIN = """
 
 def jitted(function):
@@ -51,14 +50,11 @@ def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
         laws = re.sub(r"^(\w+ = )(\d+ \* LANES)$", r"\1np.int64(\2)", laws, flags=re.MULTILINE)
     # numba takes as long for a product of constants as for any other
     laws = re.sub(r"(\d+) \* LANES", lambda match: str(int(match[1]) * lanes), laws)
-    decorators = _COMPILED if jit else _PLAIN
-    if lanes > 1:
-        decorators = decorators.replace(*_CONTRACTED)
     return [
         text,
         _HEAD,
         _LANES if lanes > 1 else "",
-        decorators,
+        _COMPILED if jit else _PLAIN,
         f"LANES = {lanes}\n",
         PHI,
         WEIGHTS,

@@ -23,13 +23,19 @@ def _series() -> str:
 #: source of `phi`, to stand behind a line that defines `jitted`
 PHI = f'''
 @jitted
+def phi_near(z):
+    """exp, phi_1, phi_2, phi_3 of z by their series, within abs(z) < 1."""
+    p3 = {_series()}
+    p2 = z * p3 + 0.5
+    p1 = z * p2 + 1.0
+    return z * p1 + 1.0, p1, p2, p3
+
+
+@jitted
 def phi(z):
     """exp, phi_1, phi_2, phi_3 of z, accurate through zero."""
     if abs(z) < 1.0:
-        p3 = {_series()}
-        p2 = z * p3 + 0.5
-        p1 = z * p2 + 1.0
-        return z * p1 + 1.0, p1, p2, p3
+        return phi_near(z)
     e = exp(z)
     p1 = (e - 1.0) / z
     p2 = (p1 - 1.0) / z
@@ -38,9 +44,9 @@ def phi(z):
 #: source of `weights`, to stand behind `phi`
 WEIGHTS = '''
 @jitted
-def weights(z):
-    """exp and phi_1 of z/2, exp of z, and the three weights of a step."""
-    e, p1, p2, p3 = phi(z / 2)
+def weights(z, is_near):
+    """exp and phi_1 of z/2, exp of z, and the three weights of a step;  is_near: abs(z) < 2."""
+    e, p1, p2, p3 = phi_near(z / 2) if is_near else phi(z / 2)
     q1 = 0.5 * (e + 1.0) * p1
     q2 = 0.25 * (p1 * p1 + 2 * p2)
     q3 = 0.125 * (p1 * p2 + p2 + 2 * p3)
@@ -48,7 +54,7 @@ def weights(z):
 '''
 _JIT = """from numba import njit
 
-jitted = njit(cache=True, nogil=True, error_model="numpy")
+jitted = njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 """
 _NO_JIT = """
 

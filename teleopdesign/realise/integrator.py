@@ -39,8 +39,8 @@ def largest_change(worst, slope, last, h):
 
 
 @jitted
-def prepare_step(first, time, h, inputs, memory, lane):
-    """Slopes A of the bristles, the factors of their step, and how well the step resolves them."""
+def find_slopes(first, time, h, inputs, memory, lane):
+    """Slopes A of the bristles, and how well the step resolves them."""
     slopes(time, STATES, BRISTLES, inputs, LATE, memory, SLOPES, lane)
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
@@ -49,7 +49,23 @@ def prepare_step(first, time, h, inputs, memory, lane):
             last = memory[LAST_SLOPES + at]
             memory[WORST + at] = largest_change(memory[WORST + at], slope, last, h)
         memory[LAST_SLOPES + at] = slope
-        e_half, g_half, e, w0, w1, w3 = weights(h * slope)
+
+
+@jitted
+def are_near(h, memory):
+    """Whether abs(A h) < 2 for all bristles of all lanes, where series alone give the factors."""
+    far = 0
+    for at in range(MANY_BRISTLES * LANES):
+        far += 0 if abs(h * memory[SLOPES + at]) < 2.0 else 1
+    return far == 0
+
+
+@jitted
+def find_factors(is_near, h, memory, lane):
+    """Factors of the step by which the bristles advance;  is_near: from `are_near`."""
+    for i in range(MANY_BRISTLES):
+        at = i * LANES + lane
+        e_half, g_half, e, w0, w1, w3 = weights(h * memory[SLOPES + at], is_near)
         memory[E_HALF + at] = e_half
         memory[G_HALF + at] = 0.5 * h * g_half
         memory[E_STEP + at] = e
@@ -111,11 +127,10 @@ def end_step(h, memory, lane):
 
 
 @jitted
-def step(first, time, h, inputs_0, inputs_1, inputs_2, memory, lane):
+def step(time, h, inputs_0, inputs_1, inputs_2, memory, lane):
     """One step of the scheme;  inputs_0, _1, _2: at its start, in its middle, at its end."""
     x, z, z1, m = STAGE_STATES, STAGE_BRISTLES, FIRST_BRISTLES, memory
     middle = time + 0.5 * h
-    prepare_step(first, time, h, inputs_0, m, lane)
     rates(time, STATES, BRISTLES, inputs_0, LATE, m, RATES_0, RESTS_0, lane)
     take_rests(BRISTLES, RESTS_0, m, lane)
     move_straight(RATES_0, 0.5 * h, m, lane)
@@ -131,6 +146,23 @@ def step(first, time, h, inputs_0, inputs_1, inputs_2, memory, lane):
     rates(time + h, x, z, inputs_2, LATE_END, m, RATES_3, RESTS_3, lane)
     take_rests(z, RESTS_3, m, lane)
     end_step(h, m, lane)
+
+
+@jitted
+def advance(first, time, h, inputs_0, inputs_1, inputs_2, memory):
+    """All lanes over one step;  first: it is the first one;  inputs: as of `step`."""
+    # a short loop over a number that the compiler knows would become one lane after the other
+    lanes = LANES if LANES == 1 else memory.size // ROWS
+    for lane in range(LANES):
+        find_slopes(first, time, h, inputs_0, memory, lane)
+    if LANES > 1 and are_near(h, memory):  # one lane asks for each bristle, in `phi`
+        for lane in range(lanes):
+            find_factors(True, h, memory, lane)
+    else:
+        for lane in range(lanes):
+            find_factors(False, h, memory, lane)
+    for lane in range(LANES):
+        step(time, h, inputs_0, inputs_1, inputs_2, memory, lane)
 
 
 @jitted
@@ -376,6 +408,8 @@ def differentiate_at_rest(inputs, memory, small, slopes_of):
     memory: zeros, and the parameters
     slopes_of: entry of d(rate i)/d(state k) of a lane, states before bristles
     """
+    for lane in range(LANES):
+        find_inverses(memory, lane)
     at_rest = inputs_at(inputs, np.int64(0))  # no literal, see `module_source`
     many = MANY_STATES + MANY_BRISTLES
     for k in range(many):
@@ -419,6 +453,8 @@ def run(
     limit: the run ends early where the measure of the reload is above it in every lane
     """
     nodes, row = samples * inner, np.int64(0)  # no literal, see `module_source`
+    for lane in range(LANES):
+        find_inverses(memory, lane)
     for j in range(nodes + 1):
         time, now, inputs_0 = j * h, j % inner == 0, inputs_at(inputs, 2 * j)
         if COMPUTER and now:
@@ -451,5 +487,4 @@ def run(
                 return
         if j < nodes:
             inputs_1, inputs_2 = inputs_at(inputs, 2 * j + 1), inputs_at(inputs, 2 * j + 2)
-            for lane in range(LANES):
-                step(j == 0, time, h, inputs_0, inputs_1, inputs_2, memory, lane)
+            advance(j == 0, time, h, inputs_0, inputs_1, inputs_2, memory)

@@ -99,6 +99,7 @@ def _program(
     return _restore_names(_programs[key], names)
 
 
+@lru_cache(maxsize=256)
 def loop_of(laws: str, lanes: int) -> CompiledLoop:
     """The compiled loop on laws for that many simulations side by side."""
     return _entries(compiled_module(module_source(laws, lanes=lanes), "run"), lanes)

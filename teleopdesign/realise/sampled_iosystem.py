@@ -170,6 +170,7 @@ class _Sample:
         analog = tuple(inputs[name] for name in layout.inputs)
         sampled = tuple(inputs[name] for name in layout.sampled_inputs)
         with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
+            at["find_inverses"](memory, 0)
             if at["COMPUTER"]:
                 at["sample"](
                     *(False, round(t / self.dt), self.slots, t, self.dt, 0.0, 0.0, analog),
@@ -186,7 +187,7 @@ class _Sample:
                 [x for x, name in zip(rows, layout.columns, strict=True) if name not in inputs]
             )
             for j in range(inner):
-                at["step"](j == 0, t + j * h, h, analog, analog, analog, memory, 0)
+                at["advance"](j == 0, t + j * h, h, analog, analog, analog, memory)
         worst = memory[at["WORST"] : at["WORST"] + len(layout.exponential)].max(initial=0.0)
         after = np.concatenate([memory[self.rows], self._order_ring(past)])
         return _Answer(signals, after), float(worst)

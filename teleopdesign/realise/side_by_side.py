@@ -2,7 +2,7 @@
 
 A block runs without Python's lock, in the same loop and on the same laws as one simulation
 (`integrator.py`); blocks share nothing that is written. Numbers differ from those of one simulation
-by rounding: exp is another one (`lane_exp.py`), and a product is rounded with the sum it goes into.
+by rounding: exp is another one (`lane_exp.py`).
 """
 
 from __future__ import annotations

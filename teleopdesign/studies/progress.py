@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..rounding import duration_text
 from .outcomes import PointOutcome
 
 #: s between two reports: as often as one can read
@@ -79,13 +80,3 @@ class Clock:
         rate = fresh / passed if passed > 0 else 0.0
         left = (self.total - self.done) / rate if rate > 0 else float("nan")
         return Progress(self.done, self.total, self.failed, self.kept, rate, left, self.things)
-
-
-def duration_text(seconds: float) -> str:
-    """ "42 s", "7 min", "3.5 h", "12 days"."""
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    if seconds < 90 * 60:
-        return f"{seconds / 60:.0f} min"
-    hours = seconds / 3600
-    return f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.3g} days"

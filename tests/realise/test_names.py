@@ -248,7 +248,7 @@ OWN = {*dir(math), *keyword.kwlist, *dir(builtins), *ANALOG, *DIGITAL, "jitted",
 OWN |= set("rates slopes signals late_values motions record held_commands".split())
 OWN |= set("computer_before computer_signals computer_after e f _".split())
 OWN |= set("to to_states to_bristles to_positions to_velocities table column".split())
-PRIVATE = re.compile(r"v\d+_|(p|k|out|a|b)\d+|j\d*_|[A-Z][A-Z_]+(_\d)?")
+PRIVATE = re.compile(r"v\d+_|(p|k|out|a|b)\d+|j\d*_|i\d+_|[A-Z][A-Z_]+(_\d)?")
 
 
 @pytest.mark.parametrize("name", DIAGRAMS)
