@@ -45,9 +45,7 @@ def list_files_of_callees(dispatcher: Any) -> list[Path]:
     while waiting:
         function = waiting.pop()
         for name in function.__code__.co_names:
-            value = function.__globals__.get(name)
-            # `_defn` is what an intrinsic is made of
-            called = getattr(value, "py_func", None) or getattr(value, "_defn", None)
+            called = getattr(function.__globals__.get(name), "py_func", None)
             if called is not None and called not in callees:
                 callees.add(called)
                 waiting.append(called)

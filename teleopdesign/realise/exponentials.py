@@ -54,7 +54,7 @@ def weights(z, is_near):
 '''
 _JIT = """from numba import njit
 
-jitted = njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
+jitted = njit(cache=True, nogil=True, error_model="numpy")
 """
 _NO_JIT = """
 
