@@ -4,8 +4,8 @@
 
 By linear least squares, unbounded, on the rows where the body surely moves. `lead` is the
 actuator force (the interaction force where nothing is commanded); columns are the tangents of the
-user's model by its inertia and by every strength in which its force is linear. A force that is
-turned gives a negative gain, a motion that is turned negative strengths, a unit that is off a
+user's model by its inertia and by every strength in which its force is linear, and a constant force
+where the model has none. A force that is turned gives a negative gain, a motion that is turned negative strengths, a unit that is off a
 strength that is off by its factor. Shifts come from the forces' derivatives, solved again about
 each shift, first at low frequency, where a period is long.
 """
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ..blocks import Body
 from ..diagnose.fit import block_numbers, standard_errors
 from ..diagnose.prepare import Prepared, Stretch
+from ..effects import EFFECTS
 from ..measurement.filtering import Array
 from ..model import Model
 from .force_timing import (
@@ -57,7 +58,8 @@ class ForceBalance:
 
     lead: channel that the others are held against;  other: the second measured force, or ""
     gain: of the other force, 1 where its scale and sign are right, and 1 where there is none
-    strengths: "inertia", "coulomb.level" ... -> estimate (SI);  power: of each, W, mean
+    strengths: "inertia", "coulomb.level" ... -> estimate (SI)
+    power: of the inertia, and of each strength that takes energy from any motion, W, mean
     shifts: "actuator_force", "interaction_force" -> s by which its log lags the motion; "position"
         -> s by which the motion's does, where that alone explains it; empty: no shift is reported
     left, unshifted: force left unexplained over the measured force, with and without the shifts
@@ -92,7 +94,10 @@ def force_balance(
 
     stretches: those of this body;  timed: look for shifts
     """
-    names = strengths_of(body)
+    stated = strengths_of(body)
+    # a weight or a pressure of many times the friction would have it drive, where a model lacks it
+    body = body if body.has("bias") else body.with_effect(EFFECTS["bias"])
+    names = [*stated, *(n for n in strengths_of(body) if n not in stated)]
     bands = {
         b: [transform_in_band(body, s, names, b) for s in stretches]
         for b in dict.fromkeys(BANDS if timed else (1.0,))
@@ -114,19 +119,25 @@ def force_balance(
     errors = standard_errors(fit.jacobian, fit.left, numbers)
     estimates = [Estimate(float(v), float(e)) for v, e in zip(fit.solution, errors, strict=True)]
     strengths = dict(zip(names, estimates, strict=False))
+    power = _power(parts, fit.rows[5:], strengths)
     both = len(forces) > 1
     return ForceBalance(
         body=stretches[0].motion.body,
         lead=forces[0],
         other=forces[1] if both else "",
         gain=estimates[len(names)] if both else Estimate(1.0, 0.0),
-        strengths=strengths,
-        power=_power(parts, fit.rows[5:], strengths),
+        strengths={n: strengths[n] for n in stated},
+        power={n: power[n] for n in stated if n == "inertia" or _brakes(body, n)},
         shifts=_name_shifts(fit, estimates[len(names) + both :]),
         left=fit.size / measured,
         unshifted=plain.size / measured,
         rows=counted / sum(len(s.keep) for s in stretches),
     )
+
+
+def _brakes(body: Body, strength: str) -> bool:
+    """Whether a strength is that of an effect that takes energy from any motion."""
+    return body.effect(strength.partition(".")[0]).energy == "dissipates"
 
 
 def force_balances(

@@ -10,12 +10,9 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-import numpy as np
-
 from ..diagnose.prepare import Prepared
 from ..diagnose.record_shift import CLOCK
 from ..finding import Finding
-from ..measurement.first_guess import is_turned
 from ..measurement.soundness.signal import channel_label
 from ..model import Model
 from ..quantity import unit_of
@@ -72,7 +69,6 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     brakes = 0 if braking is None else braking.sure
     against = balance.gain.sure < 0
     turned = inertia.sure < 0 and brakes <= 0 or inertia.sure == 0 and brakes < 0
-    turned = turned and not _brakes_beside_a_constant(prepared, balance.body)
     if balance.left > NOTHING or not (against or turned):
         return
     lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other or ""))
@@ -99,22 +95,6 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
         },
         balance.body,
     )
-
-
-def _brakes_beside_a_constant(prepared: Prepared, body: str) -> bool:
-    """Whether a constant force, which the model may lack, shows that friction brakes after all.
-
-    Beside a weight or a pressure of many times the friction, a model without it has friction drive.
-    """
-    for record in prepared.experiment.fit_records:
-        names = (f"{body}.actuator_force", f"{body}.interaction_force")
-        forces = [record.signals[n] for n in names if n in record.signals]
-        position = record.signals[f"{body}.position"]
-        for rows in record.segments:
-            against = -np.sum([f[rows] for f in forces], axis=0)
-            if is_turned(against, position[rows], record.sample_time):
-                return True
-    return False
 
 
 def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:

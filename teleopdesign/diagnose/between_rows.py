@@ -1,14 +1,15 @@
 """A command that changes between the rows of a log: what its scatter alone would leave.
 
 A controller that is faster than the log changes its command within a row. The log holds one value
-of many, and what lies between them acts unseen: steps of an encoder that the controller
-differentiates, corners at reversals. In the log that is a scatter from row to row, as of a sensor.
+of many, and what lies between them acts unseen, such as the steps of an encoder that the controller
+differentiates. In the log that is a scatter from row to row, as of a sensor. Corners at reversals
+are lost too, but they are rare: the scatter does not tell them.
 
 Where the log is as fast as the controller the same scatter is held for the whole row, acts, and
 moves the body: there it is no noise. So it counts only at the end of a search, and only where
 
 - the command is late by about half a row: the value that is logged lies amid those that act;
-- a black box learns nothing of what is left from the motion, and no effect explains it;
+- a black box learns next to nothing of what is left from the motion, as no effect did;
 - what is left is as small as the scatter makes it.
 """
 
@@ -56,13 +57,14 @@ def floor_between_rows(
     # no floor lies above what a right model leaves
     limited = replace(drawn, value=min(drawn.value, fit.check_error))
     source = f"{floor.source}, and a command that changes within a row"
-    return replace(limited, source=source) if is_adequate(fit, limited) else floor
+    explains = is_adequate(fit, limited, criteria=criteria)
+    return replace(limited, source=source) if explains else floor
 
 
 def is_amid_a_row(shift: RecordShift, *, clock: LoggerClock = CLOCK) -> bool:
-    """Whether a command is surely late by about half a row, or its force was measured."""
+    """Whether a command, which was not measured, is surely late by about half a row."""
     rows, error = shift.late / shift.row, shift.stderr / shift.row
-    return shift.measured or abs(rows - 0.5) + error <= clock.amid
+    return not shift.measured and abs(rows - 0.5) + error <= clock.amid
 
 
 def command_scatter(experiment: Experiment, bodies: set[str]) -> Mapping[str, float]:

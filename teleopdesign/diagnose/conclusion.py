@@ -68,6 +68,8 @@ def conclude(
     trees = learnable(model, search.whole, beside=beside, seed=search.seed)
     last, whole = rungs[-1].fit, search.whole
     floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
+    if floor is not state.floor:  # all that is left is noise, at any moment
+        moment = None
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,

@@ -89,12 +89,11 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
 
 
 def is_turned(force: Array, position: Array, sample_time: float) -> bool:
-    """Whether a force (n,) drives where friction brakes, so that position or force has the other
-    sign.
+    """Whether the sign of a force (n,) or of the position is turned: friction would drive.
 
     Friction and damping take energy out, and inertia is positive. Of these two, what makes more of
-    the force decides, where the motion tells it surely: in slow motions inertia is lost among all
-    that is late, and a motion in one direction tells a friction from no constant force.
+    the force decides, where the motion tells it surely. In slow motions inertia is lost among all
+    that is late; a motion in one direction does not distinguish friction from a constant force.
     """
     stretch = _stretch((force,), position, sample_time)
     if stretch is None:

@@ -40,7 +40,7 @@ def write_strokes(folder, side, pressure):
 
 @pytest.mark.parametrize(
     ("side", "pressure", "is_said"),
-    [(1.0, 250.0, False), (1.0, 15.0, False), (1.0, 0.0, False), (-1.0, 0.0, True)],
+    [(side, pressure, side < 0) for side in (1.0, -1.0) for pressure in (250.0, 15.0, 0.0)],
 )
 def test_friction_beside_a_pressure_tells_the_sign(side, pressure, is_said, tmp_path):
     findings = check_experiment(write_strokes(tmp_path / "strokes", side, pressure))
