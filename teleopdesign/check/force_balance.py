@@ -5,9 +5,9 @@
 By linear least squares, unbounded, on the rows where the body surely moves. `lead` is the
 actuator force (the interaction force where nothing is commanded); columns are the tangents of the
 user's model by its inertia and by every strength in which its force is linear, and a constant force
-where the model has none. A force that is turned gives a negative gain, a motion that is turned negative strengths, a unit that is off a
-strength that is off by its factor. Shifts come from the forces' derivatives, solved again about
-each shift, first at low frequency, where a period is long.
+where the model has none. A force that is turned gives a negative gain, a motion that is turned
+negative strengths, a unit that is off a strength that is off by its factor. Shifts come from the
+forces' derivatives, solved again about each shift, first at low frequency, where a period is long.
 """
 
 from __future__ import annotations

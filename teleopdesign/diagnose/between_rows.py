@@ -11,6 +11,9 @@ moves the body: there it is no noise. So it counts only at the end of a search, 
 - the command is late by about half a row: the value that is logged lies amid those that act;
 - a black box learns next to nothing of what is left from the motion, as no effect did;
 - what is left is as small as the scatter makes it.
+
+It makes no effect more likely: what was added to a model whose rest may be scatter may stand in for
+it, so that effects are believed by the floor of the sensors.
 """
 
 from __future__ import annotations

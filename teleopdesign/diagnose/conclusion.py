@@ -78,6 +78,7 @@ def conclude(
         last=state.ranking,
         estimated=estimated,
         floor=floor,
+        sensor_floor=None if floor is state.floor else state.floor,
         moment=moment,
         learnable=trees,
         near_reversals=error_near_reversals(model, search.whole),

@@ -80,6 +80,8 @@ class Diagnosis(ByValue):
     untold: what the records cannot tell of the accepted effects
     set_aside: effects that were accepted first and removed again: with the errors that the answer
         states, they are not there
+    sensor_floor: what the sensors alone leave, by which effects are believed; None: the floor.
+        Where a command's scatter is noise too (`between_rows`), effects may stand in for it
     recorded: the answer file that the diagnosis was read from, with its candidates; else None
     """
 
@@ -98,6 +100,7 @@ class Diagnosis(ByValue):
     left_out: tuple[str, ...] = ()
     untold: tuple[Untold, ...] = ()
     set_aside: tuple[SetAside, ...] = ()
+    sensor_floor: NoiseFloor | None = None
     recorded: Mapping[str, Any] | None = None
 
     @property
@@ -150,6 +153,11 @@ class Diagnosis(ByValue):
         """
         drawn = replace(self.floor, value=self.floor.drawn)
         return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)
+
+    @property
+    def floor_of_belief(self) -> NoiseFloor:
+        """The noise floor by which effects are believed."""
+        return self.floor if self.sensor_floor is None else self.sensor_floor
 
     @property
     def left(self) -> float:

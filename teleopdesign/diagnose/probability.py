@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .adequacy import is_adequate
+from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .decision import helps_but_is_barred, list_displaced_parameters
@@ -107,7 +107,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
             accepted = rung is not None and rung.added is not None and rung.added.key == key
             barred = diagnosis.reason_set_aside(key)
             if not accepted and not barred:
-                barred = helps_but_is_barred(ranking.base, ranked, diagnosis.floor)
+                barred = helps_but_is_barred(ranking.base, ranked, diagnosis.floor_of_belief)
             evidence.append(
                 CandidateEvidence(
                     ranked=ranked,
@@ -115,10 +115,10 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
                     explained=_explained_share(diagnosis, ranking, ranked),
-                    left=diagnosis.left,
+                    left=floors_left(diagnosis.after, diagnosis.floor_of_belief),
                     barred=barred,
                     outweighs=_outweighs(diagnosis, ranking.base, ranked.fit),
-                    from_noise=is_adequate(ranking.base, diagnosis.floor),
+                    from_noise=is_adequate(ranking.base, diagnosis.floor_of_belief),
                 )
             )
     return evidence
@@ -198,7 +198,7 @@ def open_to_others(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> fl
 
 def _outweighs(diagnosis: Diagnosis, base: Fit, fit: Fit) -> float:
     """What a candidate takes away on its step, over that and what the last step leaves open."""
-    last, floor, part = diagnosis.after, diagnosis.floor, open_to_others(diagnosis)
+    last, floor, part = diagnosis.after, diagnosis.floor_of_belief, open_to_others(diagnosis)
     errors = (f.check_error for f in (base, fit, last))
     at_command = (f.at_command.error for f in (base, fit, last))
     return min(
@@ -215,5 +215,5 @@ def _share_of_gain(before: float, after: float, last: float, *, floor: float, pa
 
 def _explained_share(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:
     before, after = ranking.base.check_error, ranked.fit.check_error
-    excess = before**2 - min(diagnosis.floor.value, after) ** 2
+    excess = before**2 - min(diagnosis.floor_of_belief.value, after) ** 2
     return min(max((before**2 - after**2) / excess, 0.0), 1.0) if excess > 0 else 0.0

@@ -97,7 +97,7 @@ class SearchPlan:
     tip_starts: int = 2
     tip_refined: int = 60
     #: factor within which the best near by is sought: neighbours on the grid are 2.0 apart at most.
-    #: Without one a search that nothing holds ran off to tips that swing at 1e9 rad/s, and did not end
+    #: Without one a search that nothing holds ran off to tips that swing at 1e9 rad/s
     tip_near: float = 4.0
     #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
     #: between two

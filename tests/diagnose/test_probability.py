@@ -107,6 +107,16 @@ def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
     assert [e.ranked.candidate.key for e in found if e.accepted] == [("stribeck", "device")]
 
 
+def test_a_floor_that_holds_a_commands_scatter_makes_no_effect_more_likely(diagnosis):
+    def said(one):
+        return [(e.left, e.explained, e.outweighs, e.probability()) for e in evidence_of(one)]
+
+    louder = replace(diagnosis.floor, value=3.0 * diagnosis.floor.value)
+    by_scatter = replace(diagnosis, floor=louder, sensor_floor=diagnosis.floor)
+    assert said(by_scatter) == said(diagnosis) != said(replace(diagnosis, floor=louder))
+    assert by_scatter.left == pytest.approx(diagnosis.left / 3.0)
+
+
 def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosis):
     for ranking in (*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last):
         first, *others = ranking.ranked
