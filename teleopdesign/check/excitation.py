@@ -19,6 +19,7 @@ from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
 from ..quantity import unit_after_number, unit_of
+from ..rounding import round_near
 from ..standard_error import with_standard_error
 from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities
@@ -78,8 +79,10 @@ def _summary(
     place: str,
 ) -> Finding:
     """A line for each kind: shown, shown if large, not shown and why; rows of what can be shown."""
-    shown = sorted((v for v in visible_effects if v.size <= LARGE), key=lambda v: v.size)
-    large = sorted((v for v in visible_effects if LARGE < v.size <= 1.0), key=lambda v: v.size)
+    # to six digits: two that are the same force stay in the order of the catalogue, on any machine
+    in_order = sorted(visible_effects, key=lambda v: round_near(v.size, digits=6))
+    shown = [v for v in in_order if v.size <= LARGE]
+    large = [v for v in in_order if LARGE < v.size <= 1.0]
     hidden = [v for v in visible_effects if v.size > 1.0]
     numbers = {v.candidate.effect.name: v.size for v in visible_effects}
     numbers |= {c.effect.name: math.inf for c in never} | {"noise_floor": floor}
