@@ -225,6 +225,9 @@ def _order(clock: RecordClock, file: str, count: int) -> list[ReadingStep]:
         text = f"time set back {count_of(clock.restarts, 'time')}"
         rule = "a new segment each time"
         steps.append(ReadingStep(file, text, rule, "hidden states start anew at each"))
+    if clock.alone:
+        text = f"{count_of(clock.alone, 'row')} with a pause or an end on both sides"
+        steps.append(ReadingStep(file, text, "left out: one row tells no motion", "none"))
     if clock.gaps:
         text = f"{count_of(clock.gaps, 'pause')}, the longest {clock.longest_gap:.3g} s"
         rule = "a new segment after each"

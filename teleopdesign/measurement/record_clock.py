@@ -26,6 +26,7 @@ class RecordClock:
     exact: every row is a sample, and the other way round, at its time
     jitter: rms of the stamps about the even clock, s;  dropped, sorted, restarts: how many rows
     lost: rows that are filled;  gaps: stretches begun at a pause
+    alone: rows with a pause, an end or a clock set back on both sides: no sample is made of them
     """
 
     rows: RowNumbers
@@ -41,6 +42,7 @@ class RecordClock:
     sorted: int = 0
     restarts: int = 0
     lost: int = 0
+    alone: int = 0
     gaps: int = 0
     longest_gap: float = 0.0
     counted: bool = False

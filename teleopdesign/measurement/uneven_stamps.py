@@ -100,6 +100,7 @@ def sparse_clock(
         sorted=moved,
         restarts=restarts,
         lost=len(whole) - len(np.unique(places_of_rows)) if placed is not None else 0,
+        alone=len(stamps) - dropped - len(rows),
         gaps=gaps,
         longest_gap=longest,
     )

@@ -179,6 +179,7 @@ WHOLE = RecordClock(
         ({"sorted": 1}, "1 row out of order"),
         ({"restarts": 3}, "time set back 3 times"),
         ({"gaps": 1, "longest_gap": 2.5}, "1 pause, the longest 2.5 s"),
+        ({"alone": 1}, "1 row with a pause or an end on both sides"),
         ({"counted": True}, "stamps that many rows share"),
     ],
 )
