@@ -8,7 +8,8 @@ back, so that the available storage V of the forces x solves
 
 It is iterated on a grid of the forces, with linear interpolation. Where it settles, a storage
 function is known numerically. Where it grows without end, energy comes out or the grid is too
-coarse: interpolation lies above a convex V, so that its limits lie on the safe side.
+coarse: interpolation lies above a convex V. Where V bends the other way it lies below, and takes
+what short trips give out; so round trips of every length are looked at without a grid.
 Evidence either way.
 """
 
@@ -24,6 +25,7 @@ from ..by_value import ByValue
 from ..errors import ModelError
 from .claims.claim import Evidence
 from .rate_independent import Coulomb, Dahl, Element, compliance
+from .round_trips import most_released
 
 Array = NDArray[np.float64]
 #: gain, as a share of the compensator's level, below which the storage counts as steady
@@ -45,6 +47,8 @@ class AvailableStorage(ByValue):
     growth: what the storage still gained over the second half of the moves, J, where it gained most
     coarse: largest storage on a grid of half the points, J: by about as much as it differs, that
         of the grid may be off, to either side; the error falls as the points grow
+    round_trip: most energy per travel, N, that a round trip between two points gives out for ever
+    stroke: of that round trip, m
     """
 
     storage: Array
@@ -54,15 +58,18 @@ class AvailableStorage(ByValue):
     tolerance: float
     growth: float
     coarse: float
+    round_trip: float = 0.0
+    stroke: float = 0.0
 
     @property
     def is_finite(self) -> bool:
         """Whether the storage is finite, within the tolerance of the grid: it has stopped to grow.
 
-        What still grows is less than the most that some motion takes out.
+        What still grows is less than the most that some motion takes out, and no round trip gives
+        out anything for ever.
         """
         still = _STILL_GROWING * float(self.storage.max()) + self.tolerance * self.travel
-        return self.gain <= self.tolerance and self.growth <= still
+        return self.gain <= self.tolerance and self.growth <= still and not self.round_trip
 
     def evidence(self) -> Evidence:
         """As the verdict of a claim."""
@@ -71,9 +78,15 @@ class AvailableStorage(ByValue):
             f"available storage iterated over {self.moves} moves on a grid of {axes} forces, to "
             f"{self.storage.max():.3g} J ({self.coarse:.3g} J on half the points)"
         )
-        if self.gain <= self.tolerance and not self.is_finite:
+        if self.round_trip:
+            searched += (
+                f"; strokes of {self.stroke:.3g} m forth and back give out {self.round_trip:.3g} N "
+                "times their travel"
+            )
+        elif self.gain <= self.tolerance and not self.is_finite:
             searched += f" and still growing, by {self.growth:.2g} J over the second half of them"
-        return Evidence(self.is_finite, searched, self.tolerance - self.gain, "N")
+        margin = -self.round_trip if self.round_trip else self.tolerance - self.gain
+        return Evidence(self.is_finite, searched, margin, "N")
 
 
 def available_storage(
@@ -111,7 +124,10 @@ def available_storage(
     coarse, _ = _iterate(stateful, friction, half, longer, -(-moves // 2), load_coefficient)
     gain = growth / (travel * (moves - moves // 2))
     tolerance = _BLUR * compensator.level
-    return AvailableStorage(fine, gain, travel, moves, tolerance, growth, float(coarse.max()))
+    round_trip, stroke = most_released(compensator, friction, load_coefficient)
+    return AvailableStorage(
+        fine, gain, travel, moves, tolerance, growth, float(coarse.max()), round_trip, stroke
+    )
 
 
 def _iterate(

@@ -207,13 +207,12 @@ def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: f
     compensator: pushes along the motion;  friction: elements that act against it
     amplitude: m or rad;  returns: the cycle, with its energy per round in J (> 0: released)
     """
-    # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding
+    # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding;
+    # behind a spring the bristle takes part of the way, and its slip part of the force
     softest = min(
-        [
-            amplitude * e.stiffness / e.level
-            for e in (compensator, *friction)
-            if hasattr(e, "stiffness")
-        ]
+        amplitude / (e.level * e.stiffness * compliance(e) ** 2)
+        for e in (compensator, *friction)
+        if hasattr(e, "stiffness")
     )
     rounds = int(min(max(12, 10 / softest), 20000))
     return Cycle(compensator, tuple(friction), (amplitude, -amplitude), rounds)

@@ -25,7 +25,7 @@ def test_without_compensation_beyond_friction_the_storage_is_what_the_springs_ho
 
 @pytest.mark.parametrize(("level", "settled"), [(1.2, True), (1.4, False), (3.2, False)])
 def test_storage_settles_below_the_limit_of_cycles_and_grows_above(level, settled):
-    """sigma_D = 3 k: cycles give out energy from 1.265 f_1 on."""
+    """sigma_D = 3 k: cycles give out energy from (3 - sqrt 3) f_1 on."""
     found = available_storage(Dahl(level, 3e4), CABLE, points=31)
     assert found.is_finite is settled
     refuted = any(
@@ -110,6 +110,7 @@ def test_a_round_that_springs_still_feed_counts_for_no_more_than_all_rounds():
 def test_a_storage_that_still_grows_is_no_evidence_for_a_limit():
     """After few moves the gain is below its tolerance, for what comes out comes out slowly."""
     found = available_storage(Dahl(1.27, 3e4), CABLE, points=31, moves=200)
+    found = replace(found, round_trip=0.0)  # as for motions of more than two turns
     settled = replace(found, growth=0.0)
     slow = replace(found, gain=found.tolerance / 2, growth=float(found.storage.max()) / 10)
     assert replace(settled, gain=found.tolerance / 2).is_finite
