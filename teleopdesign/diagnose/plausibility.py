@@ -39,11 +39,10 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
         alongs = [(measured_along(body, s.motion), s) for s in stretches]
-        most = _largest_acting_force(stretches, facts)
         for effect in effects:
             said = _ask_effect(effect, "plausible", facts)
             if said is None and effect.role == "force":
-                said = _explain_cancelled(effect, alongs, most, facts)
+                said = _explain_cancelled(effect, alongs, facts)
             if said is not None:
                 meanings[effect.name, place] = said
     return meanings
@@ -59,33 +58,33 @@ def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str 
 
 
 def _explain_cancelled(
-    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], most: float, facts: RecordFacts
+    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], facts: RecordFacts
 ) -> str | None:
     """Whether a force varies along the motion by more than all that act together.
 
-    Half of its range against the largest of what acts, `most`.
+    Half of its range against the largest of what acts.
     """
     law = effect.expression()
     if effect.states or law.has(SIGNALS["acting_force"]):
         return None
     forces = [along.evaluate(law).value[s.keep] for along, s in alongs]
     half = 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
-    if not half > most:
+    if not half > facts.acting:
         return None
     return (
         f"it varies by +-{facts.text(half, 'force')} along the motion, where no more than "
-        f"{facts.text(most, 'force')} act: another effect takes it away again, and only their sum "
-        "is known"
+        f"{facts.text(facts.acting, 'force')} act: another effect takes it away again, and only "
+        "their sum is known"
     )
 
 
-def _largest_acting_force(stretches: Sequence[Stretch], facts: RecordFacts) -> float:
-    """Largest measured force and largest force of inertia and of the links of an arm, together."""
-    inertia, needed = abs(facts.body["inertia"]), 0.0
+def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:
+    """Largest force that the inertia and the links of an arm take along the motion."""
+    needed = 0.0
     for s in stretches:
         carried = 0.0 if s.motion.carried is None else np.abs(s.motion.carried[s.keep]).max()
-        needed = max(needed, inertia * np.abs(s.motion.acceleration[s.keep]).max() + carried)
-    return facts.force + float(needed)
+        needed = max(needed, abs(inertia) * np.abs(s.motion.acceleration[s.keep]).max() + carried)
+    return float(needed)
 
 
 def _ask_effect(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
@@ -123,6 +122,7 @@ def record_facts(
         step=min(float(s.motion.step) for s in stretches),
         stroke=_stroke(stretches),
         force=float(max(measured)),
+        acting=float(max(measured)) + _force_of_motion(numbers["inertia"], stretches),
         speed=speed,
         film=_film(body, speed, numbers),
         body=numbers,

@@ -46,6 +46,8 @@ class RecordFacts:
     step: what one reading leaves open of the position
     stroke: mean time of motion between two reversals (s); inf: the motion never turns round
     force: largest size of the measured force, actuator and interaction together
+    acting: the same, and with it the largest force that the inertia and the links of an arm take: a
+        body that swings or coasts is moved by forces that no sensor measures
     speed: largest speed;  film: friction (N or N m) at that speed by those effects of the body that
         follow from the velocity alone and dissipate, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
@@ -62,6 +64,7 @@ class RecordFacts:
     film: float
     body: Mapping[str, float]
     duration: float = float("inf")
+    acting: float = float("inf")
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
 

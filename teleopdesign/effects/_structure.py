@@ -137,7 +137,12 @@ def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
 
 
 def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
-    """Whether the gap changes the force, and its tip is a part of the body."""
+    """Whether the gap is crossed and changes the force, and its tip is a part of the body."""
+    if math.isinf(facts.stroke):
+        return (
+            f"a gap of {facts.text(p.gap, 'position')} is crossed once at most where the motion "
+            "never turns round: it stands for how the friction of a record begins"
+        )
     worth = p.stiffness * p.gap / 2
     if worth >= SEEN * facts.force:
         return tip_is_part(p, facts)

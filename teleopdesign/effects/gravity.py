@@ -19,11 +19,11 @@ def law(now, p):
 
 
 def plausible(p, facts):
-    if abs(p.amplitude) <= facts.force:
+    if abs(p.amplitude) <= facts.acting:
         return None
     return (
         f"a torque of {facts.text(abs(p.amplitude), 'force')} where the link lies level is more "
-        f"than any measured, {facts.text(facts.force, 'force')}: over a travel of "
+        f"than all that act, {facts.text(facts.acting, 'force')}: over a travel of "
         f"{facts.text(facts.travel, 'position')} it stands for a constant force and a spring"
     )
 

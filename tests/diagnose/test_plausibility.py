@@ -27,6 +27,7 @@ FACTS = RecordFacts(
     step=1e-4,
     stroke=0.5,
     force=3.0,
+    acting=3.0,
     speed=np.pi,
     film=0.2 * np.pi,
     body={
@@ -94,6 +95,13 @@ def test_parameters_that_do_not_fit_a_name_are_told_what_they_stand_for(name):
     assert plausible(SimpleNamespace(**right), FACTS) is None
     said = plausible(SimpleNamespace(**wrong), FACTS)
     assert stands_for in said and "\n" not in said
+
+
+def test_a_gap_is_not_told_where_the_motion_never_turns_round():
+    gap = SimpleNamespace(tip_inertia=0.05, stiffness=10.0, damping=0.1, gap=0.3)
+    assert EFFECTS["backlash"].plausible(gap, FACTS) is None
+    said = EFFECTS["backlash"].plausible(gap, replace(FACTS, stroke=float("inf")))
+    assert "crossed once at most where the motion never turns round" in said
 
 
 @pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.plausible))
