@@ -35,13 +35,16 @@ class Course:
     velocity: Array
     command: Array
 
-    def stays_near(self, motion: Motion, *, travels: float = 100.0) -> bool:
+    def stays_near(self, motion: Motion, *, travels: float = 100.0, least: float = 0.1) -> bool:
         """Whether its travel is below so many of the record's; not where it is no number.
 
         What leads a body along a record does not hold every model. A hundred: one that is held
         stays within a part of the travel, one that is not soon leaves any bound.
+        least: part of the record's travel that it must cover: a body that sticks where the record
+            moved says nothing of its readings. A tenth: of two that stuck, both covered 1e-4
         """
-        return bool(np.ptp(self.position) < travels * np.ptp(motion.position))
+        travel = np.ptp(motion.position)
+        return bool(least * travel <= np.ptp(self.position) < travels * travel)
 
 
 @dataclass(frozen=True)
