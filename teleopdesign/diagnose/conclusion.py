@@ -21,7 +21,7 @@ from .diagnosis import Diagnosis, SetAside
 from .error import force_error
 from .error_at_command import refer_to_command
 from .fit import Fit
-from .identifiability import doubt
+from .identifiability import doubt, explains_most
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
 from .order import select_other_helpers
@@ -49,7 +49,7 @@ def conclude(
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
     estimated = state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
-    set_aside = state.set_aside
+    set_aside = (*state.by_values, *state.set_aside)
     moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
     if prepared is not search.whole:
         search.progress("errors on the whole records")
@@ -113,11 +113,12 @@ def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung,
     """The last rung whose effect is not there, or not what its name says, at the end; and why."""
     last = rungs[-1].fit
     stands_for = implausible_effects(last.model, prepared) if len(rungs) > 1 else {}
-    for rung in reversed(rungs[1:]):
+    for before, rung in reversed(list(pairwise(rungs))):
         assert rung.added is not None
         if not last.model.body(rung.added.at).has(rung.added.effect.name):
             continue
-        why = stands_for.get(rung.added.key) or doubt(last, rung.added)
+        most = explains_most(before.fit, rung.fit)
+        why = stands_for.get(rung.added.key) or doubt(last, rung.added, most=most)
         if why:
             return rung, why
     return None

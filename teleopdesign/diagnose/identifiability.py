@@ -9,7 +9,8 @@ from ..quantity import unit_after_number
 from ..standard_error import with_standard_error
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .fit import Fit
+from .evidence import check_squares
+from .fit import Fit, fit_squares
 from .products import product_of
 
 
@@ -18,15 +19,17 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
     the effect is there without it or a product of its parameters is known; a strength by more, what
-    is essential to it surely so; and some must change the residual in a unique way.
+    is essential to it surely so; and some must change the residual in a unique way. An effect
+    that explains most may have open parameters.
     """
+    most = explains_most(base, fit, criteria=criteria)
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
     effects = {fit.free[i].rpartition(".")[0] for i in new}
     together = {n for one in effects for n in list_known_in_product(fit, one, criteria=criteria)}
     for i in new:
         name = fit.free[i]
         value, declared = fit.model.parameters[name], fit.model.declared(name)
-        if declared.optional or (name in together and not declared.search.essential):
+        if declared.optional or ((most or name in together) and not declared.search.essential):
             continue
         away = np.pi if declared.quantity == "angle" else fit.model.from_absence(name)
         if not value.stderr * _errors_from_absence(fit.model, name, criteria) < away:
@@ -56,6 +59,18 @@ def _errors_from_absence(model: Model, name: str, criteria: Criteria) -> float:
     return criteria.strong if is_strength(model, name) else 1.0
 
 
+def explains_most(before: Fit, after: Fit, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether an effect takes away most squares of both uses: it is there, whatever its values.
+
+    Of a friction that falls with speed only the end may be seen: its level and where it falls run
+    together to any size.
+    """
+    return all(
+        squares(after) < (1.0 - criteria.mostly) * squares(before)
+        for squares in (fit_squares, check_squares)
+    )
+
+
 def is_strength(model: Model, name: str) -> bool:
     """Whether an effect is absent where this parameter of it has a finite value, such as zero."""
     place, local_name = model.locate(name)
@@ -79,11 +94,18 @@ def list_known_in_product(
     return frozenset(n for n, p in powers if criteria.close * product.known < abs(p))
 
 
-def doubt(fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA) -> str:
+def doubt(
+    fit: Fit,
+    candidate: Candidate,
+    *,
+    most: bool = False,
+    criteria: Criteria = CRITERIA,
+) -> str:
     """Which parameter an accepted effect stands on and the stated errors do not tell from absence.
 
     By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
     of its parameters may be open, and so may those of which a product is known. "": none
+    most: whether the effect took away most of what was left (`explains_most`)
     """
     start = f"{candidate.at}.{candidate.effect.name}"
     together = list_known_in_product(fit, start, criteria=criteria)
@@ -94,6 +116,8 @@ def doubt(fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA) -> s
         if not (is_strength(fit.model, full) or declared.search.essential):
             continue
         value = fit.model.parameters[full]
+        if most and not declared.search.essential:
+            continue
         if not criteria.strong * value.stderr < fit.model.from_absence(full):
             unit = unit_after_number(fit.model.unit(full))
             best = with_standard_error(value.value, value.stderr)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import is_a_tone
+from .all_records import explained_by_values
 from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
@@ -71,12 +72,41 @@ def climb(
             len(state.set_aside) <= search.plan.searched_on
             and (moved := make_next_move(search, state)) is not None
         ):
-            state = look(search, moved.rungs, moved)
+            barred = bar_what_values_explain(search, state, moved)
+            if barred is None:
+                state = look(search, moved.rungs, moved)
+            elif len(barred.supported) < len(state.supported):
+                state = barred
+            else:  # no candidate less: the same move would come again
+                state = barred
+                break
         rungs = ended(search, state)
         less = remove_doubtful_rung(search, state, rungs)
         if less is None:
             return state, rungs
         state = look(search, less.rungs, less)
+
+
+def bar_what_values_explain(
+    search: LadderSearch, state: LadderState, moved: LadderState
+) -> LadderState | None:
+    """The state without the effects of a move that other values explain as well; None: none are."""
+    new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
+    if not new or moved.fit.check_error >= state.fit.check_error:
+        return None
+    last = replace(new[-1], fit=moved.fit)
+    barred = explained_by_values(
+        state.fit, last, search.prepared, state.floor, criteria=search.criteria
+    )
+    if barred is None:
+        return None
+    gone = {r.added.key for r in new if r.added is not None}
+    search.progress(f"set aside: {barred}")
+    return replace(
+        state,
+        supported=tuple(r for r in state.supported if r.candidate.key not in gone),
+        by_values=(*state.by_values, barred),
+    )
 
 
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:

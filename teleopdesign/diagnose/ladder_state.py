@@ -87,6 +87,8 @@ class LadderState:
         none of them is replaced again, so that two effects cannot take turns
     set_aside: effects that were accepted and are not there by the errors that the answer would
         state: none of them is added again
+    by_values: effects that were supported, and that other values of the model explain as well
+        where all records tell them: none of them is added again
     visited: sets of effects that the models of earlier states had: a ladder that came back to one
         would go round for ever
     """
@@ -103,12 +105,18 @@ class LadderState:
     together: bool = False
     came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
+    by_values: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
 
     @property
     def effects(self) -> frozenset[tuple[str, str]]:
         """Effects of the last rung's model, with their places."""
         return frozenset(self.fit.model.effects)
+
+    @property
+    def gone(self) -> frozenset[tuple[str, str]]:
+        """Effects, with their places, that are not added again."""
+        return frozenset(one.candidate.key for one in (*self.set_aside, *self.by_values))
 
     @property
     def fit(self) -> Fit:
@@ -182,7 +190,7 @@ def look(
     first = bounded if before is None else before.first
     floors = Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria))
     tone = best_tone(here, prepared)
-    gone = set() if before is None else {one.candidate.key for one in before.set_aside}
+    gone = set() if before is None else before.gone
     supported = tuple(
         r
         for r in ranking.ranked

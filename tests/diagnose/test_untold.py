@@ -14,7 +14,7 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.diagnosis import SetAside, Untold
-from teleopdesign.diagnose.identifiability import doubt, is_identifiable
+from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.plausibility import implausible_effects
 from teleopdesign.diagnose.products import best_product
@@ -59,9 +59,31 @@ def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagno
     assert "extra_static_level" in doubt(with_errors(fit, 1.5), added)
     rungs = diagnosis.rungs
     assert find_doubtful_rung(rungs, prepared_case) is None
-    unsure = (*rungs[:-1], replace(rungs[-1], fit=with_errors(fit, 1.5)))
-    rung, why = find_doubtful_rung(unsure, prepared_case)
+    last = replace(rungs[-1], fit=with_errors(fit, 1.5))
+    rung, why = find_doubtful_rung((little_more_left(rungs[0], fit), last), prepared_case)
     assert rung.added == added and "not told from absence" in why
+
+
+def little_more_left(rung, fit):
+    """The rung before, as if it left 1.2 times what the fit leaves."""
+    more = {n: 1.2 * getattr(fit, n) for n in ("fit_residual", "check_residual")}
+    return replace(rung, fit=replace(rung.fit, **more))
+
+
+def test_an_effect_that_explains_most_is_there_however_open_its_values(diagnosis, prepared_case):
+    """Of a friction that falls with speed only the end may be seen: both values run off."""
+    added, first, last = stribeck_of(diagnosis), diagnosis.rungs[0], diagnosis.rungs[-1]
+    open_fit = with_errors(last.fit, 30.0)
+    assert explains_most(first.fit, open_fit)
+    assert find_doubtful_rung((first, replace(last, fit=open_fit)), prepared_case) is None
+    assert is_identifiable(open_fit, first.fit)
+    little = little_more_left(first, open_fit).fit
+    assert not explains_most(little, open_fit)
+    assert not is_identifiable(open_fit, little)
+    # nor where only one of the two uses is explained
+    one_use = replace(little, fit_residual=first.fit.fit_residual)
+    assert not explains_most(one_use, open_fit)
+    assert doubt(open_fit, added) and not doubt(open_fit, added, most=True)
 
 
 def with_command_error(rung, **changed):
@@ -111,7 +133,7 @@ def test_an_effect_whose_product_is_sure_is_there_though_each_parameter_is_open(
     assert "extra_static_level" in known_together(fit, added)
     wide = in_a_valley(with_errors(diagnosis.after, 1.2), 0.5)
     assert "extra_static_level" in doubt(wide, added), "no product is sure there"
-    assert not is_identifiable(wide, base)
+    assert not is_identifiable(wide, little_more_left(diagnosis.rungs[0], wide).fit)
 
 
 def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, experiment, tmp_path):
