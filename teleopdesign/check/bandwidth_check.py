@@ -6,15 +6,17 @@ from collections.abc import Iterator
 
 from ..diagnose.prepare import Prepared
 from ..finding import Finding
-from ..measurement.bandwidth import hides_motion, share_in_motion
+from ..measurement.bandwidth import hides_motion, motion_beyond, share_in_motion
+from ..measurement.experiment import Experiment
 
 #: part of the share of rows in motion two octaves lower at which a bandwidth is proposed
 ENOUGH = 0.9
 
 
 def check_bandwidth(prepared: Prepared) -> Iterator[Finding]:
-    """A bandwidth at which far fewer rows tell a motion than at a lower one."""
+    """A bandwidth at which far fewer rows tell a motion than lower down, or below the motion."""
     experiment, stated = prepared.experiment, prepared.bandwidth
+    yield from _motion_beyond(experiment, stated)
     for body in experiment.bodies:
         if not hides_motion(experiment, body, stated):
             continue
@@ -32,3 +34,18 @@ def check_bandwidth(prepared: Prepared) -> Iterator[Finding]:
             {"bandwidth": stated, "proposed": proposed, "seen": moving, "could": could},
             body,
         )
+
+
+def _motion_beyond(experiment: Experiment, chosen: float) -> Iterator[Finding]:
+    """Whether the motion stands above its readings' scatter beyond a bandwidth that was chosen."""
+    highest = motion_beyond(experiment, chosen)
+    if highest is None:
+        return
+    yield Finding(
+        "motion beyond the bandwidth",
+        "note",
+        f"the comparison ends at {chosen:.3g} Hz, the motion stands above the scatter of its "
+        f"readings up to {highest:.3g} Hz: forces that change so fast, such as cogging at speed, "
+        f'show with bandwidth = {{ value = {highest:.3g}, unit = "Hz" }} at comparison.',
+        {"bandwidth": chosen, "proposed": highest},
+    )

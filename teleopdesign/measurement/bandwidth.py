@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from .experiment import Experiment
+from .filtering import Array
 from .motion import motions
+from .record import Record
 
 #: share of the rows in motion, over that two octaves lower, below which a bandwidth hides the
 #: motion. A half: of what could be tested, most is lost
 LEAST_SHARE = 0.5
 #: Hz: no lower bandwidth is chosen or proposed
 LOWEST = 1.0
+#: part of the sample rate up to which a bandwidth is chosen, and up to which one is proposed
+CHOSEN, PROPOSED = 0.1, 0.3
+#: times the density of reading noise from which a position shows a motion: 10 dB
+ABOVE = 10.0
 
 
 def default_bandwidth(experiment: Experiment) -> float:
@@ -53,20 +61,58 @@ def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
     return share_in_motion(experiment, body, bandwidth) < LEAST_SHARE * could
 
 
+def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
+    """Up to which frequency (Hz) the motion goes on beyond a bandwidth that was chosen.
+
+    None: less acceleration lies beyond it than below, in some record; positions do not tell the
+    motion there; or the experiment states its bandwidth
+    """
+    if experiment.bandwidth is not None:
+        return None
+    limits = []
+    for name, record in _moving(experiment):
+        frequency, density, noise = _spectrum(record, name, even_out=True)
+        above = (density > ABOVE * noise) & (frequency <= PROPOSED / record.sample_time)
+        # of what stands above the scatter of the readings
+        acceleration = np.where(above, density - noise, 0.0) * frequency**4
+        beyond = frequency > chosen
+        if acceleration[beyond].sum() <= acceleration[~beyond].sum():
+            return None
+        limits.append(float(frequency[above].max()))
+    highest = min(limits)
+    hidden = any(hides_motion(experiment, body, highest) for body in experiment.bodies)
+    return None if hidden else highest
+
+
 def _highest_acceleration(experiment: Experiment) -> float:
     limits = []
-    for record in experiment.records:
+    for name, record in _moving(experiment):
         rate = 1.0 / record.sample_time
-        for body in experiment.bodies:
-            x = np.concatenate([record.signals[f"{body}.position"][s] for s in record.segments])
-            n = min(len(x), 4096)
-            windows = np.lib.stride_tricks.sliding_window_view(x, n)[:: max(1, n // 2)]
-            window = np.hanning(n)
-            density = np.mean(
-                np.abs(np.fft.rfft((windows - windows.mean(1)[:, None]) * window)) ** 2, 0
-            )
-            frequency = np.fft.rfftfreq(n, record.sample_time)
-            noise = np.median(density[frequency > 0.3 * rate])
-            above_noise = frequency[(density > 10 * noise) & (frequency <= 0.1 * rate)]
-            limits.append(above_noise.max() if above_noise.size else 0.02 * rate)
+        frequency, density, noise = _spectrum(record, name)
+        above_noise = frequency[(density > ABOVE * noise) & (frequency <= CHOSEN * rate)]
+        limits.append(above_noise.max() if above_noise.size else 0.02 * rate)
     return float(max(min(limits), 1.0))
+
+
+def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:
+    """Each record with the name of each position in it."""
+    for record in experiment.records:
+        for body in experiment.bodies:
+            yield f"{body}.position", record
+
+
+def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Array, Array, float]:
+    """Frequencies (Hz), density of a signal there, and what white reading noise has of it.
+
+    even_out: without the even motion of each window, whose ends look like high frequencies
+    """
+    from scipy.signal import detrend
+
+    x = np.concatenate([record.signals[name][s] for s in record.segments])
+    n = min(len(x), 4096)
+    windows = np.lib.stride_tricks.sliding_window_view(x, n)[:: max(1, n // 2)]
+    varying = detrend(windows, type="linear" if even_out else "constant")
+    spectra = np.fft.rfft(varying * np.hanning(n))
+    density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
+    frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
+    return frequency, density, float(np.median(density[frequency > 0.3 / record.sample_time]))

@@ -1,5 +1,7 @@
 """The bandwidth that records propose: how far up they tell an acceleration, and a motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from teleopdesign.measurement.bandwidth import (
     LEAST_SHARE,
     default_bandwidth,
     hides_motion,
+    motion_beyond,
     share_in_motion,
 )
 
@@ -51,3 +54,34 @@ def test_a_coarser_reading_is_compared_below_a_lower_frequency():
 
 def test_a_bandwidth_too_high_for_the_samples_shows_no_motion():
     assert share_in_motion(recorded(1000.0), "device", 0.5 * RATE) == 0.0
+
+
+def ripple_at_speed(period):
+    """A rotor that turns at about 10 rad/s against a torque of that period; position and torque."""
+    rate = 500.0
+    t = np.arange(2000) / rate
+    x = 10.0 * t
+    for _ in range(3):  # the motion that the ripple makes: 2 mm at 10 rad/s
+        x = 10.0 * t + 2e-3 * np.sin(2 * np.pi * x / period)
+    # rounding alone is no noise here: 200 steps a row
+    x = 1e-4 * np.round(x / 1e-4 + np.random.default_rng(0).standard_normal(len(t)))
+    return td.experiment(
+        {"t": t, "x": x, "F": np.ones(len(t))},
+        axis="revolute",
+        time="t",
+        position={"column": "x", "resolution": 1e-4},
+        actuator_force="F",
+        inertia=0.1,
+    )
+
+
+@pytest.mark.parametrize(("period", "beyond"), [(0.1, 100.0), (0.5, None)])
+def test_a_motion_beyond_the_chosen_bandwidth_is_noticed(period, beyond):
+    """A ripple at 100 Hz lies above a tenth of the rate, one at 20 Hz below."""
+    experiment = ripple_at_speed(period)
+    chosen = default_bandwidth(experiment)
+    assert chosen <= 50.0
+    assert motion_beyond(experiment, chosen) == (
+        None if beyond is None else pytest.approx(beyond, rel=0.02)
+    )
+    assert motion_beyond(replace(experiment, bandwidth=chosen), chosen) is None
