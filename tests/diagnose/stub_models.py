@@ -37,8 +37,12 @@ class Names:
     def has(self, name):
         return name in self.names
 
+    def lacks(self, effect):
+        return any(one == effect.name and n not in self.names for one, n in self.needs)
+
     def with_effect(self, effect, at):
-        return replace(self, names=self.names | {effect.name})
+        name = effect if isinstance(effect, str) else effect.name
+        return replace(self, names=self.names | {name})
 
     def with_values(self, values):
         return self
