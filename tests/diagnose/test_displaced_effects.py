@@ -30,9 +30,9 @@ DAMPING = "device.viscous.damping"
 
 
 def model(*effects, **changed):
-    """These effects with values and standard errors; changed: parameter -> (value, error, fixed)."""
+    """These effects; changed: parameter -> (value, standard error), and True if it is fixed."""
     values = {
-        f"{e}.{n}": Value(v[0], *reversed(v[2:]) if len(v) > 2 else (False,), v[1])
+        f"{e}.{n}": Value(v[0], len(v) > 2, v[1])
         for e in effects
         for n, v in {n: changed.get(n, v) for n, v in BY_EFFECT[e].items()}.items()
     }
