@@ -113,6 +113,37 @@ def test_a_box_beside_a_model_that_leaves_nothing_says_nothing():
     assert open_to_others(replace(there, learnable=box)) == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("size", [0.01, 0.3, 4.0])
+@pytest.mark.parametrize(
+    ("alone", "learned", "part"),
+    [
+        (2.1, 0.0, 1.0),  # twice the squares and more: it sees nothing so small
+        (1.9, 0.0, 1 - 0.1 * 0.5),
+        (1.5, 0.8, 1 - 0.5 * 0.2),
+        (1.0, 0.8, 0.8),
+        (0.3, 0.8, 0.8),
+        (0.3, 0.3, 0.5),  # trees miss some of what they could see
+        (1.0, -1.0, 0.5),
+    ],
+)
+def test_what_is_open_by_squares_alone_and_squares_learned(size, alone, learned, part):
+    there = diagnosis([(entry("spring", size), [], [])], first=2 * size, noise=0.1 * size)
+    box = Learnable(
+        left=2.0 * size, error=2.0 * size * (1 - learned) ** 0.5, alone=size * alone**0.5
+    )
+    assert open_to_others(replace(there, learnable=box)) == pytest.approx(part)
+
+
+def test_those_that_explain_as_well_are_said_to_be_as_good():
+    first, equal, other = (
+        entry(n, e) for n, e in (("spring", 0.3), ("bias", 0.3), ("viscous", 0.4))
+    )
+    found = evidence_of(diagnosis([(first, [equal], [other])], last=[entry("bias", 0.29)]))
+    assert [(e.accepted, e.as_good) for e in found] == [
+        (True, False), (False, True), (False, False), (False, False),
+    ]  # fmt: skip
+
+
 def test_what_bars_a_candidate_is_said_of_those_that_help_and_are_not_accepted():
     spring = entry("spring", 0.3)
     helps, hardly = (

@@ -222,6 +222,6 @@ def test_a_tone_that_the_motion_holds_may_be_its_work_but_the_mains_move_it(
 
 def test_without_check_records_or_residuals_there_is_no_tone(tone_of):
     assert best_tone(None, SimpleNamespace(of=lambda use: [])) == Tone()
-    records = {"fit": [stretch(9.0)], "check": [stretch(9.0)]}
+    records = {use: [stretch(9.0, velocity=sine(5.0))] for use in ("fit", "check")}
     tone, *_ = tone_of(records, lambda s: np.zeros_like)
     assert tone.residual is None and tone.squares == float("inf")
