@@ -1,0 +1,193 @@
+"""Noise, steps and jitter of readings that were made so, and the motion that they leave."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from teleopdesign.measurement.encoder import (
+    grid_of,
+    reading_noise,
+    reading_step,
+    sampling_jitter,
+)
+from teleopdesign.measurement.hum import hum_of
+from teleopdesign.measurement.motion import (
+    SHORTEST,
+    LinkForces,
+    motion_of,
+    motions,
+    without_mains,
+)
+
+H = 0.002
+T = H * np.arange(6000)
+SWING = np.sin(2 * np.pi * 0.6 * T) + 0.4 * np.sin(2 * np.pi * 1.7 * T + 1.0)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e3])
+def test_the_noise_of_readings_is_told_from_their_motion(size):
+    rng = np.random.default_rng(0)
+    noise = size * rng.standard_normal(len(T))
+    assert reading_noise(noise) == pytest.approx(size, rel=0.05)
+    assert reading_noise(noise + 100 * size * SWING) == pytest.approx(size, rel=0.05)
+    # a few kicks change nothing
+    noise[::500] += 100 * size
+    assert reading_noise(noise) == pytest.approx(size, rel=0.1)
+
+
+@pytest.mark.parametrize("step", [1e-4, 2 * np.pi / 4096, 0.01])
+def test_the_step_of_an_encoder_is_read_off_its_values(step):
+    read = step * np.round(SWING / step)
+    assert reading_step(read) == pytest.approx(step, rel=0.02)
+    assert grid_of(read, reading_step(read)) == pytest.approx(step, rel=1e-5)
+    # as a log of few digits has them, and by an estimate that is a little off
+    cut = np.round(read, 8)
+    assert grid_of(cut, 1.004 * step) == pytest.approx(step, rel=2e-3)
+
+
+def test_readings_on_no_grid_have_none():
+    rng = np.random.default_rng(1)
+    assert grid_of(SWING + 1e-3 * rng.standard_normal(len(T)), 1e-3) == 0.0
+    assert grid_of(SWING, 0.0) == 0.0 and grid_of(SWING, 0.5) == 0.0
+    assert reading_step(np.ones(100)) == 0.0
+    # of a motion that never comes back, no more than the rounding that its noise looks like
+    once = np.linspace(0.0, 1.0, 3000) ** 1.3
+    with_noise = once + 1e-5 * rng.standard_normal(3000)
+    assert reading_step(with_noise) <= 1.2e-5 * 12**0.5
+
+
+@pytest.mark.parametrize("jitter", [2e-5, 1e-4])
+@pytest.mark.parametrize("size", [1.0, 1e-3])
+def test_the_jitter_of_a_clock_is_read_off_what_scatters_with_speed(jitter, size):
+    rng = np.random.default_rng(2)
+    fast = lambda t: size * np.sin(2 * np.pi * 2.0 * t)  # noqa: E731
+    read = fast(T + jitter * rng.standard_normal(len(T)))
+    assert sampling_jitter(read, 0.0, H) == pytest.approx(jitter, rel=0.25)
+    even = fast(T)
+    noise = 1e-3 * size * rng.standard_normal(len(T))
+    assert sampling_jitter(even + noise, 0.0, H) == 0.0, "noise is the same at any speed"
+    step = 1e-4 * size
+    assert sampling_jitter(step * np.round(even / step), step, H) == 0.0
+    assert sampling_jitter(read[:400], 0.0, H) == 0.0, "too short to tell"
+
+
+# the motion of a body
+
+
+def made(position, *, bandwidth=20.0, resolution=1e-6, command=None, sample_time=H):
+    n = len(position)
+    return motion_of(
+        body="device",
+        file="fit.csv",
+        time=sample_time * np.arange(n),
+        position=position,
+        command=np.zeros(n) if command is None else command,
+        interaction=None,
+        sample_time=sample_time,
+        rows=slice(0, n),
+        bandwidth=bandwidth,
+        resolution=resolution,
+    )
+
+
+def test_a_step_that_is_not_stated_is_read_and_noise_counts_for_more():
+    rng = np.random.default_rng(3)
+    read = 1e-4 * np.round(SWING / 1e-4)
+    assert made(read, resolution=None).step == pytest.approx(1e-4, rel=0.02)
+    assert made(read, resolution=3e-4).step == 3e-4
+    for noise in (1e-3, 1e-2):  # far above the steps: four times its rms
+        noisy = SWING + noise * rng.standard_normal(len(T))
+        assert made(noisy).step == pytest.approx(4 * noise, rel=0.1)
+
+
+def test_where_the_velocity_is_below_what_readings_leave_no_direction_is_told():
+    """A motion that grows: told from some speed on, and by its sign."""
+    speed = np.abs(np.gradient(SWING * T / T[-1], H))
+    for step, least in [(1e-5, 0.98), (1e-2, 0.3)]:
+        motion = made(step * np.round(SWING * T / T[-1] / step), resolution=step)
+        told = motion.direction != 0
+        inner = slice(300, -300)
+        right = motion.direction[inner] == np.sign(np.gradient(SWING * T / T[-1], H))[inner]
+        assert right[told[inner]].mean() > 0.97
+        assert speed[inner][told[inner]].min() < speed[inner].max()
+    fine, coarse = (
+        np.mean(made(s * np.round(SWING / s), resolution=s).direction != 0) for s in (1e-5, 1e-2)
+    )
+    assert coarse < 0.9 < 0.95 < fine
+    assert not made(np.zeros(2000)).direction.any()
+
+
+def test_smoothing_passes_the_band_of_the_comparison_and_no_more_than_the_rows_bear():
+    motion = made(SWING, bandwidth=20.0)
+    gain = np.interp([1.0, 20.0, 30.0, 45.0], motion.spectrum.frequency, motion.smoothing)
+    assert gain[0] > 0.9999 and gain[1] > 0.998 and gain[3] < 0.01
+    assert gain[2] == pytest.approx(0.5, abs=0.02), "at one and a half times the bandwidth"
+    wide = made(SWING, bandwidth=400.0)
+    half = np.interp(0.45 / H, wide.spectrum.frequency, wide.smoothing)
+    assert half == pytest.approx(0.5, abs=0.02)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 5])
+@pytest.mark.parametrize("late", [0.0, 0.004])
+def test_a_held_force_acts_at_the_rows_as_its_mean_and_as_late_as_its_log(parts, late):
+    """A sine of which each part of a row holds the value at its beginning."""
+    w = 2 * np.pi * 3.0
+    begins = H * np.arange(len(T) * parts) / parts
+    motion = replace(made(SWING), command_late=late)
+    seen = motion.at_rows(np.sin(w * (begins - late)))
+    inner = slice(600, -600)
+    expected = np.sin(w * (T - 0.5 * H / parts))[inner]
+    assert seen[inner] == pytest.approx(expected, abs=2e-3)
+    two = motion.at_rows(np.stack([np.sin(w * (begins - late)), np.ones(len(begins))]))
+    assert two[0] == pytest.approx(seen) and two[1] == pytest.approx(1.0)
+
+
+def test_the_force_of_links_is_what_is_known_and_each_base_parameter_less_the_own_inertia():
+    constant, columns = np.array([1.0, 2.0]), np.array([[1.0, 0.0], [2.0, 4.0]])
+    acceleration = np.array([10.0, -10.0])
+    links = LinkForces(constant, columns, columns, inertia=0.3)
+    assert links.carried((0.5, 2.0), acceleration) == pytest.approx([1 + 4.5 - 3, 2 + 8 + 3])
+    assert links.carried((), acceleration) == pytest.approx([-2.0, 5.0])
+
+
+def record_of(segments, force=None, hand=None):
+    signals = {
+        "device.position": SWING,
+        "device.actuator_force": np.cos(T) if force is None else force,
+    }
+    if hand is not None:
+        signals["device.interaction_force"] = hand
+    return SimpleNamespace(
+        file="fit.csv", time=T, sample_time=H, segments=segments, signals=signals
+    )
+
+
+def test_stretches_long_enough_to_be_trimmed_are_motions():
+    rows = round(SHORTEST / H)
+    segments = (slice(0, rows), slice(rows, 2 * rows - 1), slice(2 * rows, 5000))
+    record = record_of(segments, hand=np.sin(T))
+    stretches = motions(record, "device", bandwidth=20.0, resolution=1e-6)
+    assert [m.rows for m in stretches] == [segments[0], segments[2]]
+    last = stretches[-1]
+    assert np.array_equal(last.time, T[segments[2]])
+    assert np.array_equal(last.command, np.cos(T)[segments[2]])
+    assert last.interaction[300:-300] == pytest.approx(np.sin(T)[segments[2]][300:-300], abs=1e-3)
+    assert not motions(record_of(segments), "device", bandwidth=20.0, resolution=1e-6)[
+        0
+    ].interaction.any()
+
+
+def test_a_hum_is_taken_off_each_stretch_with_the_phase_that_it_has_there():
+    rng = np.random.default_rng(5)
+    plain = np.cos(2 * np.pi * 0.8 * T) + 0.01 * rng.standard_normal(len(T))
+    segments = (slice(0, 3600), slice(3600, 6000))
+    phase = np.where(np.arange(6000) < 3600, 0.3, 2.1)
+    hummed = plain + 0.2 * np.sin(2 * np.pi * 50.02 * T + phase)
+    left = without_mains(record_of(segments, hummed), "device.actuator_force") - plain
+    assert np.sqrt(np.mean(left**2)) < 0.02
+    assert without_mains(record_of(segments, plain), "device.actuator_force") is plain
+    hum = hum_of(hummed[segments[0]], [SWING[segments[0]]], H)
+    assert hum.mains == 50.0 and hum.frequency == pytest.approx(50.02, abs=0.01)
+    assert hum.rms == pytest.approx(0.2 / 2**0.5, rel=0.05)
