@@ -5,7 +5,7 @@ from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
-from diagnose.stand_ins import floor, ranked
+from diagnose.stand_ins import fit, floor, ranked
 from diagnose.stub_models import Table, candidate
 
 from teleopdesign.diagnose import conclusion as module
@@ -17,6 +17,7 @@ from teleopdesign.diagnose.conclusion import (
     with_last_corrected,
 )
 from teleopdesign.diagnose.diagnosis import SetAside
+from teleopdesign.diagnose.fit import CommandError, Fit
 from teleopdesign.diagnose.ranking import REFUSALS, Ranking
 from teleopdesign.diagnose.rung import Rung
 
@@ -249,3 +250,30 @@ def test_reading_errors_are_taken_off_unless_the_ladder_would_rise(monkeypatch, 
     last = with_last_corrected(search, table.state(rungs))
     assert last[:-1] == tuple(rungs[:-1]) and last[-1].added == BIAS
     assert last[-1].fit is (without if corrected else rungs[-1].fit)
+
+
+@pytest.mark.parametrize("has_check", [True, False])
+def test_a_fit_of_windows_has_the_errors_of_the_whole_records(monkeypatch, has_check):
+    """Where blocks were held out instead of check records, their figures stay."""
+    one = fit(0.3, at_command=0.2)
+    one = Fit(
+        one.model,
+        (),
+        0.25,
+        0.3,
+        (),
+        *[one.check_residual] * 2,
+        CommandError(one.check_residual, one.at_command.sighted, 0.2, 0.0, False),
+        *[one.check_blocks] * 2,
+        *[one.check_residual] * 3,
+    )
+    whole = {"fit": ["fit"], "check": ["check"] if has_check else []}
+    monkeypatch.setattr(
+        module, "force_error", lambda m, parts: {"fit": 0.5, "check": 0.6}[parts[0]]
+    )
+    command = SimpleNamespace(error=0.4, blind=0.1, weak=True)
+    monkeypatch.setattr(module, "refer_to_command", lambda model, parts: command)
+    again = module._evaluate_on_all(one, SimpleNamespace(of=whole.__getitem__))
+    figures = (again.fit_error, again.check_error, again.at_command.error, again.at_command.blind)
+    assert figures == ((0.5, 0.6, 0.4, 0.1) if has_check else (0.5, 0.3, 0.2, 0.0))
+    assert again.at_command.weak == has_check and again.model is one.model

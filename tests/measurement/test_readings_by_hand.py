@@ -54,8 +54,8 @@ def test_readings_on_no_grid_have_none():
     assert reading_step(np.ones(100)) == 0.0
     # of a motion that never comes back, no more than the rounding that its noise looks like
     once = np.linspace(0.0, 1.0, 3000) ** 1.3
-    with_noise = once + 1e-5 * rng.standard_normal(3000)
-    assert reading_step(with_noise) <= 1.2e-5 * 12**0.5
+    with_noise = once + 1e-6 * rng.standard_normal(3000)
+    assert reading_step(with_noise) == pytest.approx(1e-6 * 12**0.5, rel=0.1)
 
 
 @pytest.mark.parametrize("jitter", [2e-5, 1e-4])
@@ -103,15 +103,13 @@ def test_a_step_that_is_not_stated_is_read_and_noise_counts_for_more():
 
 
 def test_where_the_velocity_is_below_what_readings_leave_no_direction_is_told():
-    """A motion that grows: told from some speed on, and by its sign."""
-    speed = np.abs(np.gradient(SWING * T / T[-1], H))
-    for step, least in [(1e-5, 0.98), (1e-2, 0.3)]:
+    """A motion that grows: what is told of it is its sign; a coarser reading tells less."""
+    for step in (1e-5, 1e-2):
         motion = made(step * np.round(SWING * T / T[-1] / step), resolution=step)
         told = motion.direction != 0
         inner = slice(300, -300)
         right = motion.direction[inner] == np.sign(np.gradient(SWING * T / T[-1], H))[inner]
         assert right[told[inner]].mean() > 0.97
-        assert speed[inner][told[inner]].min() < speed[inner].max()
     fine, coarse = (
         np.mean(made(s * np.round(SWING / s), resolution=s).direction != 0) for s in (1e-5, 1e-2)
     )
