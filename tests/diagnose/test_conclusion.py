@@ -98,16 +98,16 @@ def test_what_holds_on_the_whole_records_is_kept_with_the_fit_that_was_sought(co
 
 
 def test_a_rung_that_leaves_more_of_the_whole_records_is_left_out(concluded):
-    rungs = ladder(Table(error), "spring", "bias")
+    rungs = ladder(Table(error), "spring", "bias", "quadratic_drag")
     last = rungs[-1].fit
 
     def on_whole(fit):
         return worse(fit, 100.0 if fit is last else 1.0)
 
     diagnosis, _ = concluded(rungs, on_whole=on_whole)
-    assert added(diagnosis) == [SPRING] and diagnosis.set_aside == ()
+    assert added(diagnosis) == [SPRING, BIAS] and diagnosis.set_aside == ()
     assert diagnosis.estimated is diagnosis.after
-    assert diagnosis.model is diagnosis.near_reversals is rungs[1].fit.model
+    assert diagnosis.model is diagnosis.near_reversals is rungs[2].fit.model
 
 
 @pytest.mark.parametrize("why", ["blind", "weak"])

@@ -24,6 +24,7 @@ BY_EFFECT = {
     "stribeck": {"extra_static_level": (0.5, 0.01), "stribeck_velocity": (0.1, 0.001)},
     "presliding": {"stiffness": (1e3, 1.0), "bristle_damping": (4.0, 0.1)},
     "friction_drift": {"fraction": (0.5, 0.01), "time_constant": (60.0, 1.0)},
+    "actuator_lag": {"time_constant": (0.01, 0.0005)},
     "actuator_gain": {"gain": (1.5, 0.01)},
 }
 DAMPING = "device.viscous.damping"
@@ -165,6 +166,9 @@ def test_a_bound_where_an_effect_is_not_absent_makes_it_not_superfluous():
     fraction = "device.friction_drift.fraction"
     assert superfluous(drift, fraction, fraction=(1.0, 0.1)) is None
     assert superfluous(drift, fraction, fraction=(-1.0, 0.1)) is None
+    lag, longest = model("actuator_lag"), "device.actuator_lag.time_constant"
+    assert superfluous(lag, longest, time_constant=(0.2, 0.01)) is None, "nor is the longest"
+    assert superfluous(lag, longest, time_constant=(0.0, 0.01)) == ("actuator_lag", "device")
 
 
 @pytest.mark.parametrize(("before", "after", "gives_way"), [
