@@ -1,10 +1,10 @@
 """When a candidate displaces what the model has, when it is barred for it, and what gives way."""
 
 import pytest
+from diagnose.known_models import BY_EFFECT, model
 from diagnose.stand_ins import SHAPE, fit, floor, ranked
 
-from teleopdesign import Body, Model
-from teleopdesign.blocks import Value
+from teleopdesign import Model
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.decision import (
     find_superfluous_effect,
@@ -16,29 +16,7 @@ from teleopdesign.diagnose.decision import (
 )
 from teleopdesign.effects import EFFECTS
 
-BY_EFFECT = {
-    "coulomb": {"level": (1.0, 0.01)},
-    "viscous": {"damping": (2.0, 0.1)},
-    "bias": {"force": (0.5, 0.01)},
-    "spring": {"stiffness": (3.0, 0.01)},
-    "stribeck": {"extra_static_level": (0.5, 0.01), "stribeck_velocity": (0.1, 0.001)},
-    "presliding": {"stiffness": (1e3, 1.0), "bristle_damping": (4.0, 0.1)},
-    "friction_drift": {"fraction": (0.5, 0.01), "time_constant": (60.0, 1.0)},
-    "actuator_lag": {"time_constant": (0.01, 0.0005)},
-    "actuator_gain": {"gain": (1.5, 0.01)},
-}
 DAMPING = "device.viscous.damping"
-
-
-def model(*effects, **changed):
-    """These effects; changed: parameter -> (value, standard error), and True if it is fixed."""
-    values = {
-        f"{e}.{n}": Value(v[0], len(v) > 2, v[1])
-        for e in effects
-        for n, v in {n: changed.get(n, v) for n, v in BY_EFFECT[e].items()}.items()
-    }
-    bodies = Body("revolute", {"inertia": 1.0, **values}, tuple(EFFECTS[e] for e in effects))
-    return Model({"device": bodies})
 
 
 def of(known, *at_bound, error=0.5):
