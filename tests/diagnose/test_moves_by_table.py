@@ -154,7 +154,7 @@ def test_what_another_effect_needs_is_not_removed(use):
 def test_what_only_weakens_the_jitter_of_a_clock_is_removed(
     use, monkeypatch, jitters, drawn, removed
 ):
-    """Without it 0.6 are left: no more than nearly two floors of what jitter makes of that model."""
+    """Without it 0.6 are left: no more than nearly two floors of what jitter makes there."""
     table = use(shares(transmission_compliance=0.3, spring=0.4, bias=0.1))
     state = table.state(table.rungs("transmission_compliance", "spring", "bias"))
     low = floor(0.01, jitters=jitters)
