@@ -52,3 +52,19 @@ def test_stamps_that_are_rounded_lie_on_their_clock_and_others_do_not(digits, ra
         (np.arange(n) + (np.arange(n) >= n // 2) * 3 * max(1, 10.0**-digits * rate)) / rate, digits
     )
     assert not is_only_rounded(late, whole, 1.0 / rate)
+
+
+@pytest.mark.parametrize(("off", "rounded"), [(1, True), (2, False)])
+def test_one_row_may_lie_off_by_half_of_the_last_digit_and_a_fifth_of_a_row(off, rounded):
+    """Of 4 ms, written in ms, on two segments that begin anew: up to 1.3 ms."""
+    stamps = np.tile(0.004 * np.arange(300), 2)
+    stamps[450] += 0.001 * off
+    segments = (slice(0, 300), slice(300, 600))
+    assert is_only_rounded(stamps, segments, 0.004) == rounded
+
+
+def test_segments_of_one_row_each_have_no_clock():
+    stamps = 0.01 * np.arange(100)
+    assert even_clock(stamps, tuple(slice(k, k + 1) for k in range(100)), "log") is None
+    assert even_clock(stamps[::-1], (slice(0, 100),), "log") is None
+    assert even_clock(np.full(100, np.nan), (slice(0, 100),), "log") is None

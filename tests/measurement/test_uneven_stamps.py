@@ -107,3 +107,13 @@ def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
     assert clock.sample_time == pytest.approx(np.ptp(stamps) / 799, rel=0.1)
     near = np.abs(clock.time[clock.places] - stamps)
     assert near.max() <= 0.5 * clock.sample_time + 1e-9
+
+
+def test_a_row_out_of_order_among_stamps_that_rows_share_begins_no_new_clock():
+    stamps = np.repeat(0.01 * np.arange(200), 3)
+    stamps[300] -= 0.03
+    parts, dropped, _, restarts = rows_in_order(
+        stamps, (slice(0, 600),), np.zeros(600, dtype=bool)
+    )
+    assert restarts == 0 and dropped == 400
+    assert stamps[parts[0]] == pytest.approx(0.01 * np.arange(200))

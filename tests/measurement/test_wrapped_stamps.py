@@ -77,3 +77,11 @@ def test_a_clock_that_was_set_back_goes_on_a_usual_step_later():
     assert since[1] == 0.0 and np.isnan(since[[0, 30]]).all()
     assert since[-1] == pytest.approx(0.98)
     assert np.isnan(seconds_since_first(np.full(3, np.nan))).all()
+
+
+def test_stamps_that_only_fall_and_stamps_that_rows_share_are_left():
+    falling = np.arange(100.0)[::-1]
+    assert unwrap_stamps(falling)[0] is falling and seconds_since_first(falling)[-1] == -99.0
+    shared = np.repeat(0.01 * np.arange(100), 3)
+    shared[200] -= 0.02  # a row out of order, by two steps
+    assert seconds_since_first(shared) == pytest.approx(shared)
