@@ -138,6 +138,7 @@ def test_earlier_words_are_surer_and_exact_ones_surer_than_their_beginnings():
     # a "Stromsensor" measures no force
     assert likeness("stromsensor", "interaction_force") == 0.0
     assert likeness("sensorstrom", "interaction_force") > 0.0
+    assert likeness("ti me", "time") == 0.0
     assert likeness("", "time") == likeness("foo bar", "time") == 0.0
 
 

@@ -8,6 +8,7 @@ from teleopdesign.measurement.first_guess import (
     explain_force,
     explain_forces,
     is_turned,
+    motion_columns,
 )
 
 H = 0.005
@@ -36,6 +37,22 @@ def test_what_makes_more_of_the_force_decides():
     v, a = rate_of(SWING), rate_of(SWING, 2)
     assert not is_turned(1.0 * np.sign(v) - 0.002 * a, SWING, H)
     assert is_turned(0.1 * np.sign(v) - 0.2 * a, SWING, H)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 1e3])
+def test_units_of_the_position_change_no_direction(size):
+    """Micrometres a second, or revolutions: what is slow is so beside the fastest."""
+    v, _, direction = motion_columns(size * SWING, H)
+    one, _, same = motion_columns(SWING, H)
+    assert v == pytest.approx(size * one) and direction == pytest.approx(same)
+    x = size * SWING
+    guess = explain_force(0.1 * rate_of(x, 2) / size + 0.5 * np.sign(rate_of(x)), x, H)
+    assert guess.level == pytest.approx(0.5, abs=0.03)
+    assert guess.inertia == pytest.approx(0.1 / size, rel=0.05)
+
+
+def test_numbers_beyond_all_measure_are_not_turned():
+    assert not is_turned(-1e200 * rate_of(SWING, 2), SWING, H)
 
 
 def test_of_noise_rest_and_short_records_nothing_is_turned():
@@ -91,4 +108,5 @@ def test_errors_of_first_values_count_each_second_as_one_reading():
         guess = explain_force(made + noise, SWING, H)
         wrong = np.array([guess.inertia - 0.1, guess.level - 0.5, guess.damping - 0.2])
         off.append(wrong / np.array(guess.errors))
-    assert 0.1 < np.sqrt(np.mean(np.square(off))) < 2.0
+    spread = np.sqrt(np.mean(np.square(off), axis=0))
+    assert np.all((0.1 < spread) & (spread < 3.0))

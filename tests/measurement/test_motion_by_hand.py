@@ -41,6 +41,12 @@ def test_a_step_that_is_not_stated_is_read_and_noise_counts_for_more():
     read = 1e-4 * np.round(SWING / 1e-4)
     assert made(read, resolution=None).step == pytest.approx(1e-4, rel=0.02)
     assert made(read, resolution=3e-4).step == 3e-4
+    for part, counts in [(0.3, False), (1.0, True)]:
+        noisy = SWING + 1e-3 * part * rng.standard_normal(len(T))
+        step = made(1e-3 * np.round(noisy / 1e-3), resolution=1e-3).step
+        # rounding adds 0.29 of a step
+        expected = 4e-3 * np.hypot(part, 12**-0.5) if counts else 1e-3
+        assert step == pytest.approx(expected, rel=0.1)
     for noise in (1e-3, 1e-2):  # far above the steps: four times its rms
         noisy = SWING + noise * rng.standard_normal(len(T))
         assert made(noisy).step == pytest.approx(4 * noise, rel=0.1)

@@ -112,8 +112,6 @@ def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
 def test_a_row_out_of_order_among_stamps_that_rows_share_begins_no_new_clock():
     stamps = np.repeat(0.01 * np.arange(200), 3)
     stamps[300] -= 0.03
-    parts, dropped, _, restarts = rows_in_order(
-        stamps, (slice(0, 600),), np.zeros(600, dtype=bool)
-    )
+    parts, dropped, _, restarts = rows_in_order(stamps, (slice(0, 600),), np.zeros(600, dtype=bool))
     assert restarts == 0 and dropped == 400
     assert stamps[parts[0]] == pytest.approx(0.01 * np.arange(200))
