@@ -52,6 +52,12 @@ def test_up_to_nearly_two_floors_are_noise():
     assert not is_adequate(fit(0.1, blind=0.2501), floor()), "blind in much of the motion"
 
 
+def test_a_model_that_leaves_nothing_is_adequate_though_sensors_leave_nothing_too():
+    """As of a simulated record that was not rounded."""
+    assert is_noise(0.0, floor(0.0)) and is_adequate(fit(0.0), floor(0.0))
+    assert not is_adequate(fit(1e-12), floor(0.0))
+
+
 def test_a_plain_tone_is_held_against_the_floor_by_what_it_leaves():
     model = fit(0.4)
     # squares of the residual are those of the error here
