@@ -1,17 +1,25 @@
 """A log that samples a faster controller: its scatter is no missing physics."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.between_rows import command_scatter, floor_between_rows, with_noise
+from teleopdesign.diagnose import between_rows as module
+from teleopdesign.diagnose.between_rows import (
+    command_scatter,
+    floor_between_rows,
+    is_amid_a_row,
+    with_noise,
+)
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.learnable import Learnable
-from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
 from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.record_shift import RecordShift
 from teleopdesign.model import Model
 
 INERTIA, DAMPING = 0.5, 2.0  # kg*m^2, N*m*s/rad
@@ -129,3 +137,70 @@ def test_noise_that_is_stated_stays_as_it_is(runs, tmp_path):
     stated = with_noise(experiment, {"device.actuator_force": 0.01})
     assert command_scatter(stated, {"device"}) == {}
     assert command_scatter(experiment, set()) == {}
+
+
+@pytest.mark.parametrize("row", [1e-3, 8e-3, 2.0])
+def test_a_command_amid_its_row_is_late_by_three_to_seven_tenths_of_it_and_surely_so(row):
+    def amid(late, error=0.0, measured=False):
+        return is_amid_a_row(
+            RecordShift("device", late * row, error * row, row, False, 1.0, measured)
+        )
+
+    assert amid(0.31) and amid(0.5) and amid(0.69)
+    assert not amid(0.29) and not amid(0.71) and not amid(-0.5) and not amid(1.5)
+    assert amid(0.4, 0.09) and not amid(0.4, 0.11), "it may as well be late by less"
+    assert amid(0.6, 0.09) and not amid(0.6, 0.11)
+    assert not amid(0.5, measured=True)
+
+
+@pytest.mark.parametrize("size", [1e-3, 0.5, 20.0])
+def test_the_scatter_of_a_command_is_that_of_the_middle_record(runs, tmp_path, size):
+    """Each record has noise of its own; a record that is quiet or loud moves it by little."""
+    experiment, rng = logged(tmp_path / "slow", runs), np.random.default_rng(0)
+    name, still = "device.actuator_force", experiment.records[0]
+    n = len(still.signals[name])
+    records = tuple(
+        replace(still, signals={**still.signals, name: size * by * rng.standard_normal(n)})
+        for by in (0.1, 1.0, 30.0)
+    )
+    (scatter,) = command_scatter(replace(experiment, records=records), {"device"}).items()
+    assert scatter == (name, pytest.approx(size, rel=0.1))
+    quiet = replace(still, signals={**still.signals, name: np.ones(n)})
+    assert command_scatter(replace(experiment, records=(quiet,)), {"device"}) == {}
+    assert command_scatter(replace(experiment, records=records), {"slave"}) == {}
+
+
+def test_only_the_channel_whose_noise_is_stated_has_it(runs, tmp_path):
+    experiment = logged(tmp_path / "slow", runs)
+    stated = with_noise(experiment, {"device.actuator_force": 0.01})
+    assert stated.channels["device.actuator_force"].noise == 0.01
+    other = "device.position"
+    assert stated.channels[other] == experiment.channels[other]
+    assert stated.channels.keys() == experiment.channels.keys()
+
+
+@pytest.mark.parametrize("size", [0.1, 10.0])
+def test_what_does_not_repeat_may_be_learned_to_a_tenth(runs, tmp_path, monkeypatch, size):
+    """Of what is left, whatever that is."""
+    drawn = NoiseFloor(size, "drawn", size)
+    monkeypatch.setattr(module, "noise_floor", lambda *_: drawn)
+    monkeypatch.setattr(
+        module, "shifts_of", lambda *_: [RecordShift("device", 4e-3, 0, 8e-3, False, 1, False)]
+    )
+    prepared = prepare(logged(tmp_path / "slow", runs))
+    command = SimpleNamespace(error=0.9 * size, blind=0.0)
+    fit = SimpleNamespace(check_error=0.9 * size, at_command=command, model=None)
+    first = NoiseFloor(0.01 * size, "first", 0.01 * size)
+    for part, is_scatter in [(0.09, True), (0.11, False)]:
+        box = Learnable(left=size, error=(1 - part) * size, alone=size)
+        last = floor_between_rows(fit, first, box, prepared, None)
+        assert (last is not first) == is_scatter
+        assert not is_scatter or last.value == 0.9 * size, "no floor lies above what a model leaves"
+    box = Learnable(left=size, error=size, alone=size)
+    for error, is_scatter in [(1.79 * size, True), (1.81 * size, False)]:
+        left = SimpleNamespace(**{**vars(fit), "check_error": error})
+        last = floor_between_rows(left, first, box, prepared, None)
+        assert (last is not first) == is_scatter
+    # what is noise by the sensors alone needs no scatter
+    louder = NoiseFloor(0.6 * size, "first", 0.6 * size)
+    assert floor_between_rows(fit, louder, box, prepared, None) is louder

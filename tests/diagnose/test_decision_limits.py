@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose.stand_ins import fit, floor, ranked, rung
 
 from teleopdesign.diagnose.adequacy import (
     allowed_floor,
@@ -27,7 +28,6 @@ from teleopdesign.diagnose.decision import (
     verdict,
     worth_pursuing,
 )
-from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.order import (
     is_simpler,
     rank_key,
@@ -36,50 +36,9 @@ from teleopdesign.diagnose.order import (
     select_simplest,
     simplicity,
 )
-from teleopdesign.diagnose.ranking import Ranked
 from teleopdesign.effects import EFFECTS
 
-BLOCKS = np.repeat(np.arange(40), 10)
-#: of 400 rows; without noise each difference counts
-SHAPE = np.sin(np.arange(400.0))
-SHAPE /= np.linalg.norm(SHAPE)
 MORE, LESS = 1.0 + 1e-9, 1.0 - 1e-9
-
-
-def floor(value=0.1, **more):
-    return NoiseFloor(value, "made", value, **more)
-
-
-def fit(error, *, blind=0.0, weak=False, at_command=None, residual=None, known=("device",)):
-    """A fit that leaves this error, of the force and at the command."""
-    left = error * SHAPE if residual is None else residual
-    error_there = error if at_command is None else at_command
-    command = SimpleNamespace(
-        error=error_there,
-        blind=blind,
-        weak=weak,
-        residual=error_there * SHAPE if residual is None else residual,
-        sighted=np.ones(400, dtype=bool),
-    )
-    return SimpleNamespace(
-        check_error=error,
-        check_residual=left,
-        check_blocks=BLOCKS,
-        fit_residual=left,
-        fit_blocks=BLOCKS,
-        at_command=command,
-        at_bound=(),
-        model=SimpleNamespace(known=dict.fromkeys(known), parameters={}),
-    )
-
-
-def ranked(error, effect="stribeck", **more):
-    """A candidate whose fit leaves this error."""
-    identifiable = more.pop("is_identifiable", True)
-    instead = more.pop("instead_of", None)
-    said = {k: more.pop(k) for k in ("refused", "implausible") if k in more}
-    candidate = Candidate(EFFECTS[effect], "device")
-    return Ranked(candidate, fit(error, **more), 9.0, 0.0, identifiable, instead_of=instead, **said)
 
 
 def test_up_to_nearly_two_floors_are_noise():
@@ -91,6 +50,12 @@ def test_up_to_nearly_two_floors_are_noise():
     assert not is_adequate(fit(0.1, at_command=0.09 * MORE), half)
     assert is_adequate(fit(0.1, blind=0.25), floor())
     assert not is_adequate(fit(0.1, blind=0.2501), floor()), "blind in much of the motion"
+
+
+def test_a_model_that_leaves_nothing_is_adequate_though_sensors_leave_nothing_too():
+    """As of a simulated record that was not rounded."""
+    assert is_noise(0.0, floor(0.0)) and is_adequate(fit(0.0), floor(0.0))
+    assert not is_adequate(fit(1e-12), floor(0.0))
 
 
 def test_a_plain_tone_is_held_against_the_floor_by_what_it_leaves():
@@ -261,10 +226,6 @@ def test_what_takes_away_half_of_what_the_best_does_is_named_beside_it():
     barred = ranked(0.5, "cogging", refused="weak")
     ranking = SimpleNamespace(base=base, ranked=(best, half, less, barred))
     assert select_other_helpers(best, ranking) == (half.candidate,)
-
-
-def rung(error, added=None, alternatives=()):
-    return SimpleNamespace(added=added, fit=fit(error), alternatives=alternatives)
 
 
 def test_the_verdict_asks_for_half_of_the_squares_above_the_floor():

@@ -75,3 +75,41 @@ def test_a_moment_counts_where_only_noise_is_left_without_it(floor, loud, is_one
     assert (moment_above_noise(fit, prepared, known) is not None) == is_one
     quiet, prepared, known = left((24,), (), floor=0.6)
     assert moment_above_noise(quiet, prepared, known) is None, "all of it is noise"
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_worst_pair_of_blocks_by_brute_force_where_rows_are_missing(seed):
+    """Blocks of a quarter of a second with many rows, few, or none."""
+    rng = np.random.default_rng(seed)
+    stretches, blocks = [], []
+    for k, length in enumerate(rng.integers(500, 900, 2)):
+        motion = SimpleNamespace(
+            time=7.0 * k + np.arange(length) / RATE, file=f"{k}", body="device"
+        )
+        here = rng.random(length) < 0.5
+        for _ in range(2):
+            gap = int(rng.integers(50, length - 100))
+            here[gap : gap + 60] = False
+        keep = np.flatnonzero(here)
+        stretches.append(SimpleNamespace(motion=motion, keep=keep))
+        time = motion.time[keep]
+        blocks += [(k, int(b)) for b in (time - time[0]) / BLOCK]
+    residual = rng.standard_normal(len(blocks)) * (1.0 + 5.0 * (rng.random(len(blocks)) < 0.02))
+    error = 0.7
+    command = SimpleNamespace(residual=residual, error=error)
+    prepared = SimpleNamespace(of=lambda use: stretches)
+    moment = worst_moment(
+        SimpleNamespace(at_command=command), prepared, NoiseFloor(0.2, "made", 0.2)
+    )
+    pairs = {}
+    for k, b in set(blocks):
+        inside = np.array([one in ((k, b), (k, b + 1)) for one in blocks])
+        if (k, b + 1) in blocks:
+            pairs[k, b] = inside
+    worst = max(pairs, key=lambda pair: np.sum(residual[pairs[pair]] ** 2))
+    inside = pairs[worst]
+    assert moment.file == str(worst[0])
+    times = np.concatenate([s.motion.time[s.keep] for s in stretches])[inside]
+    assert (moment.begin, moment.end) == (times[0], times[-1])
+    rms = [np.sqrt(np.mean(r**2)) for r in (residual[~inside], residual)]
+    assert moment.without == pytest.approx(error / 0.2 * rms[0] / rms[1])

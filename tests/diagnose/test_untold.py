@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnose.stub_models import Table
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.diagnose import untold as untold_module
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import restore_diagnosis
 from teleopdesign.diagnose.answers.saved import load_answer
@@ -17,8 +19,8 @@ from teleopdesign.diagnose.diagnosis import SetAside, Untold
 from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.plausibility import implausible_effects
-from teleopdesign.diagnose.products import best_product
-from teleopdesign.diagnose.untold import known_together
+from teleopdesign.diagnose.products import Product, best_product
+from teleopdesign.diagnose.untold import known_together, untold
 from teleopdesign.effects import EFFECTS
 
 
@@ -178,3 +180,57 @@ def test_two_forces_that_take_each_other_away_are_neither_of_them(diagnosis, pre
     said = implausible_effects(much, prepared_case)
     assert "only their sum is known" in said["spring", "device"]
     assert ("hardening_spring", "device") not in said or "neutral" in str(said)
+
+
+def product(*errors, known):
+    names = tuple(f"device.stribeck.{n}" for n in ("a", "b", "c")[: len(errors)])
+    return Product(names, (1.0,) * len(errors), errors, known)
+
+
+@pytest.mark.parametrize(
+    ("product", "said"),
+    [
+        (
+            product(0.51, 0.3, known=0.149),
+            "a * b is known to 15 %, each of them alone to 51 %, 30 %",
+        ),
+        (product(0.51, 0.3, known=0.151), ""),  # as well as the better of the two, nearly
+        (product(0.49, 0.4, known=0.01), ""),  # each is known well enough
+        (product(0.3, 0.51, 0.4, known=0.1), "a * b * c is known to 10 %"),
+        (
+            product(3.0, 2.0, known=0.9),
+            "a * b is known to 90 %, each of them alone to 3e+02 %, 2e+02 %",
+        ),
+        (None, ""),
+    ],
+)
+def test_a_product_is_said_where_one_of_it_is_open_and_it_is_known_twice_as_well(
+    monkeypatch, product, said
+):
+    monkeypatch.setattr(untold_module, "product_of", lambda fit, effect: product)
+    sentence = known_together(None, Candidate(EFFECTS["stribeck"], "device"))
+    assert sentence.startswith(said) and bool(sentence) == bool(said)
+
+
+def test_what_is_untold_is_said_of_each_effect_that_the_last_model_has_in_order(monkeypatch):
+    table = Table(lambda names: 1.0)
+    rungs = table.rungs("bias", "spring", "viscous")
+    by_effect = {"bias": "a level at rest", "viscous": None, "spring": None}
+    together = {"bias": "", "spring": "a * b", "viscous": "a * c"}
+    asked = []
+
+    def of_effect(effect, at, model, prepared):
+        asked.append(model)
+        return by_effect[effect.name]
+
+    monkeypatch.setattr(untold_module, "untold_of", of_effect)
+    monkeypatch.setattr(untold_module, "known_together", lambda fit, c: together[c.effect.name])
+    said = [(one.candidate.effect.name, one.sentence) for one in untold(rungs, None)]
+    assert said == [("bias", "a level at rest"), ("spring", "a * b"), ("viscous", "a * c")]
+    assert all(model is rungs[-1].fit.model for model in asked)
+    together["bias"] = "b * c"
+    assert [one.sentence for one in untold(rungs, None)][:2] == ["a level at rest", "b * c"]
+    # what others made superfluous has nothing to tell
+    last = replace(rungs[-1], fit=table.fit("spring"))
+    assert [one.sentence for one in untold((*rungs[:-1], last), None)] == ["a * b"]
+    assert untold(rungs[:1], None) == ()

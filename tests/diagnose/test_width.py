@@ -7,7 +7,8 @@ import pytest
 import sympy as sp
 from diagnose.made_records import write_made
 
-from teleopdesign import Effect, FitSearch, Model, Parameter, load_experiment
+from teleopdesign import Body, Effect, FitSearch, Model, Parameter, load_experiment
+from teleopdesign.diagnose import width
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
@@ -85,3 +86,65 @@ def test_a_candidate_of_any_width_does_not_count(tmp_path):
     asked = make_ranked(base, candidate, fit, prepared=prepared, widths=OpenWidths(prepared))
     assert "determine" not in unasked.implausible
     assert "determine" in asked.note and not asked.counts
+
+
+class ScoredFit:
+    """A fit whose essential parameter has that value; it leaves more by this score."""
+
+    def __init__(self, model, free, score=0.0):
+        self.model, self.free, self.score = model, free, score
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """What is said of a width of 0.5 where other values leave more by these scores, and which."""
+
+    def ask(scores, effect=EFFECT, free=(OF_WIDTH,)):
+        values = []
+
+        def again(model, prepared, *, effort):
+            values.append(model.parameters[OF_WIDTH])
+            return ScoredFit(model, (), scores[round(values[-1].value, 6)])
+
+        monkeypatch.setattr(width, "estimate", again)
+        monkeypatch.setattr(width, "whole_score", lambda before, after: before.score - after.score)
+        names = {"rounded_friction.level": LEVEL, "rounded_friction.width": WIDTH}
+        model = Model({"device": Body("revolute", {"inertia": 1.0, **names}, (effect,))})
+        fit = ScoredFit(model, free)
+        return explain_open_width(fit, Candidate(effect, "device"), None), values
+
+    return ask
+
+
+def test_a_width_is_held_at_a_quarter_and_at_four_times_its_value(asked):
+    said, values = asked({0.125: 9.0, 2.0: 9.0})
+    assert said == "" and [v.value for v in values] == [0.125, 2.0]
+    assert all(v.fixed for v in values)
+    for scores, other in [((2.9, 9.0), "0.125"), ((9.0, 2.9), "2"), ((9.0, -9.0), "2")]:
+        said, _ = asked(dict(zip((0.125, 2.0), scores, strict=True)))
+        assert said.startswith(f"width = {other} rad/s leaves as little as 0.5 rad/s")
+    assert asked({0.125: 3.1, 2.0: 3.1})[0] == ""
+
+
+def test_a_width_beyond_its_bounds_is_not_asked(asked):
+    def within(lower, upper):
+        declared = replace(EFFECT.parameters["width"], lower=lower, upper=upper)
+        return replace(EFFECT, parameters={**EFFECT.parameters, "width": declared})
+
+    said, values = asked({2.0: 1.0}, within(0.2, 3.0))
+    assert said.startswith("width = 2 ") and [v.value for v in values] == [2.0]
+    said, values = asked({0.125: 9.0}, within(0.0, 1.0))
+    assert said == "" and [v.value for v in values] == [0.125]
+    assert asked({}, within(0.2, 1.0)) == ("", [])
+    assert asked({0.125: 1.0, 2.0: 1.0}, free=()) == ("", []), "it is fixed"
+
+
+def test_each_fit_is_asked_once(asked, monkeypatch):
+    monkeypatch.setattr(
+        width, "explain_open_width", lambda fit, *_, **__: calls.append(fit) or "open"
+    )
+    calls, widths = [], OpenWidths(None)
+    one, other = ScoredFit(None, ()), ScoredFit(None, ())
+    candidate = Candidate(EFFECT, "device")
+    assert [widths.explain(f, candidate) for f in (one, one, other, one)] == ["open"] * 4
+    assert calls == [one, other]

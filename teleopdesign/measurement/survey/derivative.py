@@ -12,6 +12,17 @@ from .content import Array
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
+#: counts that encoders have in a turn, and the part by which an estimate may miss one of them:
+#: 4000 and 4096 differ by 0.023
+USUAL_COUNTS = tuple(
+    sorted(
+        {float(2**k) for k in range(7, 25)}
+        | {m * 10.0**k for m in (1, 2, 4, 5, 8) for k in (2, 3, 4)}
+    )
+)
+NEAR_USUAL = 0.02
+#: lengths of a turn in units of angle; fewest counts of one that are no range of a motion
+TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
 
 
 def unwrap_column(x: Array, jump: float | None) -> Array:
@@ -20,21 +31,30 @@ def unwrap_column(x: Array, jump: float | None) -> Array:
 
 
 def wrap_of(x: Array) -> float | None:
-    """Period at which a column wraps: that of jumps over most of its range; None: it does not."""
+    """Period at which a column wraps: that of jumps over most of its range; None: it does not.
+
+    A turn in a unit of angle, what a counter of bits holds, or the usual counts of an encoder.
+    """
     reach = float(np.ptp(x))
     steps = np.diff(x)
     usual = float(np.quantile(np.abs(steps), 0.95))
-    jumps = np.abs(steps[np.abs(steps) > max(0.6 * reach, 20.0 * usual)])
-    if len(jumps) == 0 or reach == 0.0:
+    is_jump = np.abs(steps) > max(0.6 * reach, 20.0 * usual)
+    if reach == 0.0 or not is_jump.any():
         return None
+    jumps = np.abs(steps[is_jump])
     jump = float(np.median(jumps))
     if np.any(np.abs(jumps - jump) > 0.1 * jump):
         return None
-    turns = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi)
-    for period in (*turns, *(2.0**k for k in range(8, 33))):
-        if abs(period - jump) < 0.1 * period and reach <= 1.001 * period:
-            return period
-    return None
+    # over a wrap the motion goes on as in the rows beside it
+    beside = np.pad(np.where(is_jump, 0.0, steps), 1)
+    number = np.maximum(np.convolve(~is_jump, (1, 0, 1), "same"), 1)
+    turn = float(np.median(np.abs(steps - (beside[:-2] + beside[2:]) / number)[is_jump]))
+    periods = [*TURNS, *(2.0**k for k in range(8, 33))]
+    if np.array_equal(x, np.round(x)):
+        periods += [n for n in USUAL_COUNTS if n >= FEWEST_COUNTS]
+    period = min(periods, key=lambda one: abs(one - turn))
+    near = abs(period - turn) < NEAR_USUAL * period
+    return period if near and reach <= 1.001 * period else None
 
 
 def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, float]:

@@ -26,20 +26,20 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .derivative import DERIVATIVE, derivative_factor, follows_direction, unwrap_column, wrap_of
+from .derivative import (
+    DERIVATIVE,
+    NEAR_USUAL,
+    USUAL_COUNTS,
+    derivative_factor,
+    follows_direction,
+    unwrap_column,
+    wrap_of,
+)
 from .remarks import counts_per_turn_in
 
 #: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
 MOST_ANGLE = 50
-#: counts that encoders have in a turn, and the part by which an estimate may miss one of them
-USUAL_COUNTS = tuple(
-    sorted(
-        {float(2**k) for k in range(7, 25)}
-        | {m * 10.0**k for m in (1, 2, 4, 5, 8) for k in (2, 3, 4)}
-    )
-)
-NEAR_USUAL = 0.02
 #: correlation that a name is worth: the error of a controller follows the velocity as well
 BY_NAME = 0.1
 #: drives that report positions in turns; and words of what turns

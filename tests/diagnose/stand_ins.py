@@ -1,0 +1,55 @@
+"""Fits, candidates and floors that hold the numbers which a decision reads: no record is fitted."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.noise_floor import NoiseFloor
+from teleopdesign.diagnose.ranking import Ranked
+from teleopdesign.effects import EFFECTS
+
+BLOCKS = np.repeat(np.arange(40), 10)
+#: of 400 rows; without noise each difference counts
+SHAPE = np.sin(np.arange(400.0))
+SHAPE /= np.linalg.norm(SHAPE)
+
+
+def floor(value=0.1, **more):
+    return NoiseFloor(value, "made", value, **more)
+
+
+def fit(error, *, blind=0.0, weak=False, at_command=None, residual=None, known=("device",)):
+    """A fit that leaves this error, of the force and at the command."""
+    left = error * SHAPE if residual is None else residual
+    error_there = error if at_command is None else at_command
+    command = SimpleNamespace(
+        error=error_there,
+        blind=blind,
+        weak=weak,
+        residual=error_there * SHAPE if residual is None else residual,
+        sighted=np.ones(400, dtype=bool),
+    )
+    return SimpleNamespace(
+        check_error=error,
+        check_residual=left,
+        check_blocks=BLOCKS,
+        fit_residual=left,
+        fit_blocks=BLOCKS,
+        at_command=command,
+        at_bound=(),
+        model=SimpleNamespace(known=dict.fromkeys(known), parameters={}),
+    )
+
+
+def ranked(error, effect="stribeck", **more):
+    """A candidate whose fit leaves this error."""
+    identifiable = more.pop("is_identifiable", True)
+    instead = more.pop("instead_of", None)
+    said = {k: more.pop(k) for k in ("refused", "implausible") if k in more}
+    candidate = Candidate(EFFECTS[effect], "device")
+    return Ranked(candidate, fit(error, **more), 9.0, 0.0, identifiable, instead_of=instead, **said)
+
+
+def rung(error, added=None, alternatives=()):
+    return SimpleNamespace(added=added, fit=fit(error), alternatives=alternatives)

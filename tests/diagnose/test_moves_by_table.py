@@ -1,0 +1,175 @@
+"""What is added and removed, where each set of effects leaves a stated error."""
+
+from dataclasses import replace
+
+import pytest
+from diagnose.stand_ins import floor
+from diagnose.stub_models import Table, candidate
+
+from teleopdesign.diagnose import moves as module
+from teleopdesign.diagnose import rungs as rungs_module
+from teleopdesign.diagnose.moves import add, remove
+from teleopdesign.diagnose.ranking import Ranking
+from teleopdesign.diagnose.rung import Replaced
+
+SPRING, HARD, BIAS, DRAG, GRAVITY = map(
+    candidate, ("spring", "hardening_spring", "bias", "quadratic_drag", "gravity")
+)
+
+
+@pytest.fixture
+def use(monkeypatch):
+    """A table by which everything is estimated."""
+
+    def with_rule(rule, **more):
+        table = Table(rule, **more)
+        monkeypatch.setattr(rungs_module, "estimate", table.estimate)
+        alone = lambda base, c, fit, *, prepared, instead_of: table.rank(base, among=[c]).best  # noqa: E731
+        monkeypatch.setattr(rungs_module, "make_ranked", alone)
+        return table
+
+    return with_rule
+
+
+def shares(**parts):
+    """Each effect takes away that much of the error of one."""
+    return lambda names: 1.0 - sum(parts.get(n, 0.0) for n in names)
+
+
+def names(state):
+    return [r.added.effect.name for r in state.rungs[1:]]
+
+
+def looked(table, state, *among, **more):
+    """The state with these candidates ranked beside its last rung, all of them supported."""
+    ranking = table.rank(state.fit, among=among)
+    return replace(state, ranking=ranking, supported=ranking.ranked, **more)
+
+
+def test_the_simplest_of_those_that_explain_as_well_is_added_with_its_alternatives(use):
+    table = use(shares(spring=0.5, hardening_spring=0.5001, gravity=0.5002, bias=0.4))
+    state = looked(table, table.state(table.rungs()), SPRING, HARD, GRAVITY, BIAS)
+    moved = add(table.search(), state)
+    # gravity leaves least and has two parameters; of one parameter each are the springs
+    assert names(moved) == ["spring"] and moved.rungs[-1].alternatives == (HARD,)
+    assert moved.rungs[-1].ranking is state.ranking and moved.rungs[-1].could_be is None
+    assert moved.rungs[-1].instead_of is None
+
+
+def test_beside_a_model_that_leaves_noise_what_else_helps_is_said(use):
+    table = use(shares(spring=0.5, bias=0.4, quadratic_drag=0.1))
+    state = looked(table, table.state(table.rungs()), SPRING, BIAS, DRAG)
+    noise = replace(state.floors, allowed=floor(0.6))
+    assert add(table.search(), replace(state, floors=noise)).rungs[-1].could_be == (BIAS,)
+    louder = replace(state.floors, allowed=floor(0.5))
+    assert add(table.search(), replace(state, floors=louder)).rungs[-1].could_be is None
+
+
+def in_place_of(ranked, effect, fit):
+    """A candidate beside which that effect is superfluous: its model lacks it."""
+    return replace(ranked, fit=fit, instead_of=effect)
+
+
+def test_what_an_added_effect_stood_in_for_takes_its_place(use):
+    """It may not come back in its turn."""
+    table = use(shares(spring=0.8, hardening_spring=0.4, bias=0.1))
+    state = table.state(table.rungs("hardening_spring", "bias"))
+    (ranked,) = table.rank(state.fit, among=[SPRING]).ranked
+    ranked = in_place_of(ranked, HARD, table.fit("spring", "bias"))
+    ranking = Ranking(state.fit, (ranked,))
+    moved = add(table.search(), replace(state, ranking=ranking, supported=(ranked,)))
+    assert sorted(names(moved)) == ["bias", "spring"] and moved.came_back == {HARD.key}
+    spring = next(r for r in moved.rungs[1:] if r.added == SPRING)
+    assert spring.replaced is None, "the user's model never had what it takes the place of"
+    assert moved.fit.check_error == pytest.approx(0.1)
+    again = replace(state, ranking=ranking, supported=(ranked,), came_back=frozenset({HARD.key}))
+    assert add(table.search(), again) is None
+
+
+def test_what_it_replaced_in_its_turn_stays_replaced(use):
+    table = use(shares(spring=0.8, hardening_spring=0.4))
+    first, rung = table.rungs("hardening_spring")
+    gone = Replaced(DRAG, ())
+    state = table.state([first, replace(rung, replaced=gone)])
+    (ranked,) = table.rank(state.fit, among=[SPRING]).ranked
+    ranked = in_place_of(ranked, HARD, table.fit("spring"))
+    ranking = Ranking(state.fit, (ranked,))
+    moved = add(table.search(), replace(state, ranking=ranking, supported=(ranked,)))
+    assert names(moved) == ["spring"] and moved.rungs[1].replaced is gone
+
+
+def test_an_effect_of_the_users_model_that_comes_back_was_not_replaced(use):
+    table = use(shares(spring=0.5, bias=0.3))
+    first, rung = table.rungs("spring")
+    state = table.state([first, replace(rung, replaced=Replaced(BIAS, ()))])
+    state = looked(table, state, BIAS)
+    moved = add(table.search(), state)
+    assert names(moved) == ["spring"] and moved.rungs[1].replaced is None
+    assert moved.came_back == {BIAS.key}
+    assert moved.fit.model.names == {"spring", "bias"}
+
+
+def test_where_the_best_leads_to_no_ladder_the_next_is_added(use):
+    """What was added first needs what the best would take the place of."""
+    table = use(shares(spring=0.8, hardening_spring=0.4, bias=0.1, gravity=0.2),
+                needs=(("bias", "hardening_spring"),))  # fmt: skip
+    state = table.state(table.rungs("hardening_spring", "bias"))
+    best, other = table.rank(state.fit, among=[SPRING, GRAVITY]).ranked
+    rises = table.fit("spring", "bias")
+    rises.check_error = 2.0  # on the check records it leaves more than the bias alone
+    best = in_place_of(best, HARD, rises)
+    ranking = Ranking(state.fit, (best, other))
+    moved = add(table.search(), replace(state, ranking=ranking, supported=(best, other)))
+    assert names(moved) == ["hardening_spring", "bias", "gravity"]
+    assert add(table.search(), replace(state, ranking=ranking, supported=(best,))) is None
+
+
+def test_an_effect_that_others_made_superfluous_is_removed(use):
+    def rule(names):  # drag helps as long as there is no spring
+        return (
+            1.0
+            - 0.6 * ("spring" in names)
+            - 0.3 * ("bias" in names)
+            - 0.3 * ("quadratic_drag" in names and "spring" not in names)
+        )
+
+    table = use(rule)
+    moved = remove(table.search(), table.state(table.rungs("quadratic_drag", "spring", "bias")))
+    assert names(moved) == ["spring", "bias"] and moved.fit.check_error == pytest.approx(0.1)
+    assert remove(table.search(), moved) is None
+    # the last was added a moment ago, and is no older than what it was held against
+    assert remove(table.search(), table.state(table.rungs("spring", "quadratic_drag"))) is None
+    assert remove(table.search(), table.state(table.rungs("bias"))) is None
+
+
+def test_what_another_effect_needs_is_not_removed(use):
+    table = use(shares(spring=0.5, bias=0.3), needs=(("spring", "quadratic_drag"),))
+    state = table.state(table.rungs("quadratic_drag", "spring", "bias"))
+    assert remove(table.search(), state) is None
+
+
+@pytest.mark.parametrize(("jitters", "drawn", "removed"), [
+    (False, 1.0, False), (True, 0.4, True), (True, 0.2, False),
+])  # fmt: skip
+def test_what_only_weakens_the_jitter_of_a_clock_is_removed(
+    use, monkeypatch, jitters, drawn, removed
+):
+    """Without it 0.6 are left: no more than nearly two floors of what jitter makes there."""
+    table = use(shares(transmission_compliance=0.3, spring=0.4, bias=0.1))
+    state = table.state(table.rungs("transmission_compliance", "spring", "bias"))
+    low = floor(0.01, jitters=jitters)
+    state = replace(state, floors=replace(state.floors, allowed=low))
+    monkeypatch.setattr(
+        module,
+        "noise_floor",
+        lambda model, *_: floor(
+            drawn
+            if "transmission_compliance" not in model.names and "spring" in model.names
+            else 0.0
+        ),
+    )
+    search = table.search()
+    search.generator = lambda: None
+    moved = remove(search, state)
+    assert (moved is not None) == removed
+    assert not removed or names(moved) == ["spring", "bias"]

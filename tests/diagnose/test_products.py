@@ -1,0 +1,97 @@
+"""Products of parameters that records tell though they tell none of them alone."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from diagnose.known_models import BY_EFFECT, model
+
+from teleopdesign.diagnose.products import best_product, product_of
+
+ROWS = 200
+
+
+def fitted(known, *effects, columns=None, at_bound=()):
+    """A fit of that model in which the parameters of these effects are free."""
+    free = tuple(
+        n for n in known.parameters if n.split(".")[1] in effects and not known.parameters[n].fixed
+    )
+    if columns is None:
+        columns = np.random.default_rng(0).standard_normal((ROWS, len(free)))
+    return SimpleNamespace(
+        model=known, free=free, jacobian=columns, scale=np.ones(len(free)), at_bound=at_bound
+    )
+
+
+def test_the_best_product_is_known_better_than_any_other():
+    """Of all powers of the same size."""
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        columns = rng.standard_normal((ROWS, 3)) @ rng.standard_normal((3, 3))
+        covariance = np.linalg.inv(columns.T @ columns)
+        errors = np.sqrt(np.diag(covariance))
+        powers, known = best_product(columns, errors)
+        assert np.max(np.abs(powers)) == 1.0 and np.max(powers) == 1.0
+        assert known == pytest.approx(np.sqrt(powers @ covariance @ powers))
+        others = rng.standard_normal((500, 3))
+        others *= np.linalg.norm(powers) / np.linalg.norm(others, axis=1)[:, None]
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", others, covariance, others))
+        assert known <= spread.min() * (1 + 1e-9)
+
+
+def valley(little=0.01, also=0.0, scale=(1.0, 1.0, 1.0), **changed):
+    """A fit in which level and speed of `stribeck` do alike, and coulomb's level does `also`."""
+    rng = np.random.default_rng(3)
+    one, two, three = np.linalg.qr(rng.standard_normal((ROWS, 3)))[0].T
+    level, speed = (
+        BY_EFFECT["stribeck"]["extra_static_level"][0],
+        BY_EFFECT["stribeck"]["stribeck_velocity"][0],
+    )
+    columns = [three + also * one, one / level, (0.5 * one + little * two) / speed]
+    known = model("coulomb", "stribeck", **changed)
+    fit = fitted(known, "coulomb", "stribeck", columns=np.column_stack(columns) * scale)
+    fit.scale = np.array(scale)
+    return fit
+
+
+OPEN = {"extra_static_level": (0.5, 0.6), "stribeck_velocity": (0.1, 0.24)}
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (5.0, 1e3, 1e-3)])
+def test_the_product_of_a_valley_is_found_whatever_the_units(scale):
+    product = product_of(valley(scale=scale, **OPEN), "device.stribeck")
+    assert product.names == (
+        "device.stribeck.extra_static_level",
+        "device.stribeck.stribeck_velocity",
+    )
+    assert product.powers == pytest.approx((1.0, 0.5), rel=0.02)
+    assert product.errors == pytest.approx((1.2, 2.4))
+    assert product.known < 0.1
+    assert str(product) == "extra_static_level * stribeck_velocity^0.5"
+
+
+def test_parameters_at_a_bound_zero_unknown_or_angles_have_no_part_in_a_product():
+    def of(**changed):
+        return product_of(valley(**{**OPEN, **changed}), "device.stribeck")
+
+    assert of() is not None
+    assert of(extra_static_level=(0.0, 0.6)) is None
+    assert of(stribeck_velocity=(0.1, float("nan"))) is None
+    fit = valley(**OPEN)
+    fit.at_bound = ("device.stribeck.stribeck_velocity",)
+    assert product_of(fit, "device.stribeck") is None
+    assert product_of(valley(**OPEN), "device.coulomb") is None
+    angles = fitted(model("coulomb", "cogging"), "cogging")
+    assert "phase" not in str(product_of(angles, "device.cogging"))
+
+
+def test_a_parameter_that_hardly_counts_is_no_part_of_a_product():
+    """Of two that are known as well each alone there is no product that is known better."""
+    fit = fitted(model("coulomb", "stribeck", extra_static_level=(0.5, 1e-4)), "stribeck")
+    assert product_of(fit, "device.stribeck") is None
+
+
+def test_what_other_parameters_make_up_for_tells_no_product():
+    """Where coulomb's level does what both do, the speed alone is told by what is left."""
+    assert product_of(valley(little=0.3, **OPEN), "device.stribeck") is not None
+    assert product_of(valley(little=0.3, also=1e6, **OPEN), "device.stribeck") is None

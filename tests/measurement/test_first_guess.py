@@ -1,0 +1,112 @@
+"""First values, turned signs and balances of forces that were made so."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.measurement.first_guess import (
+    balance_factor,
+    explain_force,
+    explain_forces,
+    is_turned,
+    motion_columns,
+)
+
+H = 0.005
+T = H * np.arange(4000)
+SWING = np.sin(2 * np.pi * 0.6 * T) + 0.4 * np.sin(2 * np.pi * 1.7 * T + 1.0)
+
+
+def rate_of(x, order=1):
+    return np.gradient(x, H) if order == 1 else rate_of(np.gradient(x, H))
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(
+    ("inertia", "level", "damping"),
+    [(0.2, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.8), (0.2, 1.0, 0.5), (0.01, 1.0, 0.0)],
+)
+def test_a_force_that_would_drive_by_friction_or_inertia_is_turned(turned, inertia, level, damping):
+    v = rate_of(SWING)
+    force = inertia * rate_of(SWING, 2) + level * np.sign(v) + damping * v + 0.7
+    assert is_turned(-force if turned else force, SWING, H) == turned
+    assert is_turned(force, -SWING if turned else SWING, H) == turned
+
+
+def test_what_makes_more_of_the_force_decides():
+    """A little inertia of the wrong sign is what is late in slow motion; much of it is no such."""
+    v, a = rate_of(SWING), rate_of(SWING, 2)
+    assert not is_turned(1.0 * np.sign(v) - 0.002 * a, SWING, H)
+    assert is_turned(0.1 * np.sign(v) - 0.2 * a, SWING, H)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 1e3])
+def test_units_of_the_position_change_no_direction(size):
+    """Micrometres a second, or revolutions: what is slow is so beside the fastest."""
+    v, _, direction = motion_columns(size * SWING, H)
+    one, _, same = motion_columns(SWING, H)
+    assert v == pytest.approx(size * one) and direction == pytest.approx(same)
+    x = size * SWING
+    guess = explain_force(0.1 * rate_of(x, 2) / size + 0.5 * np.sign(rate_of(x)), x, H)
+    assert guess.level == pytest.approx(0.5, abs=0.03)
+    assert guess.inertia == pytest.approx(0.1 / size, rel=0.05)
+
+
+def test_numbers_beyond_all_measure_are_not_turned():
+    assert not is_turned(-1e200 * rate_of(SWING, 2), SWING, H)
+
+
+def test_of_noise_rest_and_short_records_nothing_is_turned():
+    noise = np.random.default_rng(0).standard_normal(len(T))
+    assert not is_turned(noise, SWING, H) and not is_turned(-noise, SWING, H)
+    assert not is_turned(noise, np.zeros(len(T)), H)
+    assert not is_turned(-rate_of(SWING)[:150], SWING[:150], H)
+
+
+def test_a_motion_in_one_direction_tells_a_constant_force_from_no_friction():
+    """Only its inertia is told, and only if that is surely of one sign."""
+    x = 10.0 * T + 0.2 * SWING
+    a = rate_of(x, 2)
+    assert not is_turned(0.1 * a - 3.0, x, H)
+    assert is_turned(-0.1 * a + 3.0, x, H)
+
+
+@pytest.mark.parametrize("factor", [0.3, 1.0, -2.0])
+def test_the_force_that_balances_is_found_whatever_the_body_is(factor):
+    rng = np.random.default_rng(4)
+    hand = np.convolve(rng.standard_normal(len(T)), np.hanning(80), "same")
+    v, a = rate_of(SWING), rate_of(SWING, 2)
+    force = 0.1 * a + 0.5 * np.sign(v) + 0.2 * v + 0.3 - factor * hand
+    found, error = balance_factor(force, hand, SWING, H)
+    assert found == pytest.approx(factor, abs=0.03) and 0 < error < 0.05
+    assert balance_factor(force[:150], hand[:150], SWING[:150], H) == (0.0, np.inf)
+    # while the body rests friction takes any force: these rows do not count
+    still = np.where(T < 10.0, SWING, SWING[2000])
+    held = np.where(T < 10.0, force, 5.0 * rng.standard_normal(len(T)))
+    assert balance_factor(held, hand, still, H)[0] == pytest.approx(factor, abs=0.1)
+
+
+def test_the_explained_part_is_that_of_the_squares_about_the_mean():
+    v, a = rate_of(SWING), rate_of(SWING, 2)
+    made = 0.1 * a + 0.5 * v
+    apart = np.cos(2 * np.pi * 1.13 * T)
+    apart *= np.std(made) / np.std(apart)
+    guess = explain_force(made + apart + 100.0, SWING, H)
+    assert guess.explained == pytest.approx(0.5, abs=0.03)
+    assert guess.left == pytest.approx(np.std(apart), rel=0.05)
+    assert explain_force(np.full(len(T), 3.0), SWING, H).explained == pytest.approx(0.0, abs=1e-6)
+    nothing = explain_forces([], H)
+    assert nothing.explained == 0.0 and np.isinf(nothing.errors).all()
+
+
+def test_errors_of_first_values_count_each_second_as_one_reading():
+    """Over draws of noise of a second's correlation the values scatter by them."""
+    rng, off = np.random.default_rng(1), []
+    v, a = rate_of(SWING), rate_of(SWING, 2)
+    made = 0.1 * a + 0.5 * np.sign(v) + 0.2 * v
+    for _ in range(12):
+        noise = np.repeat(rng.standard_normal(20), 200)
+        guess = explain_force(made + noise, SWING, H)
+        wrong = np.array([guess.inertia - 0.1, guess.level - 0.5, guess.damping - 0.2])
+        off.append(wrong / np.array(guess.errors))
+    spread = np.sqrt(np.mean(np.square(off), axis=0))
+    assert np.all((0.1 < spread) & (spread < 3.0))

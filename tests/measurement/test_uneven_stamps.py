@@ -1,0 +1,117 @@
+"""Rows that are lost, twice or out of order, pauses and clocks set anew, by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.measurement.record_clock import segments_of
+from teleopdesign.measurement.uneven_stamps import rows_in_order, sparse_clock
+
+
+def clock_by(stamps, labels=None, same=None):
+    segments = segments_of(labels, len(stamps))
+    same = np.zeros(len(stamps), dtype=bool) if same is None else same
+    parts, *changes = rows_in_order(stamps, segments, same)
+    return sparse_clock(stamps, parts, tuple(changes), "log"), parts, changes
+
+
+@given(seed=st.integers(0, 10_000), jitter=st.floats(0.0, 0.1))
+def test_rows_that_are_missing_leave_their_places(seed, jitter):
+    rng = np.random.default_rng(seed)
+    places = np.flatnonzero(rng.random(600) > 0.05)
+    if np.diff(places).max() > 6:
+        return
+    h = 0.004
+    stamps = 30.0 + h * (places + jitter * rng.uniform(-1, 1, len(places)))
+    clock, parts, changes = clock_by(stamps)
+    assert changes == [0, 0, 0] and len(parts) == 1
+    assert np.array_equal(clock.places, places - places[0])
+    assert len(clock.time) == places[-1] - places[0] + 1
+    assert clock.lost == len(clock.time) - len(places)
+    assert clock.sample_time == pytest.approx(h, rel=1e-3)
+    assert clock.time[0] == pytest.approx(30.0 + h * places[0], abs=0.2 * h)
+    assert clock.jitter <= jitter * h + 1e-12 and clock.gaps == 0 and not clock.exact
+
+
+@pytest.mark.parametrize(("lost", "pauses"), [((5, 5), 0), ((6, 5), 1), ((6, 40), 2)])
+def test_a_pause_parts_the_rows_and_the_longest_is_said(lost, pauses):
+    h, places = 0.01, np.arange(900)
+    for at, n in zip((200, 500), lost, strict=True):
+        places[at:] += n
+    clock, *_ = clock_by(h * places)
+    assert clock.gaps == pauses and len(clock.segments) == pauses + 1
+    expected = h * (max(lost) + 1) if pauses else 0.0
+    assert clock.longest_gap == pytest.approx(expected)
+    # the even time of each stretch is that of its stamps
+    assert clock.time[clock.places] == pytest.approx(h * places)
+    assert [s.stop - s.start for s in clock.of_rows] == (
+        [900] if not pauses else [200, 700] if pauses == 1 else [200, 300, 400]
+    )
+
+
+def test_rows_twice_are_dropped_and_rows_out_of_order_moved():
+    h = 0.01
+    order = np.arange(500)
+    order[[100, 101]] = [101, 100]
+    order[[200, 201, 202]] = [202, 200, 201]
+    order = np.insert(order, 300, 299)
+    stamps = h * order
+    clock, (part,), changes = clock_by(stamps)
+    assert changes == [1, 5, 0] and np.all(np.diff(stamps[part]) > 0) and len(part) == 500
+    assert (clock.dropped, clock.sorted, clock.restarts) == (1, 5, 0)
+    # a row that says the same again less than a quarter of a step later is a repeat as well
+    for early, same, dropped in [(0.24, True, 1), (0.26, True, 0), (0.24, False, 0)]:
+        stamps = np.insert(h * np.arange(500), 300, h * (299 + early))
+        says = np.zeros(501, dtype=bool)
+        says[300] = same
+        parts, *changes = rows_in_order(stamps, (slice(0, 501),), says)
+        assert changes[0] == dropped and len(parts[0]) == 501 - dropped
+
+
+def test_a_clock_that_was_set_anew_begins_a_stretch_and_time_goes_on():
+    h = 0.01
+    for rows, begins in [(5, 0), (6, 1)]:  # back by so many of them and the step itself
+        stamps = 5.0 + h * np.arange(400)
+        stamps[200:] -= h * (rows + 0.9)
+        _, *changes = rows_in_order(stamps, (slice(0, 400),), np.zeros(400, dtype=bool))
+        assert changes[2] == begins
+    stamps = np.r_[90.0 + h * np.arange(300), 20.0 + h * np.arange(300)]
+    clock, parts, changes = clock_by(stamps)
+    assert changes == [0, 0, 1] and len(parts) == 2 and clock.gaps == 0
+    assert clock.time == pytest.approx(90.0 + h * np.arange(600))
+    # segments of a user may begin anew: each has its time
+    clock, *_ = clock_by(stamps, labels=np.repeat([0, 1], 300))
+    assert clock.time == pytest.approx(stamps)
+
+
+@pytest.mark.parametrize(("share", "counted"), [(0.019, False), (0.021, True)])
+def test_stamps_that_many_rows_share_are_counted(share, counted):
+    h, n = 0.01, 1000
+    twice = round(share * n)
+    stamps = np.sort(np.r_[h * np.arange(n - twice), h * np.arange(10, 10 + twice)])
+    clock, *_ = clock_by(stamps)
+    assert clock.counted == counted
+    if counted:
+        assert clock.sample_time == pytest.approx(h * (n - twice - 1) / (n - 1))
+        assert clock.time == pytest.approx(np.linspace(stamps[0], stamps[-1], n))
+
+
+def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
+    rng = np.random.default_rng(0)
+    stamps = np.sort(rng.uniform(0.0, 8.0, 800))
+    clock, *_ = clock_by(stamps)
+    assert clock.jitter == math.inf and clock.lost == 0
+    assert clock.sample_time == pytest.approx(np.ptp(stamps) / 799, rel=0.1)
+    near = np.abs(clock.time[clock.places] - stamps)
+    assert near.max() <= 0.5 * clock.sample_time + 1e-9
+
+
+def test_a_row_out_of_order_among_stamps_that_rows_share_begins_no_new_clock():
+    stamps = np.repeat(0.01 * np.arange(200), 3)
+    stamps[300] -= 0.03
+    parts, dropped, _, restarts = rows_in_order(stamps, (slice(0, 600),), np.zeros(600, dtype=bool))
+    assert restarts == 0 and dropped == 400
+    assert stamps[parts[0]] == pytest.approx(0.01 * np.arange(200))
