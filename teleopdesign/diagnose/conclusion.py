@@ -49,7 +49,7 @@ def conclude(
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
     estimated = state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
-    set_aside = (*state.by_values, *state.set_aside)
+    set_aside = (*state.barred, *state.set_aside)
     moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
     if prepared is not search.whole:
         search.progress("errors on the whole records")

@@ -8,15 +8,16 @@ from dataclasses import replace
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import is_a_tone
-from .all_records import explained_by_values
 from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
 from .moves import add, remove
+from .noise_floor import noise_floor
 from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
+from .stand_in import stands_in_for_readings, stands_in_for_values
 from .straight import straighten
 from .together import add_together
 from .transmission import add_transmission
@@ -72,13 +73,13 @@ def climb(
             len(state.set_aside) <= search.plan.searched_on
             and (moved := make_next_move(search, state)) is not None
         ):
-            barred = bar_what_values_explain(search, state, moved)
+            barred = bar_what_explains_nothing(search, state, moved)
             if barred is None:
                 state = look(search, moved.rungs, moved)
-            elif len(barred.supported) < len(state.supported):
-                state = barred
-            else:  # no candidate less: the same move would come again
-                state = barred
+                continue
+            stays = len(barred.supported) == len(state.supported)
+            state = barred
+            if stays:  # no candidate less: the same move would come again
                 break
         rungs = ended(search, state)
         less = remove_doubtful_rung(search, state, rungs)
@@ -87,17 +88,22 @@ def climb(
         state = look(search, less.rungs, less)
 
 
-def bar_what_values_explain(
+def bar_what_explains_nothing(
     search: LadderSearch, state: LadderState, moved: LadderState
 ) -> LadderState | None:
-    """The state without the effects of a move that other values explain as well; None: none are."""
+    """The state without the effects of a move that explain nothing; None: they explain something.
+
+    Other values of the model do as much, or what the readings bring in is weakened and no more.
+    """
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
     if not new or moved.fit.check_error >= state.fit.check_error:
         return None
     last = replace(new[-1], fit=moved.fit)
-    barred = explained_by_values(
-        state.fit, last, search.prepared, state.floor, criteria=search.criteria
-    )
+    prepared, criteria = search.prepared, search.criteria
+    drawn = noise_floor(moved.fit.model, prepared, search.generator())
+    barred = stands_in_for_readings(state.fit, state.floors.drawn, last, drawn, criteria=criteria)
+    if barred is None:
+        barred = stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
     if barred is None:
         return None
     gone = {r.added.key for r in new if r.added is not None}
@@ -105,7 +111,7 @@ def bar_what_values_explain(
     return replace(
         state,
         supported=tuple(r for r in state.supported if r.candidate.key not in gone),
-        by_values=(*state.by_values, barred),
+        barred=(*state.barred, barred),
     )
 
 

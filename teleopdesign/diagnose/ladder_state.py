@@ -87,8 +87,8 @@ class LadderState:
         none of them is replaced again, so that two effects cannot take turns
     set_aside: effects that were accepted and are not there by the errors that the answer would
         state: none of them is added again
-    by_values: effects that were supported, and that other values of the model explain as well
-        where all records tell them: none of them is added again
+    barred: effects that were supported and explain nothing: other values do as much where all
+        records tell them, or readings are weakened and no more. None of them is added again
     visited: sets of effects that the models of earlier states had: a ladder that came back to one
         would go round for ever
     """
@@ -105,7 +105,7 @@ class LadderState:
     together: bool = False
     came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
-    by_values: tuple[SetAside, ...] = ()
+    barred: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
 
     @property
@@ -116,7 +116,7 @@ class LadderState:
     @property
     def gone(self) -> frozenset[tuple[str, str]]:
         """Effects, with their places, that are not added again."""
-        return frozenset(one.candidate.key for one in (*self.set_aside, *self.by_values))
+        return frozenset(one.candidate.key for one in (*self.set_aside, *self.barred))
 
     @property
     def fit(self) -> Fit:

@@ -1,17 +1,24 @@
 """Values that the fit records leave open are no missing effect, whatever a check record shows."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
 
 import teleopdesign as td
-from teleopdesign.diagnose.all_records import estimable_on_all, explained_by_values
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rung import Rung
+from teleopdesign.diagnose.stand_in import (
+    estimable_on_all,
+    stands_in_for_readings,
+    stands_in_for_values,
+)
 from teleopdesign.diagnose.stated_fit import estimate_stated
+from teleopdesign.effects import EFFECTS
 from teleopdesign.model import Model
 
 FRICTION = 'coulomb = { level = { value = 0.5, unit = "N*m" } }\n'
@@ -53,7 +60,7 @@ def judge_drag(recorded):
     floor = noise_floor(base.model, prepared, np.random.default_rng(0))
     fit = estimate(base.model.with_effect("quadratic_drag", values={"drag": 0.05}), prepared)
     added = Candidate(fit.model.body("device").effect("quadratic_drag"), "device")
-    none = explained_by_values(base, Rung(added, fit), prepared, floor)
+    none = stands_in_for_values(base, Rung(added, fit), prepared, floor)
     return base.check_error, fit.check_error, none
 
 
@@ -86,3 +93,20 @@ def test_all_records_are_estimated_on_and_the_check_records_compared_on(tmp_path
     files = [s.motion.file for s in together.of("fit")]
     assert files == [s.motion.file for s in prepared.stretches]
     assert together.of("check") == prepared.of("check")
+
+
+def said_of_readings(left, leaves, before=0.1, after=0.01):
+    base, fit = (SimpleNamespace(check_error=x) for x in (left * before, leaves * after))
+    rung = SimpleNamespace(added=Candidate(EFFECTS["viscous"], "device"), fit=fit)
+    floors = [NoiseFloor(x, "made", x) for x in (before, after)]
+    return stands_in_for_readings(base, floors[0], rung, floors[1])
+
+
+def test_an_effect_that_weakens_readings_more_than_what_is_left_is_none():
+    """A tip behind a spring passes on a tenth of the noise, and a fifth of what was left."""
+    said = said_of_readings(3.0, 6.0)
+    assert "6 noise floors, 3 without it" in said.reason
+    assert said_of_readings(3.0, 2.9) is None, "less in noise floors, too"
+    assert said_of_readings(0.8, 1.5) is None, "noise only"
+    assert said_of_readings(6.0, 6.0, after=0.1) is None
+    assert said_of_readings(2.0, 3.0, before=0.0) is None, "no noise is stated"

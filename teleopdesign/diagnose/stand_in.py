@@ -1,10 +1,13 @@
-"""Whether an effect explains more than values that the fit records leave open.
+"""Effects that lower the error and explain nothing: they stand in for something else.
 
-A check record that moves as no fit record does is missed by a complete model too, where the fit
-records do not tell its parameters: friction and damping at one speed, say. An effect that moves
-these values may seem to explain it. So the model with the effect, and without it, is estimated on
-all records together: there no value is open that any record tells, and the effect must still leave
-surely less of the check records.
+For values that the fit records leave open: a check record that moves as no fit record does is
+missed by a complete model too, where the fit records do not tell its parameters, friction and
+damping at one speed, say. An effect that moves these values may seem to explain it. So the model
+with the effect, and without it, is estimated on all records together: there no value is open that
+any record tells, and the effect must still leave surely less of the check records.
+
+For what readings bring in: a structure passes on less of the noise in an acceleration. What then is
+left may be less, and yet more than before beside what the sensors make of the model.
 """
 
 from __future__ import annotations
@@ -32,7 +35,7 @@ def estimable_on_all(prepared: Prepared) -> Prepared | None:
     return Prepared(prepared.experiment, prepared.bandwidth, (*both, *check))
 
 
-def explained_by_values(
+def stands_in_for_values(
     base: Fit,
     rung: Rung,
     prepared: Prepared,
@@ -54,5 +57,31 @@ def explained_by_values(
         "estimated on all records the model leaves "
         f"{100 * without.check_error:.3g} % of the check records without it, "
         f"{100 * with_it.check_error:.3g} % with it: the fit records leave its values open"
+    )
+    return SetAside(rung.added, rung.fit.check_error, reason)
+
+
+def stands_in_for_readings(
+    base: Fit,
+    before: NoiseFloor,
+    rung: Rung,
+    after: NoiseFloor,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> SetAside | None:
+    """The effect of a rung, and why it is none: beside what readings bring in it leaves no less.
+
+    before, after: the noise floors of the two models, as drawn;  returns: None where it leaves less
+        in noise floors too, or noise only
+    """
+    if rung.added is None or not (before.drawn and after.drawn):
+        return None
+    left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
+    if leaves <= max(left, criteria.adequate):
+        return None
+    reason = (
+        f"weakens what readings bring in, from {100 * before.drawn:.2g} to "
+        f"{100 * after.drawn:.2g} % of the force, and leaves more beside it: {leaves:.2g} noise "
+        f"floors, {left:.2g} without it"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
