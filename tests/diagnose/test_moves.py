@@ -178,13 +178,22 @@ def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leav
     assert replace_by_pair(never_most, stand_in) is None
 
 
+def with_open_bias(rungs):
+    """Rungs whose last, a bias, explains a little, and is known to twice its size."""
+    *before, previous, last = rungs
+    value = last.fit.model.parameters["device.bias.force"]
+    wide = last.fit.model.with_values(
+        {"device.bias.force": replace(value, stderr=2.0 * abs(value.value))}
+    )
+    more = {n: 1.2 * getattr(last.fit, n) for n in ("fit_residual", "check_residual")}
+    little = replace(previous, fit=replace(previous.fit, **more))
+    return (*before, little, replace(last, fit=replace(last.fit, model=wide)))
+
+
 def test_what_the_stated_errors_do_not_tell_from_absence_is_set_aside_once(ladder):
     search, state = ladder
     full = with_effects(search, state, "spring", "bias")
-    last, name = full.rungs[-1], "device.bias.force"
-    value = last.fit.model.parameters[name]
-    wide = last.fit.model.with_values({name: replace(value, stderr=2.0 * abs(value.value))})
-    stated = (*full.rungs[:-1], replace(last, fit=replace(last.fit, model=wide)))
+    stated = with_open_bias(full.rungs)
     moved = remove_doubtful_rung(search, full, stated)
     assert added(moved) == ["spring"]
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
@@ -198,10 +207,7 @@ def test_what_the_stated_errors_do_not_tell_from_absence_is_set_aside_once(ladde
 def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
     search, state = ladder
     full = with_effects(search, state, "bias")
-    last, name = full.rungs[-1], "device.bias.force"
-    value = last.fit.model.parameters[name]
-    wide = last.fit.model.with_values({name: replace(value, stderr=2.0 * abs(value.value))})
-    stated = (*full.rungs[:-1], replace(last, fit=replace(last.fit, model=wide)))
+    stated = with_open_bias(full.rungs)
     moved = remove_doubtful_rung(search, full, stated)
     assert moved.rungs == (state.rungs[0],)
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
