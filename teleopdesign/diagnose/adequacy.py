@@ -89,6 +89,11 @@ def floors_left(fit: Fit, floor: NoiseFloor) -> float:
     return max(fit.check_error / floor.value, fit.at_command.error / floor.value_at_command)
 
 
+def records_differ(fit: Fit, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether a model leaves much more of the check records than of the fit records."""
+    return fit.check_error >= criteria.differ * fit.fit_error > 0.0
+
+
 def moment_above_noise(
     fit: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> Moment | None:

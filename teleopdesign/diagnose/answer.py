@@ -66,6 +66,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "left_over_noise_floors": make_plain(diagnosis.left),
         **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
         "one_moment": _moment(diagnosis.moment),
+        "on_all_records": make_plain(diagnosis.on_all_records),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": (
             [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0]

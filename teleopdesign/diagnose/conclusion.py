@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from ..measurement.motion import Motion
-from .adequacy import moment_above_noise
+from .adequacy import moment_above_noise, records_differ
 from .between_rows import floor_between_rows
 from .candidates import Candidate
 from .corrected_fit import correct_fit
@@ -31,6 +31,7 @@ from .probability import probable
 from .ranking import REFUSALS
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
+from .stand_in import check_error_on_all
 from .untold import untold
 
 
@@ -85,6 +86,7 @@ def conclude(
         left_out=search.plan.omissions(),
         untold=untold(rungs, search.whole),
         set_aside=set_aside,
+        on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
     )
     named = probable(diagnosis, criteria=criteria)
     diagnosis = replace(diagnosis, rungs=tuple(_leave_unnamed(r, named) for r in rungs))

@@ -80,6 +80,8 @@ class Diagnosis(ByValue):
     untold: what the records cannot tell of the accepted effects
     set_aside: effects that were accepted first and removed again: with the errors that the answer
         states, they are not there
+    on_all_records: check error of the final model estimated on all records; None: it was not
+        asked, for the check records leave no more than the fit records do
     sensor_floor: what the sensors alone leave, by which effects are believed; None: the floor.
         Where a command's scatter is noise too (`between_rows`), effects may stand in for it
     recorded: the answer file that the diagnosis was read from, with its candidates; else None
@@ -100,6 +102,7 @@ class Diagnosis(ByValue):
     left_out: tuple[str, ...] = ()
     untold: tuple[Untold, ...] = ()
     set_aside: tuple[SetAside, ...] = ()
+    on_all_records: float | None = None
     sensor_floor: NoiseFloor | None = None
     recorded: Mapping[str, Any] | None = None
 

@@ -10,6 +10,7 @@ from ..blocks import Value
 from ..notebook import html_table
 from ..quantity import unit_after_number, unit_of
 from ..standard_error import with_standard_error
+from .adequacy import records_differ
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
@@ -164,16 +165,27 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += refused_lines(diagnosis)
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]
-    after = diagnosis.after
-    if after.check_error >= CRITERIA.differ * after.fit_error > 0.0:
-        lines.append(
-            f"records: the check records leave {after.check_error / after.fit_error:.2g} times "
-            "what the fit records do: the machine was not the same in both (friction, temperature, "
-            "load), or moved differently"
-        )
+    if records_differ(diagnosis.after):
+        lines.append(_records_line(diagnosis))
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
+
+
+def _records_line(diagnosis: Diagnosis) -> str:
+    """That the check records leave more than the fit records, and what that may come from."""
+    after, on_all = diagnosis.after, diagnosis.on_all_records
+    ratio = after.check_error / after.fit_error
+    line = f"records: the check records leave {ratio:.2g} times what the fit records do"
+    if on_all is not None and on_all < 0.5 * after.check_error:
+        return (
+            f"{line}. Estimated on all records the model leaves {100 * on_all:.3g} % of them: the "
+            "fit records do not tell its values. Fit a record that moves like them, too"
+        )
+    return (
+        f"{line}: the machine was not the same in both (friction, temperature, load), or moved "
+        "differently"
+    )
 
 
 def sentence(diagnosis: Diagnosis) -> str:

@@ -35,6 +35,12 @@ def estimable_on_all(prepared: Prepared) -> Prepared | None:
     return Prepared(prepared.experiment, prepared.bandwidth, (*both, *check))
 
 
+def check_error_on_all(fit: Fit, prepared: Prepared) -> float | None:
+    """Check error of a model estimated on all records; None: there are no two uses."""
+    together = estimable_on_all(prepared)
+    return None if together is None else estimate(fit.model, together).check_error
+
+
 def stands_in_for_values(
     base: Fit,
     rung: Rung,

@@ -31,6 +31,7 @@ def fit(error, *, blind=0.0, weak=False, at_command=None, residual=None, known=(
         sighted=np.ones(400, dtype=bool),
     )
     return SimpleNamespace(
+        fit_error=error,
         check_error=error,
         check_residual=left,
         check_blocks=BLOCKS,

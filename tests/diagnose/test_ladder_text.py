@@ -74,3 +74,15 @@ def test_what_sensors_may_have_left_is_not_said_to_miss_more(diagnosis, floors, 
     for text in (sentence(there), verdict(there)):
         assert ("do not tell whether more is missing" in text) is is_open
         assert ("more is missing" in text.replace("whether more is missing", "")) is not is_open
+
+
+@pytest.mark.parametrize(("part", "by_values"), [(0.49, True), (0.51, False), (None, False)])
+def test_values_that_the_fit_records_do_not_tell_are_said_to_be_why(diagnosis, part, by_values):
+    """Estimated on all records the model leaves less than half of what it leaves otherwise."""
+    last = diagnosis.rungs[-1]
+    error = 2.0 * CRITERIA.differ * last.fit.fit_error
+    rungs = (*diagnosis.rungs[:-1], replace(last, fit=replace(last.fit, check_error=error)))
+    on_all = None if part is None else part * error
+    text = ladder_text(replace(diagnosis, rungs=rungs, on_all_records=on_all))
+    assert ("the fit records do not tell its values" in text) is by_values
+    assert ("the machine was not the same in both" in text) is not by_values

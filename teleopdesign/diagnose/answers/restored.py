@@ -88,6 +88,7 @@ def restore_diagnosis(
         estimated=evaluate_fit(steps.estimated, prepared),
         floor=_floor(content),
         moment=_moment(content.get("one_moment")),
+        on_all_records=content.get("on_all_records"),
         learnable=learnable_from(content),
         near_reversals=read_near_reversals(content),
         named=tuple(c for c in steps.added if c is not None and c.key in _named_effects(content)),

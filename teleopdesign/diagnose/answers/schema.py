@@ -218,6 +218,7 @@ _LATER: dict[str, Check] = {
             }
         )
     ),
+    "on_all_records": _ERROR,
     "learnable": _ERROR,
     "black_box": _or_null(_table({"left": _SIZE, "alone": _SIZE, "where": _text})),
     "near_reversals": _or_null(_table({"check_error": _SIZE, "share": _SIZE})),
