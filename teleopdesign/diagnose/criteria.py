@@ -29,8 +29,9 @@ class Criteria:
     #: are missed
     of_floor: float = 0.5
     #: part of the noise floor of a clock that jitters below which an effect leaves too little to be
-    #: one: it weakens what the jitter makes. The jitter is known to a fifth. Higher: true effects
-    #: are refused; lower: a tip that moves less at high frequencies is named
+    #: one: it weakens what the jitter makes. The jitter is known to a fifth, and so are two floors
+    #: beside each other: by more, what is left in floors must not rise. Higher: true effects are
+    #: refused; lower: a tip that moves less at high frequencies is named
     weakened: float = 0.8
     #: part of the squares before from which a gain counts: less is no answer to where a model fails
     relevant: float = 0.03

@@ -83,7 +83,8 @@ def stands_in_for_readings(
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    if leaves <= max(left, criteria.adequate):
+    # a floor is known to a fifth
+    if leaves <= criteria.adequate or criteria.weakened * leaves <= left:
         return None
     reason = (
         f"weakens what readings bring in, from {100 * before.drawn:.2g} to "

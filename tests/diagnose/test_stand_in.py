@@ -107,6 +107,8 @@ def test_an_effect_that_weakens_readings_more_than_what_is_left_is_none():
     said = said_of_readings(3.0, 6.0)
     assert "6 noise floors, 3 without it" in said.reason
     assert said_of_readings(3.0, 2.9) is None, "less in noise floors, too"
+    assert said_of_readings(3.0, 3.7) is None, "floors are known to a fifth"
+    assert said_of_readings(3.0, 3.8) is not None
     assert said_of_readings(0.8, 1.5) is None, "noise only"
     assert said_of_readings(6.0, 6.0, after=0.1) is None
     assert said_of_readings(2.0, 3.0, before=0.0) is None, "no noise is stated"
