@@ -37,6 +37,8 @@ from .force_timing import (
 
 #: rows below which nothing is said; part of the other force from which a force is there at all
 FEWEST, LEAST = 50, 1e-5
+#: forces of the place by axis, and the part of the squares that they must leave to be there
+PLACE, MOSTLY = {"prismatic": ("spring",), "revolute": ("spring", "gravity")}, 0.5
 
 
 @dataclass(frozen=True)
@@ -92,11 +94,31 @@ def force_balance(
 ) -> ForceBalance | None:
     """The balance of one body; None where it hardly moves or no force is measured.
 
+    A weight or a pressure of many times the friction would have it drive, where a model lacks it.
+    So would the gravity of a pendulum have its inertia: where a force of the place takes away most
+    of what is left, it belongs to the balance.
     stretches: those of this body;  timed: look for shifts
     """
     stated = strengths_of(body)
-    # a weight or a pressure of many times the friction would have it drive, where a model lacks it
-    body = body if body.has("bias") else body.with_effect(EFFECTS["bias"])
+    body = _with_lacking(body, ["bias"])
+    plain = _balance_of(body, stated, stretches, timed=timed)
+    if plain is None or any(body.has(n) for n in PLACE["revolute"]):
+        return plain
+    there = _balance_of(_with_lacking(body, PLACE[body.axis]), stated, stretches, timed=timed)
+    return there if there is not None and there.left**2 < MOSTLY * plain.left**2 else plain
+
+
+def _with_lacking(body: Body, names: Sequence[str]) -> Body:
+    """The body with those of these effects that it lacks."""
+    for name in names:
+        body = body if body.has(name) else body.with_effect(EFFECTS[name])
+    return body
+
+
+def _balance_of(
+    body: Body, stated: Sequence[str], stretches: Sequence[Stretch], *, timed: bool
+) -> ForceBalance | None:
+    """The balance of a body;  stated: of its strengths, those that the user's model has."""
     names = [*stated, *(n for n in strengths_of(body) if n not in stated)]
     bands = {
         b: [transform_in_band(body, s, names, b) for s in stretches]

@@ -2,7 +2,8 @@
 
     actuator force + interaction force = m a + c sgn(v) + b v + k
 
-A start for a diagnosis, which estimates again with all that this leaves out.
+and a force that grows with the place, as of a spring or a pendulum, where that explains most of
+what this leaves. A start for a diagnosis, which estimates again with all that this leaves out.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ _SURELY = 3.0
 #: part of its rms by which a direction or speed must vary, or the motion goes one way: a twentieth,
 #: as noise and the low-pass at the ends bring
 _ONE_WAY = 0.05
+#: part of the squares that a force of the place must leave to be there
+_MOSTLY = 0.5
 
 
 @dataclass(frozen=True)
@@ -71,13 +74,13 @@ def explain_force(force: Array, position: Array, sample_time: float) -> FirstGue
 
 def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> FirstGuess:
     """As `explain_force`, over several stretches (force, position)."""
-    all_of_them = [_stretch((force,), position, sample_time) for force, position in pairs]
+    all_of_them = [_stretch((force, place), place, sample_time) for force, place in pairs]
     stretches = [s for s in all_of_them if s is not None]
     if not stretches:
         return _NOTHING
     columns = np.concatenate([s[0] for s in stretches], axis=1)
-    (target,) = np.concatenate([s[1] for s in stretches], axis=1)
-    fit = _least_squares(columns, target, sample_time)
+    target, place = np.concatenate([s[1] for s in stretches], axis=1)
+    fit = _fit_with_place(columns, place, target, sample_time)
     if fit is None:
         return _NOTHING
     solution, errors, left = fit
@@ -94,11 +97,15 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     Friction and damping take energy out, and inertia is positive. Of these two, what makes more of
     the force decides, where the motion tells it surely. In slow motions inertia is lost among all
     that is late; a motion in one direction does not distinguish friction from a constant force.
+    Below the rate at which a pendulum swings by itself, its force goes with the motion as that of a
+    negative inertia does: a force of the place is held beside the two where it takes away most of
+    what they leave.
     """
-    stretch = _stretch((force,), position, sample_time)
+    stretch = _stretch((force, position), position, sample_time)
     if stretch is None:
         return False
-    (acceleration, direction, velocity, _), (target,) = stretch
+    (acceleration, direction, velocity, _), (target, place) = stretch
+    place = place - place.mean()
     force = target - target.mean()
     parts: list[tuple[float, float, float]] = []  # size of its force, value, what is left
     inertia: list[tuple[float, float]] = []
@@ -107,7 +114,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
         if np.std(braked) <= _ONE_WAY * np.sqrt(np.mean(braked**2)):
             continue
         columns = np.stack([acceleration - acceleration.mean(), apart])
-        fit = _least_squares(columns, force, sample_time)
+        fit = _fit_with_place(columns, place, force, sample_time)
         if fit is None:
             return False
         solution, errors, left = fit
@@ -160,6 +167,17 @@ def _stretch(
     inner = slice(trim, -trim)
     columns = np.stack([a, direction, v, np.ones(len(v))])[:, inner]
     return columns, np.stack([s.multiply(force, low)[inner] for force in forces])
+
+
+def _fit_with_place(
+    columns: Array, place: Array, target: Array, sample_time: float
+) -> tuple[Array, Array, float] | None:
+    """`_least_squares`, with a force of the place where that takes away most of what is left."""
+    fit = _least_squares(columns, target, sample_time)
+    held = _least_squares(np.vstack([columns, place]), target, sample_time)
+    if fit is None or held is None or not held[2] ** 2 < _MOSTLY * fit[2] ** 2:
+        return fit
+    return held
 
 
 def _least_squares(

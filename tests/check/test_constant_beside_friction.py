@@ -46,3 +46,33 @@ def test_friction_beside_a_pressure_tells_the_sign(side, pressure, is_said, tmp_
     findings = check_experiment(write_strokes(tmp_path / "strokes", side, pressure))
     said = [f for f in findings if "opposite sign" in f.sentence]
     assert bool(said) == is_said, [f.sentence for f in findings]
+
+
+PENDULUM = EXPERIMENT.replace("prismatic", "revolute").replace("kg", "kg*m^2")
+PENDULUM = PENDULUM.replace("0.5, unit", "0.05, unit").replace('"m"', '"rad"')
+PENDULUM = PENDULUM.replace("7.0", "0.1").replace("100.0", "0.01")
+PENDULUM = PENDULUM.replace('"N*s/m"', '"N*m*s/rad"').replace('"N"', '"N*m"')
+
+
+def write_swings(folder, side, stiffness):
+    """A chirp far below the rate at which the pendulum swings by itself, 7.7 rad/s."""
+    folder.mkdir()
+    t = 0.01 * np.arange(1500)
+    x = 0.8 * np.sin(0.18 * t**2)
+    v = np.gradient(x, t)
+    force = 0.05 * np.gradient(v, t) + stiffness * np.sin(x) + 0.1 * np.tanh(v / 1e-2) + 0.01 * v
+    force += 0.01 * np.random.default_rng(1).standard_normal(len(t))
+    rows = np.column_stack([t, x, side * force])
+    np.savetxt(folder / "strokes.csv", rows, delimiter=",", header="t,x,f", comments="")
+    (folder / "experiment.toml").write_text(PENDULUM)
+    return td.load_experiment(folder)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("stiffness", [3.0, 0.3, 0.0])
+def test_a_pendulum_that_the_model_lacks_turns_no_inertia(side, stiffness, tmp_path):
+    """It swings in phase with its torque, as if it had a negative inertia."""
+    findings = check_experiment(write_swings(tmp_path / "swings", side, stiffness))
+    said = [f for f in findings if "opposite sign" in f.sentence]
+    assert bool(said) == (side < 0), [f.sentence for f in findings]
+    assert not [f for f in findings if "lags the motion" in f.sentence]

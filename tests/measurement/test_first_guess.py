@@ -110,3 +110,18 @@ def test_errors_of_first_values_count_each_second_as_one_reading():
         off.append(wrong / np.array(guess.errors))
     spread = np.sqrt(np.mean(np.square(off), axis=0))
     assert np.all((0.1 < spread) & (spread < 3.0))
+
+
+@pytest.mark.parametrize("rate", [0.05, 0.18, 0.5])
+@pytest.mark.parametrize("stiffness", [0.0, 0.3, 3.0, 10.0])
+def test_a_pendulum_below_its_own_rate_is_no_turned_inertia(rate, stiffness):
+    """Chirps from rest; by itself the body swings at up to 14 rad/s."""
+    t = 0.01 * np.arange(1500)
+    x = 0.8 * np.sin(rate * t**2)
+    v = np.gradient(x, t)
+    force = 0.05 * np.gradient(v, t) + stiffness * np.sin(x) + 0.1 * np.tanh(v / 0.01) + 0.01 * v
+    force += 0.01 * np.random.default_rng(1).standard_normal(len(t))
+    assert not is_turned(force, x, 0.01)
+    assert is_turned(-force, x, 0.01)
+    if rate > 0.1:  # slower, inertia is 3 % of the friction
+        assert explain_force(force, x, 0.01).inertia == pytest.approx(0.05, rel=0.3)

@@ -172,8 +172,10 @@ def test_on_real_recordings_the_sign_is_as_it_was_logged(name):
         forces = ("device.actuator_force", "device.interaction_force")
         force = sum(signals[n][rows] for n in forces if n in signals)
         assert not is_turned(force, position, record.sample_time)
+        forth = np.mean(np.diff(position) > 0)
         told = explain_force(force, position, record.sample_time).explained > DRIVES
-        assert is_turned(-force, position, record.sample_time) or not told
+        one_way = not 0.1 < forth < 0.9  # which tells no friction from the weight of a link
+        assert is_turned(-force, position, record.sample_time) or not told or one_way
 
 
 @pytest.mark.parametrize("name", ["current_A", "Torque [Nm]", "speed [rad/s]", "F (N)"])
