@@ -13,6 +13,7 @@ from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.diagnosis import SetAside
 from teleopdesign.diagnose.exchange import compare_alternatives, exchange
 from teleopdesign.diagnose.ladder_state import begin, look, search_for
 from teleopdesign.diagnose.moves import add, remove
@@ -71,6 +72,35 @@ def test_what_is_added_is_the_first_that_the_records_support(ladder):
 def test_nothing_is_added_where_nothing_is_supported(ladder):
     search, state = ladder
     assert add(search, replace(state, supported=())) is None
+
+
+def test_what_explains_nothing_is_no_candidate_any_more(ladder, monkeypatch):
+    search, state = ladder
+    moved = add(search, state)
+    assert climbing.bar_what_explains_nothing(search, state, moved) is None, "it is missing"
+    best = state.supported[0].candidate
+    aside = SetAside(best, moved.fit.check_error, "other values do as much")
+    monkeypatch.setattr(climbing, "stands_in_for_values", lambda *_, **__: aside)
+    barred = climbing.bar_what_explains_nothing(search, state, moved)
+    assert barred.barred == (aside,) and barred.rungs == state.rungs
+    left = [r.candidate for r in state.supported if r.candidate != best]
+    assert [r.candidate for r in barred.supported] == left
+    again = look(search, state.rungs, barred)
+    assert best not in {r.candidate for r in again.supported}
+    # a move that leaves no less, such as an exchange for something simpler, is not asked
+    same = moved.with_rungs((*moved.rungs[:-1], replace(moved.rungs[-1], fit=state.fit)))
+    assert climbing.bar_what_explains_nothing(search, state, same) is None
+
+
+def test_a_ladder_without_a_move_that_explains_something_ends(ladder, monkeypatch):
+    search, state = ladder
+
+    def none(base, rung, *_, **__):
+        return SetAside(rung.added, rung.fit.check_error, "other values do as much")
+
+    monkeypatch.setattr(climbing, "stands_in_for_values", none)
+    last, rungs = climbing.climb(search, state, lambda _, state: state.rungs)
+    assert rungs == state.rungs and len(last.barred) >= 1
 
 
 def test_stricter_criteria_support_nothing(ladder):
