@@ -54,7 +54,7 @@ def most_released(
         stroke = float(np.exp(logarithm))
         takes = sum(loss_per_stroke(e, stroke) for e in friction)
         if load_coefficient:
-            takes += load_coefficient * _pressed(friction[-1], stroke)
+            takes += load_coefficient * _integral_of_size(friction[-1], stroke)
         return (loss_per_stroke(compensator, stroke) - takes) / stroke
 
     forces = [e for e in (compensator, *friction) if not isinstance(e, Coulomb)]
@@ -76,7 +76,7 @@ def most_released(
     return (released if released > _ROUNDING * gives else 0.0), stroke
 
 
-def _pressed(element: Element, stroke: float) -> float:
+def _integral_of_size(element: Element, stroke: float) -> float:
     """Integral (N m) of the size of a force over one stroke of a round trip that repeats."""
     from scipy.optimize import brentq
 
