@@ -93,10 +93,12 @@ def bar_what_explains_nothing(
 ) -> LadderState | None:
     """The state without the effects of a move that explain nothing; None: they explain something.
 
-    Other values of the model do as much, or what the readings bring in is weakened and no more.
+    Other values of the model do as much, or what the readings bring in is weakened and no more. A
+    move that takes the place of rungs is not asked: it may do as much as they did, more simply.
     """
+    before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
-    if not new or moved.fit.check_error >= state.fit.check_error:
+    if not new or not before <= after or moved.fit.check_error >= state.fit.check_error:
         return None
     last = replace(new[-1], fit=moved.fit)
     prepared, criteria = search.prepared, search.criteria

@@ -87,7 +87,12 @@ def test_what_explains_nothing_is_no_candidate_any_more(ladder, monkeypatch):
     assert [r.candidate for r in barred.supported] == left
     again = look(search, state.rungs, barred)
     assert best not in {r.candidate for r in again.supported}
-    # a move that leaves no less, such as an exchange for something simpler, is not asked
+    # what takes the place of rungs may do as much as they did, more simply
+    stand_in = with_stand_in(search, state)
+    pair = with_effects(search, state, "spring", "bias")
+    assert pair.fit.check_error < stand_in.fit.check_error
+    assert climbing.bar_what_explains_nothing(search, stand_in, pair) is None
+    # a move that leaves no less is not asked
     same = moved.with_rungs((*moved.rungs[:-1], replace(moved.rungs[-1], fit=state.fit)))
     assert climbing.bar_what_explains_nothing(search, state, same) is None
 
