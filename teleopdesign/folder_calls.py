@@ -7,6 +7,7 @@ function that a user expects under a verb runs instead; a noun says which functi
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -33,7 +34,14 @@ INSTEAD = {
 }
 
 
-class _Folder(ModuleType):
+class _Imported(ModuleType):
+    """A module that pickles as its name: a function of a script that uses it can be sent."""
+
+    def __reduce__(self) -> tuple[Callable[[str], ModuleType], tuple[str]]:
+        return import_module, (self.__name__,)
+
+
+class _Folder(_Imported):
     """A folder that runs its function. `__call__` is looked up when the folder is called."""
 
     @property
@@ -46,7 +54,7 @@ class _Folder(ModuleType):
         raise TypeError(f"td.{folder} is a folder and not callable; {hint}")
 
 
-class _Package(ModuleType):
+class _Package(_Imported):
     """The package: what the import system binds to it as a folder becomes a `_Folder`."""
 
     def __setattr__(self, name: str, value: Any) -> None:

@@ -284,3 +284,16 @@ def test_every_public_class_pickles_copies_and_prints():
             text = repr(thing)
             assert len(text) < 2500 and "array(" not in text and " object at 0x" not in text
     assert {c.__name__ for c in public - classes.keys()} - DEAR == set()
+
+
+def test_a_function_of_a_script_that_names_the_package_or_a_folder_can_be_sent():
+    """As a measure of a study does, once it is run in other processes."""
+    cloudpickle = pytest.importorskip("cloudpickle")
+    from teleopdesign import passivity
+
+    for module in (td, passivity, td.simulate):
+        assert pickle.loads(pickle.dumps(module)) is module
+    place = {"td": td, "passivity": passivity}
+    exec("def measure(x):\n    return td.Value(x), passivity.Dahl(x, 1.0).level", place)
+    sent = pickle.loads(cloudpickle.dumps(place["measure"]))
+    assert sent(2.0) == (td.Value(2.0), 2.0)
