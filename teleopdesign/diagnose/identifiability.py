@@ -20,16 +20,18 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
     Each must be further from absence than its standard error (an angle within half a turn) unless
     the effect is there without it or a product of its parameters is known; a strength by more, what
     is essential to it surely so; and some must change the residual in a unique way. An effect
-    that explains most may have open parameters.
+    that explains most, and of which some product is known, may have open parameters.
     """
     most = explains_most(base, fit, criteria=criteria)
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
     effects = {fit.free[i].rpartition(".")[0] for i in new}
-    together = {n for one in effects for n in list_known_in_product(fit, one, criteria=criteria)}
+    known = {one: list_known_in_product(fit, one, criteria=criteria) for one in effects}
     for i in new:
         name = fit.free[i]
         value, declared = fit.model.parameters[name], fit.model.declared(name)
-        if declared.optional or ((most or name in together) and not declared.search.essential):
+        together = known[name.rpartition(".")[0]]
+        is_open = name in together or (most and together)
+        if declared.optional or (is_open and not declared.search.essential):
             continue
         away = np.pi if declared.quantity == "angle" else fit.model.from_absence(name)
         if not value.stderr * _errors_from_absence(fit.model, name, criteria) < away:
@@ -60,10 +62,10 @@ def _errors_from_absence(model: Model, name: str, criteria: Criteria) -> float:
 
 
 def explains_most(before: Fit, after: Fit, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether an effect takes away most squares of both uses: it is there, whatever its values.
+    """Whether an effect takes away most squares of both uses.
 
-    Of a friction that falls with speed only the end may be seen: its level and where it falls run
-    together to any size.
+    Then one product of its parameters that is known is enough. Of a friction that falls with speed
+    only the end may be seen: its level and where it falls run together to any size.
     """
     return all(
         squares(after) < (1.0 - criteria.mostly) * squares(before)
@@ -116,7 +118,7 @@ def doubt(
         if not (is_strength(fit.model, full) or declared.search.essential):
             continue
         value = fit.model.parameters[full]
-        if most and not declared.search.essential:
+        if most and together and not declared.search.essential:
             continue
         if not criteria.strong * value.stderr < fit.model.from_absence(full):
             unit = unit_after_number(fit.model.unit(full))

@@ -74,14 +74,26 @@ def test_absence_of_a_gain_is_one_and_an_angle_is_open_from_half_a_turn():
         assert identifiable("cogging", phase=(0.01, error)) == told
 
 
-@pytest.mark.parametrize("effect", ["stribeck", "cogging", "backlash"])
-@pytest.mark.parametrize(("left", "is_there"), [(0.7, True), (0.72, False)])
-def test_what_takes_away_half_of_the_squares_of_both_uses_is_there(effect, left, is_there):
-    """But for a gap: without it that effect is another one."""
+@pytest.mark.parametrize(
+    ("effect", "one"),
+    [("stribeck", "stribeck_velocity"), ("cogging", "amplitude"), ("backlash", "stiffness")],
+)
+@pytest.mark.parametrize(("left", "most"), [(0.7, True), (0.72, False)])
+@pytest.mark.parametrize("is_known", [True, False])
+def test_what_takes_away_half_of_the_squares_of_both_uses_may_be_open(
+    monkeypatch, effect, one, left, most, is_known
+):
+    """Where a product of its parameters is known; but for a gap: that effect is another without."""
+    product = Product((f"device.{effect}.{one}",), (1.0,), (1.0,), 0.1 if is_known else 0.5)
+    monkeypatch.setattr(identifiability, "product_of", lambda fit, effect: product)
     wide = {n: (v, 3.0 * v) for n, (v, _) in BY_EFFECT[effect].items()}
     after = fitted(model("coulomb", effect, **wide), "coulomb", effect)
     after.fit_residual = after.check_residual = np.full(ROWS, left)
-    assert is_identifiable(after, BASE) == (is_there and effect != "backlash")
+    expected = most and is_known and effect != "backlash"
+    assert is_identifiable(after, BASE) == expected
+    if effect == "stribeck":  # its strength, the level, is no part of the product
+        said = doubt(after, Candidate(EFFECTS[effect], "device"), most=most)
+        assert bool(said) == (not expected)
     after.check_residual = np.ones(ROWS)
     assert not is_identifiable(after, BASE)
 
