@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Body
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import block_numbers, standard_errors
 from ..diagnose.prepare import Prepared, Stretch
 from ..effects import EFFECTS
@@ -37,8 +38,8 @@ from .force_timing import (
 
 #: rows below which nothing is said; part of the other force from which a force is there at all
 FEWEST, LEAST = 50, 1e-5
-#: forces of the place by axis, and the part of the squares that they must leave to be there
-PLACE, MOSTLY = {"prismatic": ("spring",), "revolute": ("spring", "gravity")}, 0.5
+#: forces of the place by axis
+PLACE = {"prismatic": ("spring",), "revolute": ("spring", "gravity")}
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,9 @@ def force_balance(
     if plain is None or any(body.has(n) for n in PLACE["revolute"]):
         return plain
     there = _balance_of(_with_lacking(body, PLACE[body.axis]), stated, stretches, timed=timed)
-    return there if there is not None and there.left**2 < MOSTLY * plain.left**2 else plain
+    if there is not None and there.left**2 < (1.0 - CRITERIA.mostly) * plain.left**2:
+        return there
+    return plain
 
 
 def _with_lacking(body: Body, names: Sequence[str]) -> Body:
