@@ -1,9 +1,15 @@
-"""Models of one body whose parameters have stated values and standard errors."""
+"""Models of one body whose parameters have stated values and errors, and fits of them."""
+
+from types import SimpleNamespace
+
+import numpy as np
 
 from teleopdesign import Body, Model
 from teleopdesign.blocks import Value
 from teleopdesign.effects import EFFECTS
 
+#: of a fit
+ROWS = 200
 BY_EFFECT = {
     "coulomb": {"level": (1.0, 0.01)},
     "viscous": {"damping": (2.0, 0.1)},
@@ -33,3 +39,21 @@ def model(*effects, **changed):
     }
     bodies = Body("revolute", {"inertia": 1.0, **values}, tuple(EFFECTS[e] for e in effects))
     return Model({"device": bodies})
+
+
+def fitted(known, *effects, columns=None, at_bound=()):
+    """A fit of that model in which the parameters of these effects are free."""
+    free = tuple(
+        n for n in known.parameters if n.split(".")[1] in effects and not known.parameters[n].fixed
+    )
+    if columns is None:
+        columns = np.random.default_rng(0).standard_normal((ROWS, len(free)))
+    return SimpleNamespace(
+        model=known,
+        free=free,
+        jacobian=columns,
+        scale=np.ones(len(free)),
+        at_bound=at_bound,
+        fit_residual=np.ones(ROWS),
+        check_residual=np.ones(ROWS),
+    )

@@ -1,10 +1,8 @@
 """Whether records determine what was added: errors from absence, and columns that none imitates."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
-from diagnose.known_models import BY_EFFECT, model
+from diagnose.known_models import BY_EFFECT, ROWS, fitted, model
 
 from teleopdesign.diagnose import identifiability
 from teleopdesign.diagnose.candidates import Candidate
@@ -16,27 +14,6 @@ from teleopdesign.diagnose.identifiability import (
 )
 from teleopdesign.diagnose.products import Product
 from teleopdesign.effects import EFFECTS
-
-ROWS = 200
-
-
-def fitted(known, *effects, columns=None, at_bound=()):
-    """A fit of that model in which the parameters of these effects are free."""
-    free = tuple(
-        n for n in known.parameters if n.split(".")[1] in effects and not known.parameters[n].fixed
-    )
-    if columns is None:
-        columns = np.random.default_rng(0).standard_normal((ROWS, len(free)))
-    return SimpleNamespace(
-        model=known,
-        free=free,
-        jacobian=columns,
-        scale=np.ones(len(free)),
-        at_bound=at_bound,
-        fit_residual=np.ones(ROWS),
-        check_residual=np.ones(ROWS),
-    )
-
 
 BASE = fitted(model("coulomb"), "coulomb")
 

@@ -1,26 +1,10 @@
 """Products of parameters that records tell though they tell none of them alone."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
-from diagnose.known_models import BY_EFFECT, model
+from diagnose.known_models import BY_EFFECT, ROWS, fitted, model
 
 from teleopdesign.diagnose.products import best_product, product_of
-
-ROWS = 200
-
-
-def fitted(known, *effects, columns=None, at_bound=()):
-    """A fit of that model in which the parameters of these effects are free."""
-    free = tuple(
-        n for n in known.parameters if n.split(".")[1] in effects and not known.parameters[n].fixed
-    )
-    if columns is None:
-        columns = np.random.default_rng(0).standard_normal((ROWS, len(free)))
-    return SimpleNamespace(
-        model=known, free=free, jacobian=columns, scale=np.ones(len(free)), at_bound=at_bound
-    )
 
 
 def test_the_best_product_is_known_better_than_any_other():
