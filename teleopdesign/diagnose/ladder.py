@@ -8,6 +8,7 @@ from dataclasses import replace
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import is_a_tone
+from .commoner import name_commoner
 from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
@@ -122,10 +123,11 @@ def bar_what_explains_nothing(
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    Where no effect is supported alone, a straight line is fitted in place of bends, and effects
-    that explained equally well are compared again; then, where more than a tone is left, a pair is
-    sought, then a transmission with friction behind it, then an exchange, then a pair in place of
-    all rungs, then many effects at once.
+    Where no effect is supported alone, a straight line is fitted in place of bends, effects that
+    explained equally well are compared again, and a commoner effect takes the place of one that is
+    hardly told from it; then, where more than a tone is left, a pair is sought, then a transmission
+    with friction behind it, then an exchange, then a pair in place of all rungs, then many effects
+    at once.
     """
     if state.step > search.plan.most_effects:
         return straighten(search, state)
@@ -134,7 +136,7 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         fewer = remove(search, added)
         # two effects that each make the other one superfluous would take turns
         return added if fewer is None or fewer.effects in state.visited else fewer
-    for settle in (straighten, compare_alternatives):
+    for settle in (straighten, compare_alternatives, name_commoner):
         if (moved := settle(search, state)) is not None:
             return moved
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):

@@ -87,9 +87,12 @@ def is_simpler(
     """Whether a candidate of the same role is simpler than an effect and leaves no more.
 
     A transmission may leave no more than friction does for it passes on less of what sensors read.
+    Of two that are hardly told apart the one that acts on most machines stays.
 
     present: the fit with the effect that it takes the place of
     """
+    if ranked.candidate.effect.commoner == dropped.effect.name:
+        return False
     no_more = ranked.fit.check_error < (1.0 + criteria.near) * present.check_error
     return (
         ranked.candidate.effect.role == dropped.effect.role

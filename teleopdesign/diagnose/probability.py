@@ -152,15 +152,17 @@ def select_independent(
 def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     """Share of each candidate in what the ranking cannot tell apart; they sum to one.
 
-    What was accepted shares with those as good as it. A candidate that takes the place of an effect
-    that is there has no part, nor has one that was not accepted and drives anything to a bound.
+    What was accepted shares with those as good as it, and with a rarer one at its weight. A
+    candidate that takes the place of an effect that is there has no part, nor has one that was not
+    accepted and drives anything to a bound.
     """
     accepted = rung is not None and rung.added is not None
     if rung is not None and rung.added is not None:
         alike = {c.key for c in (rung.added, *rung.alternatives)}
+        rarer = {c.key for c in list_rarer(rung.added, ranking)} - alike
         first = next(r.behind for r in ranking.ranked if r.candidate.key == rung.added.key)
     else:
-        alike = {r.candidate.key for r in ranking.ranked}
+        alike, rarer = {r.candidate.key for r in ranking.ranked}, set()
         first = 0.0
     bound = set(ranking.base.at_bound)
     weights = {}
@@ -172,12 +174,19 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
             if accepted
             else driven
         )
-        serious = r.counts and r.candidate.key in alike and not gone
+        serious = r.counts and r.candidate.key in alike | rarer and not gone
+        weight = CRITERIA.rarer if r.candidate.key in rarer else 1.0
         weights[r.candidate.key] = (
-            math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
+            weight * math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
         )
     total = sum(weights.values()) or 1.0
     return {k: w / total for k, w in weights.items()}
+
+
+def list_rarer(added: Candidate, ranking: Ranking) -> list[Candidate]:
+    """Candidates at the same place whose files call the added effect the commoner one."""
+    others = (r.candidate for r in ranking.ranked if r.candidate.at == added.at)
+    return [c for c in others if c.effect.commoner == added.effect.name]
 
 
 def open_to_others(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> float:

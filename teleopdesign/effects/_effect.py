@@ -97,6 +97,8 @@ class Effect:
     counts_as: effects that it takes the place of for those that need them, where their laws hold
         none of these effects' parameters
     always: what holds for any values of its parameters, such as "even in velocity"
+    commoner: name of the effect that gives nearly the same force where `untold` says so, and acts
+        on far more machines; "" for none
     elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
         says the same there
     led: inertia(p) of a body among the hidden states whose position is corrected: the force for
@@ -120,6 +122,7 @@ class Effect:
     counts_as: frozenset[str] = frozenset()
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
+    commoner: str = ""
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     order: Callable[[Mapping[str, float], Mapping[str, float]], dict[str, float]] | None = None
     after: frozenset[str] = frozenset()

@@ -34,6 +34,7 @@ EFFECT = Effect(
     linear=True,
     parameters={"stiffness": Parameter("stiffness", "K: force per travel")},
     absent={"stiffness": 0.0},
+    commoner="gravity",
     untold=untold,
     source="Hooke's law",
 )
