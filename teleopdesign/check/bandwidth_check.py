@@ -4,19 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..diagnose.narrower_band import narrower_band
 from ..diagnose.prepare import Prepared
 from ..finding import Finding
 from ..measurement.bandwidth import hides_motion, motion_beyond, share_in_motion
 from ..measurement.experiment import Experiment
+from ..model import Model
 
 #: part of the share of rows in motion two octaves lower at which a bandwidth is proposed
 ENOUGH = 0.9
 
 
-def check_bandwidth(prepared: Prepared) -> Iterator[Finding]:
-    """A bandwidth at which far fewer rows tell a motion than lower down, or below the motion."""
+def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
+    """A bandwidth at which far fewer rows tell a motion than lower down, or below the motion.
+
+    Or one at which the user's model leaves far more than lower down.
+    """
     experiment, stated = prepared.experiment, prepared.bandwidth
-    yield from _motion_beyond(experiment, stated)
+    narrower = narrower_band(model, prepared)
+    if narrower is not None:
+        numbers = {"bandwidth": stated, "proposed": narrower.bandwidth, "error": narrower.error}
+        yield Finding("bandwidth", "warning", f"{narrower}.", numbers)
+    else:
+        yield from _motion_beyond(experiment, stated)
     for body in experiment.bodies:
         if not hides_motion(experiment, body, stated):
             continue

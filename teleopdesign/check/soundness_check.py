@@ -57,7 +57,7 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     mixed = list(check_mixed_columns(part))
     if mixed:
         return (*findings, *mixed, _report_skipped("first make the columns agree", "note"))
-    if hidden := list(check_bandwidth(prepared)):
+    if hidden := list(check_bandwidth(model, prepared)):
         return (*findings, *hidden, _report_skipped("first choose a bandwidth", "note"))
     agreement = check_plausibility(model, prepared)
     findings += agreement

@@ -205,6 +205,7 @@ def _simulate(
 
 def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -> list[str]:
     """What helps on from here; with the answer that was written nothing is diagnosed again."""
+    from ..diagnose.narrower_band import narrower_band
     from ..measurement.bandwidth import motion_beyond
 
     source = shell_word(answer or folder)
@@ -213,7 +214,10 @@ def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -
         lines.append(f"what to measure to tell them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
         lines.append(f"where it fails: teleopdesign describe {source}")
-        if motion_beyond(diagnosis.experiment, diagnosis.prepared.bandwidth) is not None:
+        narrower = narrower_band(diagnosis.after.model, diagnosis.prepared)
+        if narrower is not None:
+            lines.insert(0, f"{narrower}")
+        elif motion_beyond(diagnosis.experiment, diagnosis.prepared.bandwidth) is not None:
             where = f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the motion goes on"
             lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
     lines.append(f"a compensation: teleopdesign design {source} --output design")

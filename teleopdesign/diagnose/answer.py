@@ -57,7 +57,9 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "check": "records" if checked else "blocks of fit",
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
         "candidates": candidate_rows(diagnosis),
-        "indistinguishable": [[place_data(c.key) for c in g] for g in diagnosis.groups],
+        "indistinguishable": [
+            [place_data(c.key) for c in g] for g in (*diagnosis.groups, *diagnosis.look_alikes)
+        ],
         "cannot_tell": untold_rows(diagnosis),
         "set_aside": set_aside_rows(diagnosis),
         "own": offset_rows(diagnosis),

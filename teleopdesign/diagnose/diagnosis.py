@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..by_value import ByValue
+from ..effects import are_alike
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import floors_left, is_adequate
@@ -142,6 +143,21 @@ class Diagnosis(ByValue):
         return tuple(
             (r.added, *r.alternatives) for r in self.rungs if r.added is not None and r.alternatives
         )
+
+    @property
+    def look_alikes(self) -> tuple[tuple[Candidate, Candidate], ...]:
+        """Accepted effects, each with one that gives nearly the same force over this travel.
+
+        Named nonetheless: by an effect's file one of the two is the commoner (`Effect.commoner`).
+        """
+        if self.prepared.is_of_an_arm:  # its links have gravity
+            return ()
+        pairs = []
+        for one in dict.fromkeys(u.candidate for u in self.untold):
+            for other in self.model.known.values():
+                if are_alike(one.effect, other) and not self.model.body(one.at).has(other.name):
+                    pairs.append((one, Candidate(other, one.at)))
+        return tuple(pairs)
 
     @property
     def more_is_missing(self) -> bool:

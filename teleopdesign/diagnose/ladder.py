@@ -18,7 +18,7 @@ from .noise_floor import noise_floor
 from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
-from .stand_in import is_of_an_arm, stands_in_for_readings, stands_in_for_values
+from .stand_in import stands_in_for_readings, stands_in_for_values
 from .straight import straighten
 from .together import add_together
 from .transmission import add_transmission
@@ -101,7 +101,7 @@ def bar_what_explains_nothing(
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
     if not new or not before <= after or moved.fit.check_error >= state.fit.check_error:
         return None
-    if is_of_an_arm(search.prepared):
+    if search.prepared.is_of_an_arm:
         return None
     last = replace(new[-1], fit=moved.fit)
     prepared, criteria = search.prepared, search.criteria

@@ -5,7 +5,8 @@ random zero, and the stated noise is drawn. Where the record's readings scatter 
 they move, its clock jitters, and so do the moments of those drawn anew. By how much that changes
 the residual is the floor; the directions of motion stay those that the record's readings showed.
 Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
-their content near the Nyquist frequency, and the answer says so.
+their content near the Nyquist frequency, and the answer says so. Where one is, so is the noise of
+measured forces of which none is stated.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from .error import error_of
 from .error_at_command import refer_to_command
 from .prepare import Prepared, Stretch
 from .residual import residuals
-from .sensors import sensor_of
+from .sensors import is_noise_seen, sensor_of
 
 #: records drawn anew per floor; its spread from draw to draw is a few percent
 DRAWS = 3
@@ -80,6 +81,9 @@ def noise_floor(
         again = zip(refer_to_command(model, drawn).residual, command_before, strict=True)
         command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
+    bodies = {s.motion.body for s in stretches}
+    if stated and any(c.body in bodies and is_noise_seen(c) for c in channels.values()):
+        source = "stated resolution, noise seen in the readings of forces"
     left = float(np.sqrt(np.mean(np.square(errors))))
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
     # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what

@@ -80,6 +80,15 @@ class Prepared(ByValue):
         """The stretches of one use."""
         return tuple(s for s in self.stretches if s.use == use)
 
+    @property
+    def is_of_an_arm(self) -> bool:
+        """Whether the records are those of an arm's joint, whose links are estimated with it.
+
+        Its effects are held against the whole arm, and against the noise that they weaken, where
+        all joints are estimated together (`arms/refusal.py`).
+        """
+        return any(s.motion.links is not None or s.shared is not None for s in self.stretches)
+
     @cached_property
     def scales(self) -> dict[str, float]:
         """Quantity -> typical size of it along the fit records (SI)."""
@@ -92,7 +101,7 @@ class Prepared(ByValue):
         The effects are estimated and judged on the samples of the records themselves.
         """
         stretches = self.of("fit")
-        if any(s.motion.links is not None or s.shared is not None for s in stretches):
+        if self.is_of_an_arm:
             return self
         thin = tuple(_thin(s) for s in stretches)
         if all(one is other for one, other in zip(thin, stretches, strict=True)):

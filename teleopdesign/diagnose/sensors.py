@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..measurement.channel import Channel
 from ..measurement.encoder import reading_noise, reading_step
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -30,7 +32,8 @@ class Sensor:
 def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
     """The sensor of a channel ("device.position"), as stated.
 
-    Where no resolution of its body's position is stated: as seen in these readings (n,).
+    Where no resolution of its body's position is stated: as seen in these readings (n,). So is the
+    noise of a force that was measured, where none is stated.
     """
     channel = experiment.channels[name]
     step, noise = channel.resolution or 0.0, channel.noise or 0.0
@@ -39,7 +42,18 @@ def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
         # levels of a force may be commanded ones; those of a position are its encoder's
         if channel.quantity == "position":
             step = step or reading_step(readings)
+    elif is_noise_seen(channel):
+        noise = math.sqrt(max(reading_noise(readings) ** 2 - step**2 / 12.0, 0.0))
     return Sensor(step, noise)
+
+
+def is_noise_seen(channel: Channel) -> bool:
+    """Whether a channel is a measured force of which no noise is stated: its readings tell it.
+
+    A command is what it says, and the steps of an encoder are all that its readings err by.
+    """
+    force = channel.quantity == "interaction_force" or channel.measured
+    return force and channel.noise is None
 
 
 def sensors_of(experiment: Experiment) -> Mapping[str, Sensor]:

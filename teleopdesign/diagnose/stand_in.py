@@ -23,23 +23,13 @@ from .prepare import Prepared
 from .rung import Rung
 
 
-def is_of_an_arm(prepared: Prepared) -> bool:
-    """Whether the records are those of an arm's joint.
-
-    Its effects are held against the whole arm, and against the noise that they weaken, where all
-    joints are estimated together (`arms/refusal.py`).
-    """
-    stretches = prepared.stretches
-    return any(s.shared is not None or s.motion.links is not None for s in stretches)
-
-
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
     """All records to estimate on, the check records to compare on; None: there are no two uses.
 
     Nor for an arm's joints: what the links share is taken out of the fit records.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
-    if not check or is_of_an_arm(prepared):
+    if not check or prepared.is_of_an_arm:
         return None
     both = tuple(replace(s, use="fit") for s in (*fit, *check))
     return Prepared(prepared.experiment, prepared.bandwidth, (*both, *check))

@@ -55,6 +55,7 @@ __all__ = [
     "Parameter",
     "Role",
     "State",
+    "are_alike",
     "delayed",
     "sort_by_action",
     "parameter_symbol",
@@ -289,6 +290,11 @@ def _corrections_of_states(effect: Effect, what: str) -> dict[str, sp.Expr]:
     now, p = effect._now(None), effect._parameters(None)
     laws = {name: getattr(state, what) for name, state in effect.states.items()}
     return {n: sp.sympify(law(now, p), strict=True) for n, law in laws.items() if law is not None}
+
+
+def are_alike(one: Effect, other: Effect) -> bool:
+    """Whether one of two effects is the commoner of the two, by the file of the other."""
+    return one.name == other.commoner or other.name == one.commoner
 
 
 def sort_by_action(effects: tuple[Effect, ...], role: Role) -> list[Effect]:

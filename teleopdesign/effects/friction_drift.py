@@ -2,13 +2,15 @@
 
     level = F_C (1 - d (1 - exp(-t / tau))),   t from the start of each record, which starts cold
 
-Grease and seals. What other effects add to the level stays as it is. Records shorter than tau show
-only a trend, from which d and tau cannot both be known.
+Grease and seals. What other effects add stays as it is. Records shorter than tau show a trend only.
 """
 
 from sympy import exp
 
 from ._effect import Effect, FitSearch, Parameter
+
+#: lost part that no lubricant reaches. Lower: a drift is refused; higher: falling with speed is one
+ALL = 0.95
 
 
 def law(now, p):
@@ -16,8 +18,9 @@ def law(now, p):
 
 
 def plausible(p, facts):
-    cycle = 2 * facts.stroke
-    if cycle == float("inf") or p.time_constant >= cycle:
+    if p.fraction >= ALL and p.time_constant <= facts.duration:
+        return "nearly all friction would be lost: it stands for one that falls with something else"
+    if p.time_constant >= (cycle := 2 * facts.stroke) or cycle == float("inf"):
         return None
     return (
         f"a time constant of {p.time_constant:.3g} s is shorter than one cycle of the motion, "
@@ -29,10 +32,9 @@ def plausible(p, facts):
 def untold(p, facts):
     if p.time_constant <= facts.duration:
         return None
-    rate = p.fraction / p.time_constant
     return (
         f"warming up in {p.time_constant:.3g} s outlasts the records, {facts.duration:.3g} s: only "
-        f"the rate d / tau = {rate:.3g} 1/s at which the level changes is known"
+        f"the rate d / tau = {p.fraction / p.time_constant:.3g} 1/s of the level's change is known"
     )
 
 

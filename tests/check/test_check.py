@@ -361,9 +361,10 @@ def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubte
             bandwidth=bandwidth,
         )
 
-    (doubt,) = check_bandwidth(prepare(asked(40.0)))
+    model = td.Model.from_experiment(asked(40.0))
+    (doubt,) = check_bandwidth(model, prepare(asked(40.0)))
     assert doubt.topic == "bandwidth" and doubt.concern == "warning"
     assert doubt.numbers["seen"] < 0.5 * doubt.numbers["could"]
     assert 'write bandwidth = { value = 10, unit = "Hz" } at comparison' in doubt.sentence
     # what the finding says to type is taken
-    assert list(check_bandwidth(prepare(asked(doubt.numbers["proposed"])))) == []
+    assert list(check_bandwidth(model, prepare(asked(doubt.numbers["proposed"])))) == []

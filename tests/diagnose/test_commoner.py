@@ -1,6 +1,7 @@
 """Which effect is named of two that the records hardly tell apart, by a table of errors."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from diagnose.stand_ins import floor
@@ -9,8 +10,9 @@ from diagnose.stub_models import Table, candidate
 from teleopdesign.diagnose import commoner as module
 from teleopdesign.diagnose import rungs as rungs_module
 from teleopdesign.diagnose.adequacy import Floors
+from teleopdesign.diagnose.answers.restored import _is_named_nonetheless
 from teleopdesign.diagnose.commoner import name_commoner
-from teleopdesign.diagnose.diagnosis import SetAside
+from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside, Untold
 from teleopdesign.diagnose.order import is_simpler
 from teleopdesign.diagnose.probability import list_rarer, shares
 from teleopdesign.diagnose.ranking import Ranking
@@ -121,3 +123,28 @@ def test_the_rarer_one_has_its_share_of_the_probability(use):
         both.base, tuple(replace(r, behind=9.0 * (r.candidate == SPRING)) for r in both.ranked)
     )
     assert shares(far, rung)[GRAVITY.key] == pytest.approx(1), "what leaves surely more has none"
+
+
+def look_alikes(untold, *there, arm=False):
+    """The pairs of a diagnosis that accepted these effects, of which it cannot tell `untold`."""
+    model = SimpleNamespace(known=EFFECTS, body=lambda at: SimpleNamespace(has=there.__contains__))
+    prepared = SimpleNamespace(is_of_an_arm=arm)
+    said = tuple(Untold(candidate(n), "over a travel of 1 rad") for n in untold)
+    return Diagnosis.look_alikes.fget(SimpleNamespace(model=model, untold=said, prepared=prepared))
+
+
+def test_a_spring_and_gravity_stand_beside_each_other_in_the_answer_whichever_is_named():
+    assert look_alikes(["spring"], "spring") == ((SPRING, GRAVITY),)
+    assert look_alikes(["gravity", "gravity"], "gravity") == ((GRAVITY, SPRING),)
+    assert look_alikes(["stribeck"], "stribeck") == () == look_alikes([], "spring")
+    assert look_alikes(["spring"], "spring", "gravity") == (), "the model has both"
+    assert look_alikes(["spring"], "spring", arm=True) == (), "the links of an arm have gravity"
+
+
+def test_a_pair_that_stands_beside_a_name_leaves_no_verdict_open_when_it_is_read_back():
+    pair = [{"effect": "spring", "at": "device"}, {"effect": "gravity", "at": "device"}]
+    assert _is_named_nonetheless(pair, EFFECTS) and _is_named_nonetheless(pair[::-1], EFFECTS)
+    others = [pair[0], {"effect": "bias", "at": "device"}]
+    assert not _is_named_nonetheless(others, EFFECTS)
+    assert not _is_named_nonetheless([*pair, others[1]], EFFECTS)
+    assert not _is_named_nonetheless([pair[0], {"effect": "a users own", "at": "device"}], EFFECTS)

@@ -18,6 +18,7 @@ from teleopdesign.diagnose.prepare import FOLDS, folds, prepare
 from teleopdesign.diagnose.residual import relative_residuals, residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.bandwidth import default_bandwidth
+from teleopdesign.measurement.channel import Channel
 from teleopdesign.realise.along_motion import residual_along
 
 
@@ -166,6 +167,34 @@ def test_a_floor_from_the_readings_says_so_and_is_near_the_stated_one(experiment
     assert seen.source == "step and noise seen in the readings"
     # the command of a controller that differentiates an encoder looks noisier than it is read
     assert 0.5 * stated.value < seen.value < 3.0 * stated.value
+
+
+def test_a_hands_force_of_unstated_noise_raises_the_floor_by_what_its_readings_scatter(
+    experiment, prepared, model
+):
+    """Beside an encoder whose step is stated: that says nothing of the hand's sensor."""
+    name, rng = "device.interaction_force", np.random.default_rng(3)
+    sigma = 0.1 * np.std(experiment.records[0].signals["device.actuator_force"])
+    records = tuple(
+        replace(
+            r,
+            signals={
+                **r.signals,
+                name: sigma * rng.standard_normal(len(r.signals["device.position"])),
+            },
+        )
+        for r in experiment.records
+    )
+    floors = []
+    for noise in (sigma, None):
+        hand = Channel("interaction_force", "device", "f_h", "N", None, noise)
+        touched = replace(experiment, records=records, channels={**experiment.channels, name: hand})
+        floors.append(noise_floor(model, prepare(touched), np.random.default_rng(0)))
+    stated, seen = floors
+    assert seen.source == "stated resolution, noise seen in the readings of forces"
+    assert seen.value == pytest.approx(stated.value, rel=0.15)
+    untouched = noise_floor(model, prepared, np.random.default_rng(0))
+    assert seen.value > 1.5 * untouched.value
 
 
 # what is compared

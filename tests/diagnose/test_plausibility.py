@@ -47,7 +47,11 @@ SAID = {
     "cogging": ({"period": 0.6}, {"period": 0.8}, "gravity"),
     "torque_ripple": ({"period": 0.6}, {"period": 3.0}, "friction that varies"),
     "presliding": ({"stiffness": 50.0}, {"stiffness": 0.03}, "a spring"),
-    "friction_drift": ({"time_constant": 5.0}, {"time_constant": 0.2}, "how the records begin"),
+    "friction_drift": (
+        {"fraction": 0.5, "time_constant": 5.0},
+        {"fraction": 0.5, "time_constant": 0.2},
+        "how the records begin",
+    ),
     "viscous_asymmetry": ({"half_difference": -0.1}, {"half_difference": 0.3}, "another force"),
     "coulomb_asymmetry": ({"half_difference": -0.1}, {"half_difference": -0.6}, "a constant force"),
     "transmission_compliance": (

@@ -55,7 +55,15 @@ DESERVED = [
     ("viscous_asymmetry", "half_difference", 0.5, MORE * 0.5, {}, "at 4 rad/s"),
     ("viscous_asymmetry", "half_difference", -0.5, -0.51, {}, "the difference, 0.51 N"),
     ("viscous_temperature", "coefficient", 0.0, -1e-9, {}, "no lubricant"),
-    ("friction_drift", "time_constant", 1.0, LESS, {}, "one cycle of the motion, 1 s"),
+    (
+        "friction_drift",
+        "time_constant",
+        1.0,
+        LESS,
+        {"fraction": 0.5},
+        "one cycle of the motion, 1 s",
+    ),
+    ("friction_drift", "fraction", LESS * 0.95, 0.95, {"time_constant": 1.0}, "nearly all"),
     ("gravity", "amplitude", -8.0, -MORE * 8.0, {"phase": 0.0}, "a torque of 8 N"),
     ("hardening_spring", "neutral", 1.0, MORE, {}, "beyond all"),
     ("hardening_spring", "neutral", -1.0, -MORE, {}, "beyond all"),
@@ -91,7 +99,10 @@ def test_an_effect_keeps_its_name_up_to_the_limit_and_loses_it_beyond(
 
 def test_where_the_motion_never_turns_round_no_loop_and_no_cycle_is_there():
     assert "never turns round" in said("presliding", "plausible", {"stiffness": 10.0}, stroke=inf)
-    assert said("friction_drift", "plausible", {"time_constant": 0.1}, stroke=inf) is None
+    assert (
+        said("friction_drift", "plausible", {"fraction": 0.5, "time_constant": 0.1}, stroke=inf)
+        is None
+    )
 
 
 def test_nothing_is_said_where_nothing_can_be_held_against_the_records():

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from ...blocks import with_block_effects
-from ...effects import EFFECTS, Effect
+from ...effects import EFFECTS, Effect, are_alike
 from ...errors import ExperimentError, ModelError
 from ...measurement.experiment import Experiment
 from ...model import Model
@@ -162,6 +162,7 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
             candidate(place, "indistinguishable") for place in group[1:]
         )
         for group in content["indistinguishable"]
+        if not _is_named_nonetheless(group, known)
     }
     questions = []
     for question in content["open"]:
@@ -218,6 +219,13 @@ def _candidate_in_model(
         if not there:
             raise ExperimentError(f"{saved.file}: {key}: {candidate}: its model has no such effect")
     return candidate
+
+
+def _is_named_nonetheless(group: Sequence[Mapping[str, Any]], known: Mapping[str, Effect]) -> bool:
+    """Whether a group is one of `Diagnosis.look_alikes`, which leaves no verdict open."""
+    effects = [known.get(place["effect"]) for place in group]
+    one, other = effects[0], effects[-1]
+    return len(group) == 2 and one is not None and other is not None and are_alike(one, other)
 
 
 def _restore_candidate(
