@@ -73,8 +73,8 @@ def _explain_cancelled(
         return None
     return (
         f"it varies by +-{facts.text(half, 'force')} along the motion, where no more than "
-        f"{facts.text(facts.acting, 'force')} act: another effect takes it away again, and only "
-        "their sum is known"
+        f"{facts.text(facts.acting, 'force')} act: another effect cancels it, and only the sum of "
+        "the two is known"
     )
 
 

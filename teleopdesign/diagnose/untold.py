@@ -50,4 +50,4 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
     if product.known >= PRODUCT * min(product.errors):
         return ""
     each = ", ".join(f"{100 * error:.2g} %" for error in product.errors)
-    return f"{product} is known to {100 * product.known:.2g} %, each of them alone to {each}"
+    return f"{product} is known within {100 * product.known:.2g} %, each factor only within {each}"

@@ -39,7 +39,7 @@ def explain_open_width(
             if whole_score(again, fit) < criteria.close:
                 unit = unit_after_number(fit.model.unit(full))
                 return (
-                    f"{name} = {other:.3g}{unit} leaves as little as {best.value:.3g}{unit}: these "
+                    f"{name} = {other:.3g}{unit} fits as well as {best.value:.3g}{unit}: these "
                     "records do not determine it"
                 )
     return ""

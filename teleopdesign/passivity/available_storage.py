@@ -80,7 +80,7 @@ class AvailableStorage(ByValue):
         )
         if self.round_trip:
             searched += (
-                f"; strokes of {self.stroke:.3g} m forth and back give out {self.round_trip:.3g} N "
+                f"; strokes of {self.stroke:.3g} m forth and back release {self.round_trip:.3g} N "
                 "times their travel"
             )
         elif self.gain <= self.tolerance and not self.is_finite:

@@ -36,6 +36,7 @@ def untold_way(
     there = Candidate(added.effect, other)
     return Untold(
         added,
-        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm, "
-        f"where {100 * last.check_error:.3g} % are left: links can take up what couples both alike",
+        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm's "
+        f"forces instead of {100 * last.check_error:.3g} %: parameters of the links can imitate a "
+        "coupling that acts both ways",
     )

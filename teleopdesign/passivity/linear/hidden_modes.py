@@ -49,7 +49,7 @@ from .in_full import (
 from .polynomials import fraction, is_hurwitz
 
 #: why nothing is proved of a system for which `grows_unseen` holds
-UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
+UNSEEN = "from rest its impedance is that of a passive port, but a mode that no port shows grows"
 _ONE = sp.Poly(1, S, domain="QQ")
 
 

@@ -46,7 +46,7 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
     statement = (
         f"a channel of waves of {decimal(b)} N s/m, scaled by {decimal(f)}, with delays that "
-        f"{grows}, gives out no more energy at both ends than came in, in continuous time"
+        f"{grows}, releases no more energy at both ends than came in, in continuous time"
     )
     if f**2 > 1 - d:
         return Claim(statement, Unknown("scale^2 is above 1 - delay_growth"))
