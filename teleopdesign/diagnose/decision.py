@@ -1,4 +1,4 @@
-"""What a diagnosis decides: which additions count, and the verdict.
+"""Decisions of a diagnosis: which effects count, and the verdict.
 
 Every threshold is a field of `Criteria`. What counts as noise: `adequacy`. Which of several
 candidates is taken: `order`.

@@ -1,4 +1,4 @@
-"""Whether fitted effects deserve their names, by what their files say of their parameters.
+"""Plausible parameters: does a fitted effect deserve its name, by the rules in its file?
 
 One rule holds for every force, a user's effects too: along the motion it cannot vary by more
 than what was measured, or another effect cancels what it adds.

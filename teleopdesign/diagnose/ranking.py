@@ -1,4 +1,4 @@
-"""Candidates in order, with the fits that they were compared by."""
+"""Ranked candidates, each with the fit by which it was compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clock of a logger: by how much the log of a body's force is later than its position's.
+"""Clock of a logger: the delay of a body's force log against the log of its position.
 
 A controller may write a command with the position that it answers, or with the next: a shift of up
 to one row, either way, belongs to the record. It is no physics, but what is not explained by it

@@ -1,4 +1,4 @@
-"""How much a diagnosis searches: what each number costs in time, and what it may miss."""
+"""Size of the search: what each number costs in time, and what a smaller one may miss."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Effects that lower the error and explain nothing: they stand in for something else.
+"""Effects that lower the error without explaining it: they stand in for something else.
 
 For values that the fit records leave open: a check record that moves as no fit record does is
 missed by a complete model too, where the fit records do not tell its parameters, friction and

@@ -1,4 +1,4 @@
-"""What records cannot tell of the parameters of accepted effects, though the effects stand.
+"""Parameters of accepted effects that the records do not determine.
 
 An effect may be there beyond doubt while its parameters are not: a level at rest that no force ever
 reached is an extrapolation, and of two parameters a record may show one product. What follows from

@@ -1,4 +1,4 @@
-"""Available storage of rate-independent friction: the most energy that any motion can take out.
+"""Available storage of path-dependent friction: the most energy that any motion can release.
 
 Willems: a system is passive from rest where this is finite, and then it is a storage function. With
 friction that depends on the path alone, every motion is a sequence of small travels forward or

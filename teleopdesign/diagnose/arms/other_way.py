@@ -1,4 +1,4 @@
-"""Whether a coupling between two joints is told from one that acts the other way.
+"""Direction of a coupling between two joints: do the records distinguish it from the reverse one?
 
 What couples two joints both ways alike may be a part of the links' inertia. Then a force at one
 joint by the motion of another leaves the same as the opposite force at that other joint: links take

@@ -1,4 +1,4 @@
-"""What a joint's ladder added, held against the whole arm: which effects stay with all joints.
+"""Effects of one joint tested on the whole arm: which stay when all joints are estimated together.
 
 The records of one joint may support an effect that stands for what another joint lacks, or for
 links that were led astray. With all joints estimated together it helps no more, and is set aside.

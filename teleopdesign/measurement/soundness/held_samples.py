@@ -1,4 +1,4 @@
-"""Held samples: readings that repeat the one before where they should have changed.
+"""Held samples: readings that repeat the reading before although the body moves.
 
 Single ones come from a log that runs faster than what it records, long ones from a sensor that is
 stuck, a channel that is constant throughout from a wire that is not connected.

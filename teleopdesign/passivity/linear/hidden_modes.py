@@ -1,4 +1,4 @@
-"""Modes of a diagram that grow by themselves, those that its ports do not show included.
+"""Growing modes of a diagram, hidden modes included.
 
 An impedance is what ports do from rest. A pole of a controller that a zero of the next one cancels
 is not in it: from rest it never moves, but the least disturbance grows without end, and may come

@@ -1,4 +1,4 @@
-"""Waves to and fro: the channel takes energy at its ends, whatever passive stands at them.
+"""Wave variables: a channel that is passive at its ends, for any delay that grows slowly.
 
 With W_1 = b v_m + F_c, W_2 = b v_d - F_P at the ends and f W_1(t - T_1), f W_2(t - T_2) as they
 arrive, the power into the channel is
