@@ -30,8 +30,8 @@ The names that a user types:
     passivity     diagram_claims, positive_real
     errors        ExperimentError, ModelError
 
-Rarer ones, such as `td.Effect` and `td.fetch`, are there too and stand in `td.FURTHER`: classes of
-results, and what definitions, studies and recordings are made of.
+Further names, such as `td.Effect` and `td.fetch`, are listed in `td.FURTHER`: classes of results,
+and the parts of definitions, studies and recordings.
 
 Every folder is there as well: `td.passivity`, `td.diagrams`, `td.frequency` ... A folder named by a
 verb can be called: `td.diagnose` does what `td.find_missing` does, and so do `td.check`,
@@ -41,14 +41,14 @@ The folders, each importing only from those before it:
 
     folder_calls  a folder named by a verb can be called
     arguments     arguments of a call, checked against the types declared (`expectations` beside it)
-    frozen        mappings that nobody changes (by_value, recipes, users_files, notebook: see there)
+    frozen        read-only mappings (by_value, recipes, users_files, notebook: see there)
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
     finding       a sentence, its numbers, and a graph that shows it
     arms          links of an arm, of a URDF or as written, and the forces that they need
-    effects       what physics does: one effect = one file
-    blocks        bodies, hand: equations only
-    controllers   chosen by the user: one control law = one file
-    diagrams      which blocks, wired by signal names; read from and written to files
+    effects       the catalogue of physical effects: one effect = one file
+    blocks        equations of bodies and hand
+    controllers   control laws that the user chooses: one control law = one file
+    diagrams      blocks wired by signal names; read from and written to files
     model         bodies with their effects at places; frozen
     realise       any block into each form: residual, transfer function, equations, kernel, iosystem
     derive        transfer functions and impedances from the wiring, symbolic
@@ -59,8 +59,8 @@ The folders, each importing only from those before it:
     diagnose      residual, noise floor, ladder, answer
     identify      Coulomb level and largest stiffness by the papers' experiments
     check         before a diagnosis: is a recording sound, and what can it show
-    unexplained   after it: where a model fails, and what that depends on
-    next_experiment  what to measure next, so that rivals are distinguished
+    unexplained   where a model fails, and on which variables the residual depends
+    next_experiment  the motion that distinguishes the effects that a diagnosis leaves open
     design        from a diagnosed model to controllers, predictions and claims
     studies       a model at every point of named parameters, on one machine or many
     papers        statements of the two papers, each with its proof or check

@@ -15,11 +15,11 @@ class TeleopDesignError(Exception):
 
 
 class ExperimentError(TeleopDesignError):
-    """A file of an experiment, or something written in it, cannot be used."""
+    """A file of an experiment, or an entry in it, cannot be used."""
 
 
 class ModelError(TeleopDesignError):
-    """A model, diagram or effect is put together in a way that has no meaning."""
+    """A model, diagram or effect is inconsistent."""
 
 
 class UnstableLoop(ModelError):

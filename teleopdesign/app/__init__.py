@@ -1,4 +1,4 @@
-"""The workbench in a browser: a record, what a model leaves of it, and what explains the rest.
+"""The workbench in a browser: a record, the residual of a model, and effects that explain it.
 
 `teleopdesign app FOLDER` opens it. The page is a marimo notebook (`notebook.py`); what it does is
 in `workbench.py`, without a page, so that a script can do the same.

@@ -1,4 +1,4 @@
-"""Before a diagnosis: is a recording sound, do its columns agree, and what can it show?"""
+"""Checks before a diagnosis: is a recording sound, do its columns agree, what can it show?"""
 
 from ..arguments import check_arguments
 from .soundness_check import check_experiment

@@ -38,8 +38,8 @@ def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
             "warning",
             f"below {stated:.3g} Hz, the bandwidth of the comparison, the position tells a motion "
             f"in {100 * moving:.0f} % of the rows, below {proposed:.2g} Hz in "
-            f"{100 * shares[proposed]:.0f} %. In the others friction at rest takes up any force, "
-            f"and no model is tested: write bandwidth = {{ value = {proposed:.2g}, "
+            f"{100 * shares[proposed]:.0f} %. In the other rows static friction balances any "
+            f"force, and no model is tested: write bandwidth = {{ value = {proposed:.2g}, "
             'unit = "Hz" } at comparison, or leave it out.',
             {"bandwidth": stated, "proposed": proposed, "seen": moving, "could": could},
             body,
@@ -54,8 +54,8 @@ def _motion_beyond(experiment: Experiment, chosen: float) -> Iterator[Finding]:
     yield Finding(
         "motion beyond the bandwidth",
         "note",
-        f"the comparison ends at {chosen:.3g} Hz, the motion stands above the scatter of its "
-        f"readings up to {highest:.3g} Hz: forces that change so fast, such as cogging at speed, "
-        f'show with bandwidth = {{ value = {highest:.3g}, unit = "Hz" }} at comparison.',
+        f"the comparison ends at {chosen:.3g} Hz, but the motion exceeds the noise of its "
+        f"readings up to {highest:.3g} Hz. To compare forces that change so fast, such as cogging "
+        f'at speed, write bandwidth = {{ value = {highest:.3g}, unit = "Hz" }} at comparison.',
         {"bandwidth": chosen, "proposed": highest},
     )

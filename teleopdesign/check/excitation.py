@@ -105,12 +105,14 @@ def _summary(
         parts.append(f"cannot show {text}.")
     if waiting := _list_waiting_effects(base.model, place):
         parts.append(
-            "not judged, for the model lacks what they act on: " + ", ".join(waiting) + "."
+            "not checked, because the model lacks the effect that they change: "
+            + ", ".join(waiting)
+            + "."
         )
     if base.fit_error > CRITERIA.adequate * floor:
         parts.append(
-            f"all this above the noise floor, {100 * floor:.2g} % of the force; while the model "
-            f"leaves {100 * base.fit_error:.2g} % unexplained, small effects hide in that."
+            f"these limits hold above the noise floor, {100 * floor:.2g} % of the force; as long "
+            f"as {100 * base.fit_error:.2g} % are unexplained, small effects hide in them."
         )
     return Finding(
         "what the record can show",
@@ -207,7 +209,7 @@ def _look_alikes(visible_effects: Sequence[Visibility], place: str) -> list[Find
         Finding(
             "look-alikes",
             "note",
-            f"would look alike here, told apart only where they are large: {text}.",
+            f"look alike on these records, unless they are large: {text}.",
             {"groups": float(len(groups))},
             place,
         )
@@ -228,7 +230,7 @@ def _model_parameters(base: Fit, place: str) -> list[Finding]:
         Finding(
             "own parameters",
             "note",
-            f"the record does not determine {text}: fix what is known of it.",
+            f"the record does not determine {text}: fix the values that are known.",
             {n: v.stderr for n, v in open_.items()},
             place,
         )

@@ -35,7 +35,7 @@ def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> d
     elif (spread := float(np.std(speed[direction != 0]) / np.mean(speed[direction != 0]))) < STEADY:
         reasons["velocity"] = f"it moves at one speed, give or take {100 * spread:.2g} %"
     if not tells_place_from_time(motions):
-        reasons["position"] = "it never comes to a place at another time"
+        reasons["position"] = "it never returns to a place"
     force = _rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     inertia = model.body(place).parameters["inertia"].value
     share = inertia * _rms([m.lowpassed(m.acceleration) for m in motions]) / force if force else 0.0
@@ -77,7 +77,7 @@ def describe_motion(
         f"travels {np.ptp(x):.3g} {unit_of('position', axis)}, up to {fastest:.3g} "
         f"{unit_of('velocity', axis)}, {turns} reversals; "
         f"{100 * forth:.0f} % of the time forth, {100 * back:.0f} % back, in the rest the position "
-        f"tells no motion{'. It lacks: ' + missing if missing else ''}.",
+        f"shows no motion{'. Limits: ' + missing if missing else ''}.",
         numbers,
         place,
     )

@@ -82,7 +82,7 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     drives = f" and friction drives with {-braking.value:.3g} W" if braking and brakes < 0 else ""
     evidence = f"the inertia is {inertia.value:.3g} {unit}{drives}"
     if against and not turned:
-        evidence = f"what balances {lead} is {balance.gain.value:.3g} times it"
+        evidence = f"the force that balances {lead} is {balance.gain.value:.3g} times it"
     yield Finding(
         "signs",
         "warning",
@@ -115,8 +115,8 @@ def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[F
     yield Finding(
         "units",
         "warning",
-        f"{other} is {1 / gain.value:.3g} times as large as what balances {lead}: going by the "
-        f"inertia, {wrong} in another unit than stated.",
+        f"{other} is {1 / gain.value:.3g} times as large as the force that balances {lead}: "
+        f"judging by the inertia, {wrong} in another unit than stated.",
         {"gain": gain.value, "error": gain.error, "inertia_ratio": ratio},
         balance.body,
     )
@@ -133,8 +133,9 @@ def _calibration(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]
     yield Finding(
         "force scales",
         "note",
-        f"{other} balances {lead} only times {with_standard_error(gain.value, gain.error)}: the "
-        f"scale of one is off, as by a motor's constant (scale = {gain.value:.4g} at "
+        f"{other} balances {lead} only when multiplied by "
+        f"{with_standard_error(gain.value, gain.error)}: the "
+        f"scale of one is wrong, such as a torque constant (scale = {gain.value:.4g} at "
         f"channels.{other}, or {1 / gain.value:.4g} times that of channels.{lead}), or the "
         "actuator gives another force than commanded (actuator_gain).",
         {"gain": gain.value, "error": gain.error},
@@ -235,9 +236,9 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     less = max(map(abs, late.values()))
     if less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
-        concern, remedy = "note", "columns out of step, or something gives in between"
+        concern, remedy = "note", "columns are shifted, or something between them is compliant"
     elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:
-        concern, remedy = "note", "a diagnosis takes up to a row of it as the logger's"
+        concern, remedy = "note", "a diagnosis counts up to a row of it as a delay of the logger"
     elif set(late) == {"actuator_force"} and 0.0 < seconds <= CLOCK.latest:
         remedy += ", or leave it to a diagnosis"
     elif late.get("actuator_force", 0.0) < 0:

@@ -45,7 +45,7 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     resting = _list_resting_bodies(experiment)
     if resting:
         names = " and ".join(resting)
-        sentence = f"not asked what the record can show: {names} never moves."
+        sentence = f"not checked which effects the record can show: {names} never moves."
         return (*findings, Finding("what the record can show", "note", sentence))
     part = excerpt(experiment)
     if part is not experiment:
@@ -63,7 +63,10 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]
     if against:
-        sentence = "not asked what the record can show: first make signs, units and columns agree."
+        sentence = (
+            "not checked which effects the record can show: first make signs, units and columns "
+            "agree."
+        )
         return (*findings, Finding("what the record can show", "note", sentence))
     findings += check_excitation(model, prepared, np.random.default_rng(seed))
     return tuple(findings)
@@ -71,7 +74,9 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
 
 def _report_skipped(why: str, concern: Literal["note", "warning"]) -> Finding:
     return Finding(
-        "what the record can show", concern, f"not asked what the record can show: {why}."
+        "what the record can show",
+        concern,
+        f"not checked which effects the record can show: {why}.",
     )
 
 

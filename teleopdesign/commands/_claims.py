@@ -20,7 +20,7 @@ def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
         lines += ["", f"{one.heading:<9} {one.topic}"]
         lines += _wrap_text(one.claim.statement) + _wrap_text(str(one.claim.verdict))
         if one.motion is not None:
-            lines += _wrap_text(f"replayed in simulation: gives out {one.replayed:.4g} J")
+            lines += _wrap_text(f"replayed in simulation: releases {one.replayed:.4g} J")
     return lines
 
 

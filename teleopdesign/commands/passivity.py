@@ -231,12 +231,12 @@ def _describe_device(
 
     force, stiff = device.force_unit, device.stiffness_unit
     lines = [
-        f"friction level {device.lowest} {force} at its lowest, {device.highest} at its highest, "
+        f"friction level: lowest {device.lowest} {force}, highest {device.highest} {force}, "
         f"over {device.friction.over}"
     ]
     if device.presliding is None:
         lines.append(
-            "presliding was not identified: friction is taken as ideal, however small the motion"
+            "presliding was not identified: friction is taken as ideal, even in the smallest motion"
         )
     else:
         lines.append(f"presliding stiffness {device.presliding} {stiff}")
@@ -245,9 +245,7 @@ def _describe_device(
     if device.bristle_damping.high > 0:
         lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
     if device.set_aside:
-        lines.append(
-            f"may supply energy, or of a kind no theorem is about: {', '.join(device.set_aside)}"
-        )
+        lines.append(f"may supply energy, or is in no theorem: {', '.join(device.set_aside)}")
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
     return "\n".join([*lines, *claim_lines(claims), "", *map(str, limits)])

@@ -83,8 +83,8 @@ def dahl_cancellation(
         f"{assumptions.counts:g} encoder steps of {reach.step:.3g} {unit}": (
             assumptions.counts * reach.step
         ),
-        f"{reach.unresolved:.3g} {unit}, below which the records tell no presliding, so that P43 "
-        "holds beside one": reach.unresolved,
+        f"{reach.unresolved:.3g} {unit}, below which the records show no presliding, so that P43 "
+        "holds with one": reach.unresolved,
     }
     longest = max(lengths, key=lengths.__getitem__)
     limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}

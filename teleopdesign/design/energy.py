@@ -65,7 +65,7 @@ def energy_claim(
     shown = min(supplying, key=lambda t: t.motion.frequency) if supplying else _least_energy(trials)
     size, unit = shown.motion.amplitude, unit_of("position", axis)
     frequencies = [t.motion.frequency for t in trials]
-    words = "gives energy out along" if supplying else "takes least along"
+    words = "releases energy along" if supplying else "takes least along"
     searched = (
         f"{len(trials)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
         f"with sampling, delay and encoder; it {words} {size:.3g} {unit} at "

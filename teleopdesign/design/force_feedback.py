@@ -117,8 +117,8 @@ def force_feedback(
     scheduling = round_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
     law = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
     kilo, speed = unit_of("inertia", body.axis), unit_of("velocity", body.axis)
-    with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} bears {factor:g} times"
-    rigid = f"held rigidly bears {HELD_FACTOR:g} times"
+    with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} tolerates {factor:g} times"
+    rigid = f"held rigidly tolerates {HELD_FACTOR:g} times"
     why = f"the largest whose loop {with_load if free <= held else rigid} its delay of "
     why += f"{1e3 * delay:.3g} ms"
     if gain == MOST_GAIN:
@@ -128,6 +128,6 @@ def force_feedback(
     reasons = (
         Reason("velocity_schedule.gain", gain, "1", why),
         Reason("velocity_schedule.scheduling_velocity", scheduling, speed, above),
-        Reason("low_pass.bandwidth", bandwidth, "Hz", "assumed; more bears less gain"),
+        Reason("low_pass.bandwidth", bandwidth, "Hz", "assumed; a larger one allows less gain"),
     )
     return ProposedController(law, reasons), loop

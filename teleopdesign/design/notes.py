@@ -53,30 +53,31 @@ def _friction(design: Design) -> list[str]:
     lines = []
     if not design.reach.both_ways:
         lines.append(
-            "The records move it one way only: its friction the other way is taken to be what the "
-            "model says, which no record has shown."
+            "The records move the device in one direction only: friction in the other direction is "
+            "taken from the model, without a record of it."
         )
     lowest, highest = friction.lowest.estimate, friction.highest.estimate
     if highest > 1.001 * lowest:
         lines.append(
             f"Friction lies between {lowest:.4g} and {highest:.4g} {unit} over {friction.over}: "
-            f"the least of it is cancelled, so that up to {highest - lowest:.3g} {unit} more than "
+            f"its lowest level is cancelled, so that up to {highest - lowest:.3g} {unit} more than "
             "the margin is left."
         )
     bias = design.body.parameters.get("bias.force")
     if bias is not None and abs(bias.value) > 0:
         lower = max(friction.lowest.low - abs(bias.value), 0.0)
         lines.append(
-            f"A constant force of {bias.value:.3g} {unit} is taken for gravity or an offset: it "
-            "gives back what it takes. No record tells it from friction of two levels; then the "
-            f"lower one is {lower:.3g} {unit}, and motion that only ever goes one way would need a "
-            "level below that."
+            f"A constant force of {bias.value:.3g} {unit} is taken for gravity or an offset, which "
+            "stores energy. No record distinguishes it from friction with two levels, one for each "
+            f"direction. Then the lower level is {lower:.3g} {unit}, and motion in one direction "
+            "only would need a level below that."
         )
     if design.cancellation.controller.stages[0].law.smoothing:
         lines.append(
-            f"The records tell no presliding shorter than {design.reach.unresolved:.3g} "
-            f"{unit_of('position', design.body.axis)}. Beside one, a smoothed cancellation is a "
-            "negative damper in small motion: lower its level where the device hums at rest."
+            f"The records cannot show presliding shorter than {design.reach.unresolved:.3g} "
+            f"{unit_of('position', design.body.axis)}. With such presliding, a smoothed "
+            "cancellation is a negative damper in small motion: lower its level where "
+            "the device hums at rest."
         )
     if friction.presliding is not None:
         lines.append(

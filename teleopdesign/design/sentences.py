@@ -102,8 +102,9 @@ def _loop(design: Design) -> str:
     held = design.held
     return (
         f"loop gain {loop.gain:.3g} at rest, crossing 1 at {loop.crossover / (2 * math.pi):.3g} Hz "
-        f"with a phase margin of {loop.phase_margin:.0f} deg; bears {1e3 * loop.largest_delay:.3g} "
-        f"ms. Held rigidly: {held.phase_margin:.0f} deg, {1e3 * held.largest_delay:.3g} ms"
+        f"with a phase margin of {loop.phase_margin:.0f} deg; tolerates "
+        f"{1e3 * loop.largest_delay:.3g} ms. "
+        f"Held rigidly: {held.phase_margin:.0f} deg, {1e3 * held.largest_delay:.3g} ms"
     )
 
 

@@ -1,4 +1,4 @@
-"""What counts as noise: floors, adequacy, a tone from outside, one moment above the noise.
+"""Adequacy: whether the remaining error is noise, by noise floor, hum and single moments.
 
 Every threshold is a field of `Criteria`.
 """

@@ -1,4 +1,4 @@
-"""The diagnosis as text and as the answer file, with the predictions that anyone can recompute."""
+"""The answer of a diagnosis: text, JSON data, and the predicted forces as a table."""
 
 from __future__ import annotations
 

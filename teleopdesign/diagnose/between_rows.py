@@ -1,4 +1,4 @@
-"""A command that changes between the rows of a log: what its scatter alone would leave.
+"""A controller faster than its log: the error that unlogged commands between rows leave.
 
 A controller that is faster than the log changes its command within a row. The log holds one value
 of many, and what lies between them acts unseen, such as the steps of an encoder that the controller

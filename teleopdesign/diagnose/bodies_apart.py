@@ -1,4 +1,4 @@
-"""Residuals of several bodies, each by itself: a body that hardly moved is not computed again.
+"""Residuals of several bodies, computed separately; a body that hardly changed is not recomputed.
 
 Along measured motions the bodies of a model have nothing in common: what one leaves unexplained
 depends on its parameters alone. A search at one body needs no tangents of the other, and in a

@@ -1,4 +1,4 @@
-"""A model compared by simulation: it moves as it likes under the recorded forces.
+"""Comparison by simulation: the model moves freely under the recorded forces.
 
 The force error asks what force a model leaves along the measured motion. Here the recorded command
 and interaction force drive the model, which starts on the measured motion and is then left alone

@@ -1,4 +1,4 @@
-"""Whether a shift of the records' clock pays: it counts only where it explains unseen records.
+"""Delay of a log against its position: when is the delay accepted, and when is it physics?
 
 Estimated on the fit records beside a model that lacks much, a shift may take up a part of what is
 missing, as a wrong effect would. Like an effect it must not raise the error on the check records.

@@ -1,10 +1,11 @@
-"""The commoner of two effects that the records do not tell apart, where more than noise is left.
+"""Spring or gravity: the effect that is more common, where the records hardly distinguish the two.
 
-Over a part of a turn a spring and the gravity of a link are nearly the same torque. Where what is
-left is noise, the records tell the two apart, or the simpler one is the answer. Where more is left,
-something unknown acts besides, and may well be as large as all that the two differ by: fewer
-squares, or fewer parameters, then say little, and what acts on most machines is named. The effect's
-file says what that is (`commoner`), and over which travel the two are hardly told apart (`untold`).
+Over a part of a turn, a spring and the gravity of a link are nearly the same torque. If the
+remaining error is noise, either the records distinguish the two, or the simpler effect is named. If
+more than noise remains, something unknown acts too, and may be as large as the difference of the
+two effects. Then a smaller error, or one parameter less, says little, and the effect that most
+machines have is named. The file of an effect says which effect is more common (`commoner`), and on
+which travel the two are hardly distinguished (`untold`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The end of a ladder: reading errors taken off, errors on the whole records, and the verdict.
+"""The end of a diagnosis: correction of reading errors, errors on whole records, verdict.
 
 The model that an answer ends with holds what its ladder shows. What is not there by the errors that
 the answer states is set aside before; what stays and is not named is said to be unexplained.

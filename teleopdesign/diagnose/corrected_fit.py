@@ -1,4 +1,4 @@
-"""A fit with what its readings do taken off: the same for one model and at the end of a ladder."""
+"""A fit corrected for the errors that sensor readings cause in its parameters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every threshold by which a diagnosis decides, with its unit, its origin and what it trades.
+"""Thresholds of a diagnosis, each with its unit, its origin and the effect of another value.
 
 A stricter value misses more of what is there; a looser one names more of what is not.
 """

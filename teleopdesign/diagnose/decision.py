@@ -1,4 +1,4 @@
-"""What a diagnosis decides: which additions count, and the verdict.
+"""Decisions of a diagnosis: which effects count, and the verdict.
 
 Every threshold is a field of `Criteria`. What counts as noise: `adequacy`. Which of several
 candidates is taken: `order`.
@@ -116,15 +116,16 @@ def objection(
         return REFUSALS.get(ranked.refused, ranked.implausible)
     if floor.jitters and ranked.fit.check_error < criteria.weakened * floor.value:
         return (
-            "leaves less than the jitter of the clock makes without it: it weakens what that makes"
+            "leaves less than the jitter of the clock alone would: it only weakens the error from "
+            "the jitter"
         )
     if gone := list_displaced_parameters(base, ranked.fit, least=criteria.close):
-        return f"drives {', '.join(gone)} to a bound, which the model needs without it"
+        return f"drives to a bound what the model needs without this effect: {', '.join(gone)}"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
     needed = [n for n in added if not ranked.fit.model.declared(n).optional]
     if needed and not _makes_adequate(base, ranked.fit, floor, criteria):
-        return f"needs {', '.join(needed)} at a bound: it is another effect"
+        return f"fits only with {', '.join(needed)} at a bound, where it is another effect"
     return ""
 
 

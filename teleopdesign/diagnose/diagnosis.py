@@ -1,4 +1,4 @@
-"""What a recording says about a model: the ladder of effects, and the verdict on it."""
+"""The result of a diagnosis: the ladder of effects, and the verdict."""
 
 from __future__ import annotations
 

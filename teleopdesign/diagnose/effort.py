@@ -1,4 +1,4 @@
-"""How far a fit is driven, for each purpose."""
+"""Accuracy of a fit for each purpose: how many iterations, how small a change."""
 
 from __future__ import annotations
 

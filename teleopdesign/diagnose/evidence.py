@@ -1,4 +1,4 @@
-"""When is one error smaller than another by more than chance?
+"""Is one error smaller than another by more than chance? Scores of residuals in blocks.
 
 Two models leave residuals r_before and r_after. Their squares differ by d^2 + 2 d r_after with
 d = r_before - r_after: the first part is what the better model explains, the second is chance. Its

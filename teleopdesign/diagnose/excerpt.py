@@ -1,4 +1,4 @@
-"""An excerpt of a long experiment: windows spread evenly over each record, at their times."""
+"""Windows of long records, spread evenly, on which effects are searched."""
 
 from __future__ import annotations
 

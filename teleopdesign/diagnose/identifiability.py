@@ -123,5 +123,5 @@ def doubt(
         if not criteria.strong * value.stderr < fit.model.from_absence(full):
             unit = unit_after_number(fit.model.unit(full))
             best = with_standard_error(value.value, value.stderr)
-            return f"{name} = {best}{unit} is not told from absence by the errors of the readings"
+            return f"{name} = {best}{unit}: within the sensor errors the effect may be absent"
     return ""

@@ -1,4 +1,4 @@
-"""The ladder: effects added one at a time, each supported by records that it was not fitted on."""
+"""The ladder of a diagnosis: effects added one at a time, each supported by check records."""
 
 from __future__ import annotations
 

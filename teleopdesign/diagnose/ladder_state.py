@@ -1,4 +1,4 @@
-"""Where a ladder stands, and what its moves need of the search that they belong to."""
+"""The state of a ladder during the search, and the tools that its moves share."""
 
 from __future__ import annotations
 

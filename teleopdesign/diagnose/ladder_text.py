@@ -80,7 +80,7 @@ def command_error_text(fit: Fit) -> str | None:
 
 def _percent(error: float) -> str:
     """An error in percent; unknown for a model that is blind everywhere."""
-    return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
+    return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
 
 
 #: part of the last model's error by which a refused candidate must be lower to be reported: what a
@@ -108,9 +108,11 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
     others = ", ".join(map(str, rung.could_be))
     if named:
         others = others or "nothing else that was tried"
-        return f"the model before it leaves only noise; it could also be: {others}"
-    also = f"it could also be: {others}" if others else "nothing else that was tried does as much"
-    return f"unexplained: less likely than not what its name says; {also}"
+        return f"without it the model leaves only noise; it could also be: {others}"
+    also = (
+        f"it could also be: {others}" if others else "no other effect that was tried does as much"
+    )
+    return f"unexplained: this effect is less likely than not; {also}"
 
 
 def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
@@ -131,7 +133,7 @@ def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
     if (could_be := could_be_text(rung, named=named)) is not None:
         lines.append(f"      {could_be}")
     lines += [
-        f"      cannot be told: {one.sentence}"
+        f"      not determined: {one.sentence}"
         for one in diagnosis.untold
         if one.candidate == rung.added
     ]
@@ -150,7 +152,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             continue
         lines += describe_addition(diagnosis, rung)
     lines += [
-        f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
+        f"offset of {o['record']} alone: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
         for o in offset_rows(diagnosis)
     ]
     lines += [str(shift) for shift in shifts_of(diagnosis.model, diagnosis.prepared.stretches)]
@@ -176,11 +178,12 @@ def _records_line(diagnosis: Diagnosis) -> str:
     """That the check records leave more than the fit records, and what that may come from."""
     after, on_all = diagnosis.after, diagnosis.on_all_records
     ratio = after.check_error / after.fit_error
-    line = f"records: the check records leave {ratio:.2g} times what the fit records do"
+    line = f"records: the error on the check records is {ratio:.2g} times that on the fit records"
     if on_all is not None and on_all < 0.5 * after.check_error:
         return (
-            f"{line}. Estimated on all records the model leaves {100 * on_all:.3g} % of them: the "
-            "fit records do not tell its values. Fit a record that moves like them, too"
+            f"{line}. A fit to all records leaves {100 * on_all:.3g} % of the check records: the "
+            "fit records alone do not determine the parameters. Use a record that moves like the "
+            "check records for the fit, too"
         )
     return (
         f"{line}: the machine was not the same in both (friction, temperature, load), or moved "
@@ -191,22 +194,21 @@ def _records_line(diagnosis: Diagnosis) -> str:
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict in words."""
     left = diagnosis.left
-    more = f" What is left is {left:.1f} noise floors: more is missing."
+    more = f" The remaining error is {left:.1f} noise floors: more is missing."
     if diagnosis.may_be_noise:
         more = (
-            f" What is left is {left:.1f} noise floors, which were held at "
-            f"{100 * diagnosis.floor.value:.3g} %; by this model sensors leave "
-            f"{100 * diagnosis.floor.drawn:.3g} %: these records do not tell whether more is "
-            "missing."
+            f" The remaining error is {left:.1f} noise floors of {100 * diagnosis.floor.value:.3g} "
+            f"%. With this model sensor errors leave {100 * diagnosis.floor.drawn:.3g} %: these "
+            "records do not tell whether more is missing."
         )
     rest = more if diagnosis.more_is_missing else ""
     if (moment := diagnosis.moment) is not None:
         rest = (
-            f" What is left is {left:.1f} noise floors, but {moment.without:.1f} without one "
-            f"moment ({moment})."
+            f" The remaining error is {left:.1f} noise floors, but {moment.without:.1f} without "
+            f"one moment ({moment})."
         )
     if diagnosis.verdict == "model_adequate":
-        noise = f" What is left is noise ({left:.2f} noise floors)."
+        noise = f" The remaining error is noise ({left:.2f} noise floors)."
         return f"verdict: model_adequate.{rest or noise}"
     if diagnosis.verdict == "effects_missing":
         added = [r for r in diagnosis.rungs if r.added is not None]
@@ -217,7 +219,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         )
         less = [r.said for r in added if r.added not in diagnosis.missing]
         others = (
-            f" {', '.join(less)}: less likely than not; what it describes is unexplained."
+            f" {', '.join(less)}: less likely than not; the force that it describes is unexplained."
             if less
             else ""
         )
@@ -225,8 +227,8 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.unlikely:
         names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
         return (
-            f"verdict: undecided, leading candidate {names}: less likely than not what is "
-            f"missing, for {left:.1f} noise floors are left."
+            f"verdict: undecided, leading candidate {names}: less likely than not, because "
+            f"{left:.1f} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
         names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
@@ -256,6 +258,6 @@ def _nearest(diagnosis: Diagnosis) -> str:
             why = next((a.reason for a in diagnosis.set_aside if a.candidate == candidate), "")
             return (
                 f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: "
-                f"{why or 'these records do not tell that from chance'}."
+                f"{why or 'on these records this may be chance'}."
             )
     return ""

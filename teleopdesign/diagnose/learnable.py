@@ -1,4 +1,4 @@
-"""What could still be learned: a black box takes from the residual what the motion tells of it.
+"""Learnable force: the part of the residual that boosted trees predict from the motion alone.
 
 Boosted trees learn the low-passed residual from the motion alone: place, velocity, acceleration,
 direction, time and travel since the last reversal. They predict records that they have not seen. So

@@ -1,4 +1,4 @@
-"""Where the search of an effect begins: at its least-squares strength, for every form of it.
+"""Start values of an effect: its least-squares strength, for every form of the effect.
 
 An effect whose law is linear in its strength (an amplitude, a damping, an extra level) is fitted at
 zero strength: one column of tangents for each combination of its other parameters, or two where a

@@ -1,10 +1,9 @@
-"""A bandwidth up to which a model does far better: beyond it positions ask for forces that nothing
-shows.
+"""Bandwidth of a comparison that is too wide: the same model leaves far less in a narrower band.
 
-Steps that a filter rounded off, or steps coarser than stated, look like a motion to every test of
-their scatter. Differentiated twice they ask for forces that no actuator gave: of a trolley with a
-filtered potentiometer 80 % were left up to 9.4 Hz, 18 % up to 2.3 Hz, with the documented mass and
-friction. An effect that acts at high frequencies alone, such as a tip that rings, looks the same.
+Steps that the filter of a firmware has smoothed, or steps coarser than stated, look like a motion.
+Their second derivative is an acceleration that no force explains. Example: a trolley with a filtered
+potentiometer, where a model with the documented mass and friction leaves 80 % up to 9.4 Hz, and 18 %
+up to 2.3 Hz. An effect at high frequencies only, such as a resonance, looks the same.
 """
 
 from __future__ import annotations
@@ -31,9 +30,9 @@ class NarrowerBand:
     def __str__(self) -> str:
         return (
             f"up to {self.bandwidth:.3g} Hz this model leaves {100 * self.error:.2g} % of the "
-            f"force, up to {self.chosen:.3g} Hz {100 * self.error_at_chosen:.2g} %: beyond, "
-            "positions ask for forces that nothing shows. A sensor that is filtered or coarser "
-            "than stated does so, or an effect that acts so fast alone: try bandwidth = "
+            f"force, up to {self.chosen:.3g} Hz {100 * self.error_at_chosen:.2g} %. Either the "
+            "position sensor is filtered or coarser than stated, and shows accelerations that "
+            "did not occur, or an effect at high frequencies is missing: try bandwidth = "
             f'{{ value = {self.bandwidth:.3g}, unit = "Hz" }} at comparison'
         )
 
@@ -41,7 +40,7 @@ class NarrowerBand:
 def narrower_band(
     model: Model, prepared: Prepared, *, criteria: Criteria = CRITERIA
 ) -> NarrowerBand | None:
-    """Where a model, estimated anew, leaves far less than at the bandwidth of the comparison.
+    """The widest band in which a model leaves far less than in the band of the comparison.
 
     None: nowhere, or the experiment states its bandwidth
     """

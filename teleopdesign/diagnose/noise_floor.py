@@ -1,4 +1,4 @@
-"""What sensors alone would leave in the force error of a model that is right.
+"""The noise floor: the force error that sensor errors alone would leave with a right model.
 
 The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
 random zero, and the stated noise is drawn. Where the record's readings scatter the more the faster

@@ -1,4 +1,4 @@
-"""One moment of the check records that holds all that is left above noise.
+"""A single moment of the check records that holds all of the error above the noise.
 
 Physics that is missing shows again and again, wherever the motion asks for it. Where all but one
 block of the check records is noise, something happened then, or readings misled: no law follows

@@ -1,4 +1,4 @@
-"""What the records of a diagnosis leave open: accepted effects that others could replace."""
+"""Open questions of a diagnosis: accepted effects that other effects could replace."""
 
 from __future__ import annotations
 

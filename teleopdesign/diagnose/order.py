@@ -1,4 +1,4 @@
-"""The one order of candidates, and which of several that explain equally well is taken.
+"""The order of candidates, and the choice among candidates that explain the records equally well.
 
 Candidates that count come first, then those that leave fewer squares on the check records
 (`rank_key`). Among those that the records do not tell from the best, the simplest is taken

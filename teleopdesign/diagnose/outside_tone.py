@@ -1,4 +1,4 @@
-"""A tone from outside: a force of one frequency, whatever the motion, such as mains hum.
+"""A tone from outside: a force at one frequency that does not follow the motion, such as hum.
 
 It moves the machine a little, at its frequency. A body with a lightly damped tip that resonates
 there moves so without any force, and effects that are not there can stand in for the tone. So an

@@ -1,4 +1,4 @@
-"""Whether fitted effects deserve their names, by what their files say of their parameters.
+"""Plausible parameters: does a fitted effect deserve its name, by the rules in its file?
 
 One rule holds for every force, a user's effects too: along the motion it cannot vary by more
 than what was measured, or another effect cancels what it adds.
@@ -73,8 +73,8 @@ def _explain_cancelled(
         return None
     return (
         f"it varies by +-{facts.text(half, 'force')} along the motion, where no more than "
-        f"{facts.text(facts.acting, 'force')} act: another effect takes it away again, and only "
-        "their sum is known"
+        f"{facts.text(facts.acting, 'force')} act: another effect cancels it, and only the sum of "
+        "the two is known"
     )
 
 

@@ -1,4 +1,4 @@
-"""How probable it is that a candidate is what is missing, from its fits in the ladder.
+"""Probability that a candidate is the missing effect, from its fits along the ladder.
 
 Calibrated on diagnoses of an independent simulator's cases, not by a formula that supposes white
 noise. What an accepted effect's truth depends on there is what is left in the end: where that is

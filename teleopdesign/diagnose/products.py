@@ -1,4 +1,4 @@
-"""Products of an effect's parameters that records tell, though they tell none of them alone.
+"""Products of parameters that the records determine, where they determine no single factor.
 
 A level and the speed below which it acts, a spring and what hangs on it: along a valley of nearly
 equal squares each parameter runs far, and a product of their powers hardly changes.

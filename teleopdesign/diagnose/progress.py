@@ -1,4 +1,4 @@
-"""How far a ranking is: a line of text that also says how many candidates are begun, of all."""
+"""Progress of a ranking: how many of its candidates have been started."""
 
 from __future__ import annotations
 

@@ -213,7 +213,7 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     if candidate.key in stands_for:
         return stands_for[candidate.key]
     new = _select_new(stands_for, base, prepared)
-    return next((f"beside it {key[0]}: {said}" for key, said in new.items()), "")
+    return next((f"with it, {key[0]} is implausible: {said}" for key, said in new.items()), "")
 
 
 def _select_new(

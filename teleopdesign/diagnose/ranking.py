@@ -1,4 +1,4 @@
-"""Candidates in order, with the fits that they were compared by."""
+"""Ranked candidates, each with the fit by which it was compared."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from .fit import Fit
 #: reasons for which an effect does not count, in words
 REFUSALS = {
     "blind": "the command has no influence in more than a quarter of the motion",
-    "weak": "the actuator could not give what the model needs to slide",
-    "hides": "explains no more of the command: less force acts, and so less is left",
+    "weak": "the actuator could not supply the force that the model needs to slide",
+    "hides": "explains no more of the command: the error is smaller only because less force acts",
 }
 
 

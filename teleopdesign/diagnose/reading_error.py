@@ -1,4 +1,4 @@
-"""What reading a motion by sensors does to estimates: their spread, and their shift.
+"""Effect of sensor readings on estimates: their spread and their bias.
 
 Where readings cannot tell a direction, friction may be anything up to its level, and what noise
 asks for is followed on one side only; noise in an acceleration makes an inertia look smaller. Such

@@ -1,4 +1,4 @@
-"""The clock of a logger: by how much the log of a body's force is later than its position's.
+"""Clock of a logger: the delay of a body's force log against the log of its position.
 
 A controller may write a command with the position that it answers, or with the next: a shift of up
 to one row, either way, belongs to the record. It is no physics, but what is not explained by it
@@ -227,11 +227,11 @@ class RecordShift:
         text = f"clock of the records: {what} at {body} {size} rows {word}"
         text += f" ({1e3 * self.late:.3g} ms)"
         if self.at_bound and self.late < 0.0:
-            return f"{text}, at its bound: what is beyond a row counts as physics"
+            return f"{text}, at its bound: a longer shift counts as physics"
         if self.late > CLOCK.early * self.row:
-            late = "the force was measured, and a filter of its sensor does so"
+            late = "the force was measured, and the filter of its sensor has this effect"
             if not self.measured:
-                late = "no machine moves before its command, so that the log is late"
+                late = "no machine moves before its command, so the log is late"
             return f"{text}{', at its bound' if self.at_bound else ''}; {late}"
         if self.is_like_a_delay:
             return f"{text}; a delay of less than a row looks the same"

@@ -1,4 +1,4 @@
-"""Rungs in order: the check error falls with each, and each is fitted without what comes later."""
+"""Rungs in order: the check error falls with each, and each is fitted without later effects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The record's scale of every quantity: where searches start and steps are measured."""
+"""Typical size of every quantity along the records, for start values and steps of a fit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much a diagnosis searches: what each number costs in time, and what it may miss."""
+"""Size of the search: what each number costs in time, and what a smaller one may miss."""
 
 from __future__ import annotations
 
@@ -123,15 +123,16 @@ class SearchPlan:
         if self.most_effects < PLAN.most_effects:
             words.append(f"no more than {self.most_effects} effects were added")
         if self.trials == 0:
-            words.append("pairs of effects that mask each other were not sought")
+            words.append("pairs of effects that mask each other were not searched")
         elif self.trials < PLAN.trials:
             best = "the best candidate" if self.trials == 1 else f"the best {self.trials}"
-            words.append(f"pairs of effects that mask each other were sought with {best} only")
+            words.append(f"pairs of effects that mask each other were searched with {best} only")
         if self.exchanges < PLAN.exchanges:
-            words.append("no accepted effect was held against its rivals again")
+            words.append("accepted effects were not compared with their rivals again")
         if self.long < PLAN.long:
             words.append(
-                f"of more than {self.long} samples, {self.windows} in windows were searched"
+                f"records of more than {self.long} samples were searched on {self.windows} samples "
+                "in windows"
             )
         return tuple(words)
 

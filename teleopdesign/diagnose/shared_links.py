@@ -1,4 +1,4 @@
-"""The links of an arm, seen from one joint: what other joints say of them, and what stays free.
+"""The links of an arm from one joint: what other joints tell of them, and what stays free.
 
 The base parameters b of an arm act at all of its joints, and force is linear in them. What the
 other joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their parameters free.

@@ -1,4 +1,4 @@
-"""The motion that a model makes where a record was made: a record whose truth is known.
+"""Simulated motion of a model under recorded forces: a record with known true parameters.
 
 The recorded command and interaction force act on the body, and a weak spring and damper lead it
 along the recorded motion, as a controller would: their force is part of the command that is kept.

@@ -1,4 +1,4 @@
-"""Effects that lower the error and explain nothing: they stand in for something else.
+"""Effects that lower the error without explaining it: they stand in for something else.
 
 For values that the fit records leave open: a check record that moves as no fit record does is
 missed by a complete model too, where the fit records do not tell its parameters, friction and
@@ -60,9 +60,9 @@ def stands_in_for_values(
     if is_better(without, with_it, floor, criteria=criteria):
         return None
     reason = (
-        "estimated on all records the model leaves "
+        "a fit to all records leaves "
         f"{100 * without.check_error:.3g} % of the check records without it, "
-        f"{100 * with_it.check_error:.3g} % with it: the fit records leave its values open"
+        f"{100 * with_it.check_error:.3g} % with it: the fit records do not determine its values"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
 
@@ -87,8 +87,8 @@ def stands_in_for_readings(
     if leaves <= criteria.adequate or criteria.weakened * leaves <= left:
         return None
     reason = (
-        f"weakens what readings bring in, from {100 * before.drawn:.2g} to "
-        f"{100 * after.drawn:.2g} % of the force, and leaves more beside it: {leaves:.2g} noise "
-        f"floors, {left:.2g} without it"
+        f"lowers the error from the readings of the sensors, from {100 * before.drawn:.2g} to "
+        f"{100 * after.drawn:.2g} % of the force, but leaves {leaves:.2g} noise floors, "
+        f"{left:.2g} without it"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)

@@ -1,4 +1,4 @@
-"""The values that a user states: where a search begins too, unless it ends at them anyway.
+"""Values that the user states: further start values of a search.
 
 Without an effect that is missing, others may have gone where no step leads back from.
 """

@@ -1,4 +1,4 @@
-"""A straight line in place of bends that cancel.
+"""Forces of position in a ladder: a straight line in place of two bends that cancel.
 
 A cable, a bushing and a constant load together pull by a straight line of the place: `spring` and
 `bias`. A ladder adds one effect at a time, and a bend of two parameters, such as `gravity` over a

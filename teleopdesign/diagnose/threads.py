@@ -1,4 +1,4 @@
-"""Work shared among the cores: kernels and transforms release the interpreter's lock.
+"""Threads and memory of a diagnosis: work shared among the cores.
 
 Linear algebra keeps to one core meanwhile. Its threads wait for each other by spinning: with
 several callers on two cores that took a third of the time.

@@ -1,4 +1,4 @@
-"""Where the search of a transmission with friction behind it begins: by courses of the tip.
+"""Start values of a transmission with friction behind it, from simulated motions of the tip.
 
 From starts that leave the friction out, squares lead elsewhere: a tip that nothing holds rattles
 through its gap at other moments than one that stays where it was left. But along a measured motion

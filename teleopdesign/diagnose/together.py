@@ -1,4 +1,4 @@
-"""A move of a ladder: many effects at once, of which those that nothing needs are taken out again.
+"""A move of the ladder: many effects at once, then removal of those that are not needed.
 
 Of three effects that are missing a fourth can do more alone than any of them, and stand in their
 way at every step: a drag that grows with the square of the speed does what a fall of friction at

@@ -1,4 +1,4 @@
-"""What boosted trees are told of a motion: nothing that tells the clock, and no force."""
+"""Inputs of boosted trees: the motion, without force and without anything that tells the time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What records cannot tell of the parameters of accepted effects, though the effects stand.
+"""Parameters of accepted effects that the records do not determine.
 
 An effect may be there beyond doubt while its parameters are not: a level at rest that no force ever
 reached is an extrapolation, and of two parameters a record may show one product. What follows from
@@ -50,4 +50,4 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
     if product.known >= PRODUCT * min(product.errors):
         return ""
     each = ", ".join(f"{100 * error:.2g} %" for error in product.errors)
-    return f"{product} is known to {100 * product.known:.2g} %, each of them alone to {each}"
+    return f"{product} is known within {100 * product.known:.2g} %, each factor only within {each}"

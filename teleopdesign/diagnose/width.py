@@ -1,4 +1,4 @@
-"""Whether records determine what an effect cannot be without, such as the width of a gap.
+"""Widths that the records do not determine, such as that of a backlash.
 
 A tip that knocks against its gap meets it at moments that depend on all that was before: the
 squares go up and down with the width. A standard error is the slope within one dent of them, and
@@ -39,7 +39,7 @@ def explain_open_width(
             if whole_score(again, fit) < criteria.close:
                 unit = unit_after_number(fit.model.unit(full))
                 return (
-                    f"{name} = {other:.3g}{unit} leaves as little as {best.value:.3g}{unit}: these "
+                    f"{name} = {other:.3g}{unit} fits as well as {best.value:.3g}{unit}: these "
                     "records do not determine it"
                 )
     return ""

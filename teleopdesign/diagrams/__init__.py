@@ -1,4 +1,4 @@
-"""Which blocks, wired by signal names."""
+"""Block diagrams: blocks wired by signal names."""
 
 from ..arguments import check_arguments
 from .admittance_device import admittance_device

@@ -1,4 +1,4 @@
-"""Elements of a friction that slip in turn: which of them a number stands for.
+"""Elements of a Maxwell-slip friction: which element a parameter belongs to.
 
 The hysteresis of several springs is the same in any order of them. A fit ends in one order or
 another, and what records must tell is asked of the first two.

@@ -1,4 +1,4 @@
-"""What records say of a body: what an effect may hold its parameters against.
+"""Facts of the records about a body, with which an effect checks its parameters.
 
 An effect deserves its name only where its parameters mean what the name says: something periodic
 must be seen to repeat, a bristle must deflect within the travel. Each effect says so in its
@@ -145,7 +145,7 @@ def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str 
         return None
     return (
         "friction is largest where the torque of gravity is: friction that grows with the load "
-        "(load_dependent_friction) looks much the same. Another load on the link tells them"
+        "(load_dependent_friction) looks much the same. Another load on the link decides"
     )
 
 

@@ -1,4 +1,4 @@
-"""Whether a law depends on where a body is, or on time, and whether it repeats along the way."""
+"""Does a law depend on position or time, and is it periodic in position?"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Structures: two sides of one body, joined by a coupling, of which a hand leads the tip.
+"""Structures: two sides of one body, joined by a coupling; the hand holds the tip.
 
     m_t dv_t/dt = coupling + interaction force - contact - dry friction of the tip
     (m - m_t) a = acting force - coupling - ...
@@ -104,7 +104,7 @@ def rings_like_a_hum(p: Any, facts: RecordFacts) -> str | None:
         return None
     return (
         f"its tip rings at {frequency:.3g} Hz, beside the {mains:g} Hz of the mains: a hum looks "
-        "much the same. A record at rest with the drive on tells them"
+        "much the same. A record at rest with the drive on decides"
     )
 
 

@@ -24,8 +24,8 @@ def plausible(p, facts):
         return None
     return (
         f"a time constant of {p.time_constant:.3g} s is shorter than one cycle of the motion, "
-        f"{cycle:.3g} s: no warming up is told from the motion so fast; it stands for how the "
-        "records begin"
+        f"{cycle:.3g} s: so fast a warm-up is not distinguished from the motion; it "
+        "stands for how the records begin"
     )
 
 

@@ -26,8 +26,8 @@ def untold(p, facts):
     there = float(law(SimpleNamespace(velocity=slowest), p))
     return (
         f"friction of {facts.text(at_rest, 'force')} at rest is more than any force measured, "
-        f"{facts.text(facts.force, 'force')}: the level at rest is not told, nor v_S apart from "
-        f"it; what is known is the fall from {facts.text(there, 'force')} extra at the slowest "
+        f"{facts.text(facts.force, 'force')}: the level at rest and v_S are not determined; "
+        f"what is known is the fall from {facts.text(there, 'force')} extra at the slowest "
         f"motion, {facts.text(slowest, 'velocity')}"
     )
 

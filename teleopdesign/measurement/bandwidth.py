@@ -1,4 +1,4 @@
-"""Up to which frequency a record still tells an acceleration, and the position a motion."""
+"""Usable bandwidth of a record: up to which frequency its position shows a motion."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ _FILE = "experiment.toml"
 @final
 @dataclass(frozen=True, eq=False)
 class Experiment(ByValue):
-    """What was measured, and what the user believes so far. All signals in SI units.
+    """Records of a device, their channels, and the model that the user states. Signals in SI units.
 
     bodies: "device", or "master" and "slave", or the joints of an arm by their names
     channels: "device.position" and the like, "time", "segment"

@@ -1,4 +1,4 @@
-"""What was done to a log on the way to a record: each step, its rule, its effect on the answer."""
+"""Corrections of a log: each step, its rule, and its effect on the answer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clock of a record: which row of the log stands where on one even grid."""
+"""The clock of a record: the place of each row of the log on one even grid."""
 
 from __future__ import annotations
 

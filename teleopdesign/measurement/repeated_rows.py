@@ -1,4 +1,4 @@
-"""Rows that say in every channel what the row before says: the logger had no new reading.
+"""Repeated rows: rows in which no channel has a new reading, read as lost.
 
 A body at rest repeats its position, and a command may stay or follow it; a force that is measured
 with noise repeats only together with all the rest. Where what is read seldom repeats by itself and

@@ -1,4 +1,4 @@
-"""Signals of a log on the even grid of a record, each by the rule of what it is.
+"""Signals of a log on the even grid of a record, each by the rule for its quantity.
 
 A command holds until the next row: what acts in a sample is its mean over the sample. A position is
 interpolated where it moves fast; where it moves by few encoder steps the line between readings is

@@ -1,4 +1,4 @@
-"""Time and travel since a body last set off, and how long it had rested before."""
+"""Time and travel since the last reversal of a body, and the rest before it."""
 
 from __future__ import annotations
 

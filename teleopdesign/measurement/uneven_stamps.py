@@ -1,4 +1,4 @@
-"""Stamps with rows lost, twice or out of order, with pauses, or on no even clock at all."""
+"""Uneven time stamps: lost, repeated or exchanged rows, pauses, no even clock."""
 
 from __future__ import annotations
 

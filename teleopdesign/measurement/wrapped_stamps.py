@@ -1,4 +1,4 @@
-"""Stamps that count on: over the wrap of a counter, over midnight, and where a clock was set back.
+"""Time stamps across the wrap of a counter, midnight and a clock that was set back.
 
 A microcontroller counts microseconds in 32 bits and begins anew after 71 minutes; a time of day
 begins anew at midnight; a clock without a zone goes back an hour in autumn.

@@ -1,4 +1,4 @@
-"""The next experiment: for what a diagnosis leaves open, the motion that best tells it.
+"""The next experiment: the motion that best distinguishes what a diagnosis leaves open.
 
 proposal = propose(find_missing(experiment))
 proposal                                    # what to run, and what it will show

@@ -1,4 +1,4 @@
-"""Available storage of rate-independent friction: the most energy that any motion can take out.
+"""Available storage of path-dependent friction: the most energy that any motion can release.
 
 Willems: a system is passive from rest where this is finite, and then it is a storage function. With
 friction that depends on the path alone, every motion is a sequence of small travels forward or
@@ -80,7 +80,7 @@ class AvailableStorage(ByValue):
         )
         if self.round_trip:
             searched += (
-                f"; strokes of {self.stroke:.3g} m forth and back give out {self.round_trip:.3g} N "
+                f"; strokes of {self.stroke:.3g} m forth and back release {self.round_trip:.3g} N "
                 "times their travel"
             )
         elif self.gain <= self.tolerance and not self.is_finite:

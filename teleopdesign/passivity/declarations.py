@@ -1,4 +1,4 @@
-"""What files of a user declare about energy and size, checked before a claim rests on it.
+"""Declarations of energy and bounds in a user's files, checked before a claim uses them.
 
 Effects and laws of the catalogue are held to their declarations by tests. What another file
 declares counts here only where the law itself shows it: a force of no states that is against the

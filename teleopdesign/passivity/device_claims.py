@@ -1,4 +1,4 @@
-"""The claims that matter for one identified device and one compensator, and the margins."""
+"""Claims about one identified device with one compensator, and their margins."""
 
 from __future__ import annotations
 

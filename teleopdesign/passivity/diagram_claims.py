@@ -164,7 +164,7 @@ def _search_claim(
     whole: Diagram, port: Port, rng: np.random.Generator, search: Search
 ) -> TopicClaim:
     topic = f"port {port}, search by simulation"
-    statement = f"{whole.name}: the port {port} gives out no energy"
+    statement = f"{whole.name}: the port {port} releases no energy"
     if port.motion is None:
         why = "its motion is no single body's, so that a simulation cannot prescribe it"
         return TopicClaim(topic, Claim(statement, Unknown(why)))

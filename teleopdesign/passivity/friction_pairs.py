@@ -1,4 +1,4 @@
-"""Friction of the bodies of a diagram beside the controllers that cancel it, with exact values."""
+"""Friction of bodies together with the controllers that cancel it, with exact values."""
 
 from __future__ import annotations
 

@@ -186,7 +186,7 @@ def extend_to_device(
     if not left or not claim.holds:
         return claim
     why = f"holds for friction alone, {claim.verdict}; but {', '.join(left)} may supply energy, or "
-    why += "are of a kind that no theorem here is about"
+    why += "are in no theorem"
     if stated := [n for n in left if n in declared]:
         why += f"; as declared by {', '.join(stated)} it takes energy, which nothing has checked"
     return Claim(claim.statement, Unknown(why))

@@ -89,9 +89,9 @@ def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list
         return claims
     if math.isnan(rate):
         why = (
-            "from rest its impedance is that of a passive one, but beside a dead time, a loop that "
-            "determines nothing, or a state of an effect that its force does not show, nothing "
-            "shows that no mode inside grows by itself"
+            "from rest its impedance is that of a passive port, but with a dead time, a loop that "
+            "determines nothing, or a state of an effect that its force does not show, a mode that "
+            "no port shows may grow"
         )
         return [
             replace(one, claim=Claim(one.claim.statement, Unknown(why)))
@@ -101,8 +101,8 @@ def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list
         ]
     how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
     why = (
-        f"from rest its impedance is that of a passive one, but a mode inside that no port shows "
-        f"grows by itself {how}"
+        "from rest its impedance is that of a passive port, but a mode that no port shows grows "
+        f"{how}"
     )
     return [
         replace(one, claim=Claim(one.claim.statement, Unknown(why))) if one.claim.holds else one
@@ -113,7 +113,7 @@ def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list
 def _open_inside(one: TopicClaim) -> TopicClaim:
     if not one.claim.holds:
         return one
-    why = "beside its dead times a law has a mode that grows by itself, which no port shows"
+    why = "with its dead times a law has a growing mode that no port shows"
     return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
 
 
@@ -135,7 +135,7 @@ def _nearby(diagram: Diagram) -> list[Diagram]:
 def _restate_on_rounding(one: TopicClaim) -> TopicClaim:
     if one.claim.status != "refuted":
         return one
-    why = f"it fails by less than a change of {NEARBY:.1g} of its values decides: rounding"
+    why = f"it fails, but a relative change of its values by {NEARBY:.1g} decides: rounding"
     return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
 
 

@@ -90,7 +90,7 @@ class PortEnergy(ByValue):
     def __repr__(self) -> str:
         final = float(self.data["energy"][-1])
         error = float(self.data["stderr"][-1])
-        verdict = "gave out energy" if self.certain else "gave out no energy beyond doubt"
+        verdict = "energy was released" if self.certain else "no energy was certainly released"
         return (
             f"Energy into the port: {with_standard_error(final, error)} J in the end, "
             f"least {self.lowest:.4g} J at {self.when:.4g} s: {verdict}"

@@ -1,4 +1,4 @@
-"""Round trips between two points, once their forces repeat: exact at any length.
+"""Periodic motions between two points: the energy that each round trip releases, exactly.
 
 Where friction takes less of some round trip than a compensator gives, energy comes out at each
 round, without end. A grid of forces blurs trips that are short beside its cells.

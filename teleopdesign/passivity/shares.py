@@ -1,4 +1,4 @@
-"""How much of one signal is in others: through junctions alone, exactly, loops of sums solved."""
+"""Share of one signal in others, through junctions alone, with loops of sums solved."""
 
 from __future__ import annotations
 

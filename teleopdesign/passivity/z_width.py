@@ -1,4 +1,4 @@
-"""Z-width of a haptic interface: from what it is when free, up to the stiffest wall it can render.
+"""Z-width of a haptic interface: from its free impedance to the stiffest passive wall.
 
 The wall is a sampled law, linear in its stiffness K and damping B; by default
 

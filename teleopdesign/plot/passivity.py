@@ -189,7 +189,7 @@ def plot_cable_limits(data: xarray.Dataset) -> matplotlib.figure.Figure:
         _floor(left, x)
         left.plot(x, data["plain"].values, color=THEORY, label="plain cycles, proved (P55)")
         for name, marker, colour, label in (
-            ("cycles", "x", REFUTED, "above: a cycle with steps gives out energy"),
+            ("cycles", "x", REFUTED, "above: a cycle with steps releases energy"),
             ("storage", "o", "black", "below: available storage settles"),
             ("capstan", "^", "#CC79A7", "the same, motor friction + 0.2 tension"),
         ):
@@ -211,7 +211,7 @@ def plot_cable_limits(data: xarray.Dataset) -> matplotlib.figure.Figure:
         right.pcolormesh(
             across, level, out, shading="nearest", cmap=ListedColormap(["white", "#F6D5C0"])
         )
-        right.plot([], [], "s", color="#F6D5C0", label="a cycle gives out energy")
+        right.plot([], [], "s", color="#F6D5C0", label="a cycle releases energy")
         right.plot(x, data["plain"].values, color=THEORY, label="plain cycles, ideal contacts")
         right.plot(
             x,

@@ -1,4 +1,4 @@
-"""The largest force that a body's actuation makes of a command, as a bound."""
+"""The largest force that the actuation of a body makes of a command, as a bound."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Friction that balances where the position tells no motion.
+"""Static friction along a measured motion: the force that balances where no motion is certain.
 
 Between its bounds friction takes the value that leaves least within the bandwidth: accelerated
 projected steps (Beck, Teboulle, SIAM J. Imaging Sciences 2, 2009) on the low-passed difference to

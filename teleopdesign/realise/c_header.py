@@ -1,4 +1,4 @@
-"""A controller as difference equations in a C header: what runs on a robot is what was judged.
+"""A controller as difference equations in a C header: the same law in simulation and robot.
 
 The steps are those of the simulation's computer: a state is carried over a sample exactly for its
 rate, all else held, or as its law says itself; what is delayed waits in a ring of samples. Double

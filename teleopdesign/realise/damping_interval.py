@@ -1,4 +1,4 @@
-"""The viscous damping that a body has at every speed, as a bound, and what may supply energy.
+"""A lower bound of the viscous damping at every speed, and the effects that may supply energy.
 
 Forces of velocity count together: a damping that differs with the direction takes from that of the
 other, and drag that grows with speed adds nothing at rest.

@@ -1,4 +1,4 @@
-"""How late a signal is on a grid: whole steps or samples where it can be, else between two."""
+"""A delay on a grid: whole steps or samples where possible, otherwise between two."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A law over ranges of its symbols: an interval that no value leaves.
+"""Interval enclosure of a law: bounds of its value over ranges of its symbols.
 
 Interval arithmetic of mpmath, rounded outward at 53 bits; what mpmath lacks (signs, pieces, tanh)
 or leaves too wide (zero times an unbounded range) stands here. An interval is a set of real

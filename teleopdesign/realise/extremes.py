@@ -1,4 +1,4 @@
-"""The least value of a law over ranges of its symbols: a bound that holds, and where it is met.
+"""The least value of a law over ranges of its symbols, as a bound, and where it is reached.
 
 Branch and bound: the box with the least enclosure is halved until the least value at a point
 is as low as what no value is below. Where the law is monotone in a symbol its range is left out.

@@ -1,4 +1,4 @@
-"""Friction along a measured motion: its level, its bounds, and what balances between them.
+"""Friction along a measured motion: its level, its bounds, and the balance between them.
 
 friction = shape(level, motion); where the position cannot tell a motion it is what balances
 """

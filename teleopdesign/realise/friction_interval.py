@@ -1,4 +1,4 @@
-"""How low and how high the friction of a body can be, as bounds that hold.
+"""Bounds of the friction of a body: the lowest and the highest level.
 
 Over the reach of a motion, and with each parameter anywhere within so many standard errors of its
 estimate and within its declared bounds: a box of parameters, so that a bound holds whatever their

@@ -1,4 +1,4 @@
-"""Signals that a law delays: each becomes a symbol that the simulation looks up in its history."""
+"""Delayed signals of a law: each is a symbol that the simulation looks up in its history."""
 
 from __future__ import annotations
 

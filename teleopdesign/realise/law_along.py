@@ -1,4 +1,4 @@
-"""A law of a body, such as its friction level, at values of its signals, and how sure it is.
+"""A law of a body along its signals, such as its friction level, with a standard error.
 
 The standard error is bounded by the sum of abs(dlaw/dp) times the error of each parameter p:
 whatever their correlation, it is not larger.

@@ -1,4 +1,4 @@
-"""Responses of a device with a compliant structure: its two sides apart, as they are simulated.
+"""Responses of a device with a compliance or backlash, as two bodies.
 
 A hand leads the tip, so that a prescribed motion is that of the tip.
 """

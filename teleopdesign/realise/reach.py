@@ -1,4 +1,4 @@
-"""How far a motion reaches: travel, speed, command, and the ranges of signals that follow."""
+"""Reach of a motion: travel, speed, command, and the ranges of signals that follow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A residual force as an error of the recorded command: mapped back through the model's actuation.
+"""A residual force as an error of the recorded command, mapped back through the actuation.
 
     gain g: r / g     lag: (1 + tau s) r     delay: r, earlier by it     ripple: r / (1 + r sin ...)
 

@@ -1,4 +1,4 @@
-"""What a tip takes of the force along a measured motion, per unit of its inertia.
+"""Force of a tip body along a measured motion, per unit of its inertia.
 
 A tip behind a transmission with a gap, which dry friction slows:
 

@@ -1,4 +1,4 @@
-"""A body with a structure as two moving bodies: what is simulated of compliance and backlash.
+"""A body with compliance or backlash as two moving bodies, for simulation.
 
 The body of a `Moving` block with an effect of that role is parted at its transmission:
 

@@ -1,4 +1,4 @@
-"""One part of a diagram as an equation on the signals that wire it; what has no such equation."""
+"""One part of a diagram as an equation on its signals; parts that have no equation."""
 
 from __future__ import annotations
 

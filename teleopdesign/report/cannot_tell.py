@@ -44,7 +44,9 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
 
 def _untold(diagnosis: Diagnosis) -> list[Finding]:
     """Of effects that stand: which of their parameters' values do not."""
-    return [Finding("values that are not told", "warning", f"{one}.") for one in diagnosis.untold]
+    return [
+        Finding("values that are not determined", "warning", f"{one}.") for one in diagnosis.untold
+    ]
 
 
 def _set_aside(diagnosis: Diagnosis) -> list[Finding]:
@@ -122,8 +124,8 @@ def _findings_at_bound(diagnosis: Diagnosis) -> list[Finding]:
                 topic="a parameter at its bound",
                 concern="warning",
                 sentence=(
-                    f"{name} ended at the bound of what is physical, {number(value)}: its standard "
-                    "error does not hold there, and the records may not need what it stands for."
+                    f"{name} ended at its physical bound, {number(value)}: its standard error is "
+                    "not valid there, and the records may not need its effect."
                 ),
                 numbers={name: value},
             )
@@ -180,7 +182,7 @@ def _find_correlated(fit: Fit) -> list[Finding]:
             concern="note",
             sentence=(
                 f"{other} and {one} are known only together: their estimates have a correlation of "
-                f"{number(r, 3)}, so a change of one is made up by the other."
+                f"{number(r, 3)}, so the other makes up for a change of one."
             ),
             numbers={"correlation": r},
         )
@@ -198,7 +200,7 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
         return []
     return [
         Finding(
-            topic="effects that may be there unseen",
+            topic="effects that these records cannot show",
             concern="note",
             sentence=(
                 f"These records do not determine {join_names(names, 'or')}: with such an effect "

@@ -111,19 +111,19 @@ def verdict(diagnosis: Diagnosis) -> str:
     added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
     more = diagnosis.more_is_missing
     rest = (
-        f"What is left is {left} times what sensor noise alone would leave: more is missing."
+        f"The remaining error is {left} times what sensor noise alone would leave: more is missing."
         if more
-        else f"What is left is near what sensor noise alone would leave, {floor}."
+        else f"The remaining error is near what sensor noise alone would leave, {floor}."
     )
     if diagnosis.may_be_noise:
         rest = (
-            f"What is left is {left} times the noise floor, which was held at {floor}; by this "
-            f"model sensors leave {percent(diagnosis.floor.drawn)}: these records do not tell "
+            f"The remaining error is {left} times the noise floor of {floor}. With this model "
+            f"sensor errors leave {percent(diagnosis.floor.drawn)}: these records do not tell "
             "whether more is missing."
         )
     if (moment := diagnosis.moment) is not None:
         rest = (
-            f"What is left is {left} times what sensor noise alone would leave, "
+            f"The remaining error is {left} times what sensor noise alone would leave, "
             f"{number(moment.without, 2)} times without one moment ({moment})."
         )
     if diagnosis.verdict == "model_adequate":
@@ -134,11 +134,7 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
         less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
-        others = (
-            f" {join_names(less)} helps, but is less likely than not what is missing."
-            if less
-            else ""
-        )
+        others = f" {join_names(less)} helps, but is less likely than not." if less else ""
         pronoun = "it" if len(added) == 1 else "them"
         return f"Your model lacks {join_names(named)}. With {pronoun}, {fell}.{others} {rest}"
     if not added:
@@ -149,8 +145,7 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.unlikely:
         each = "it is" if len(added) == 1 else "each is"
         return (
-            f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not what is "
-            f"missing. {rest}"
+            f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not. {rest}"
         )
     if all(r.alternatives for r in diagnosis.rungs[1:]):
         names = join_names(added)

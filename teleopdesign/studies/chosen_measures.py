@@ -1,4 +1,4 @@
-"""Measures: what is kept of each point; those of the package by name, or any function of a result.
+"""Measures of a study: those of the package by name, or any function of a result.
 
     "tracking_error"                              one of the package
     measure("rms", signal="R_M")                  with its options

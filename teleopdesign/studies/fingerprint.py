@@ -1,4 +1,4 @@
-"""What a study is, as one number: the same for the same model, axes and measures.
+"""Fingerprint of a study: one number, equal for equal model, axes and measures.
 
 Numbers and texts count by value. A function counts by its source, with what it uses of the same
 module and of what it encloses: a constant changed above it makes another study. Functions of

@@ -1,4 +1,4 @@
-"""Search for values at which simulated signals follow measured ones, and how sure they are."""
+"""Search for values with which simulated signals follow measured ones, and their errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A first look at an HDF5 file in a process of its own, which a damaged file may keep or end.
+"""A first look at an HDF5 file in a separate process, which a damaged file may block or end.
 
 Damage can lead the HDF5 library, which is written in C, into a loop without end or into memory that
 is not there. Nothing in Python stops it; another process can be ended.

@@ -1,4 +1,4 @@
-"""What a tuned diagram must keep to: a claim, a margin of a loop, or a measure within a bound.
+"""Limits of a search: a claim, a margin of a loop, or a bound of a measure.
 
 limit("passive")                                     at all ports, margin >= 0
 limit("passive", over={"Z_M.inertia": (0.1, 0.3)})   for all values in the intervals

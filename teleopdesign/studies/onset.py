@@ -1,4 +1,4 @@
-"""Onset of instability: whether a swing grows, and the least of a parameter at which it does."""
+"""Onset of instability: whether an oscillation grows, and the least parameter at which it does."""
 
 from __future__ import annotations
 

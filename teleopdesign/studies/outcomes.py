@@ -1,4 +1,4 @@
-"""What became of the points of a study, in few bytes a point.
+"""Results of the points of a study, in few bytes a point.
 
 Points whose measures are plain numbers, as most do, are rows of one array; texts, arrays and
 reasons of failures are kept as they are.

@@ -1,4 +1,4 @@
-"""What a search asks of points: limits first, then what has to be simulated, many side by side."""
+"""Points of a search: limits first, then simulations, many side by side."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The limits of a tuned point once more, each by the strictest method that there is for it."""
+"""Limits of a tuned point, checked again by the strictest method available."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values as shares of their intervals, 0 to 1: in logarithms where an interval is wide."""
+"""Values scaled to 0..1 of their intervals, logarithmically where an interval is wide."""
 
 from __future__ import annotations
 

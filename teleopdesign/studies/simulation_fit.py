@@ -1,4 +1,4 @@
-"""Parameters that make a simulation follow what was measured.
+"""Parameters that make a simulation follow measured signals.
 
     fitted = td.fit_simulation(
         diagram,

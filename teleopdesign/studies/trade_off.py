@@ -1,4 +1,4 @@
-"""Two measures against each other: the points of which no other one is better in both.
+"""Trade-off of two measures: the points that no other point improves in both.
 
 The second objective is bounded at levels between the best of either (epsilon-constraint), and the
 first is searched at each, as in `tune`; every point that was evaluated on the way counts.

@@ -1,4 +1,4 @@
-"""A process that computes points for a study of this machine, until nobody asks any more."""
+"""A worker process that computes points of a study on this machine."""
 
 from __future__ import annotations
 

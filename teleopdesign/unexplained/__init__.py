@@ -1,4 +1,4 @@
-"""Where a model fails, and a description of what no candidate explains.
+"""Where a model fails, and a description of the residual that no candidate explains.
 
 description = describe_residual(model, prepared)
 description.findings    sentences, each with its numbers and its graph

@@ -143,9 +143,9 @@ def findings_of(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
     error, floors = f"{100 * part.error:.2g} %", number(part.floors)
     time = part.views["time"]
     if part.is_adequate:
-        said = f"what the model leaves ({error} of the force) is what its sensors would leave"
+        said = f"the model leaves {error} of the force, no more than sensor noise would leave"
         return (Finding("what is left", "fine", f"{said}.", numbers, where, time),)
-    said = f"the model leaves {error} of the force, {floors} times what its sensors would leave"
+    said = f"the model leaves {error} of the force, {floors} times what sensor noise would leave"
     findings = [Finding("what is left", "warning", f"{said}.", numbers, where, time)]
     for one in part.dependences:
         findings.append(_finding(one, where))
@@ -183,11 +183,11 @@ def _rest(part: BodyResidual, where: str) -> list[Finding]:
         largest = int(np.argmax(np.abs(part.whiteness.correlation) / part.whiteness.noise))
         lag, r = part.whiteness.lag[largest], part.whiteness.correlation[largest]
         numbers |= {"lag": float(lag), "correlation": float(r)}
-        said += f"; it goes along with itself {number(1e3 * lag)} ms later (correlation {r:.2f})"
-        said += ", which noise of the sensors would not"
+        said += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
+        said += ", unlike sensor noise"
     findings = [Finding("frequency", "note", f"{said}.", numbers, where, part.views["frequency"])]
     if part.at_rest > MOSTLY:
-        said = f"{100 * part.at_rest:.0f} % of what is left is there while no motion can be seen."
+        said = f"{100 * part.at_rest:.0f} % of the residual lies where no motion can be seen."
         velocity = part.views["velocity"]
         findings.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
     floors = part.after / part.floor if part.floor else float("inf")

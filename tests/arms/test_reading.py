@@ -174,7 +174,7 @@ def test_the_signals_of_an_arm_are_checked_and_what_is_not_asked_is_said(folder,
     assert main(["check", str(folder)]) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert "joint2.actuator_force: no outliers" in said
-    assert "not asked what the record can show" in said
+    assert "not checked which effects the record can show" in said
 
 
 def test_what_compares_bodies_refuses_an_arm_in_one_line(folder):

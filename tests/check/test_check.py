@@ -236,7 +236,7 @@ def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
     assert math.isinf(summary.numbers["bias"]), "one way, friction is a constant force"
     assert "the same as coulomb.level" in summary.sentence
     assert "it only ever moves one way" in summary.sentence
-    assert "spring (it never comes to a place at another time)" in summary.sentence
+    assert "spring (it never returns to a place)" in summary.sentence
     motion = found["motion"]
     assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
     assert "no interaction force is measured" in motion.sentence
@@ -273,7 +273,7 @@ def test_what_a_record_can_show_is_not_asked_while_signs_disagree(rod):
     found = check_experiment(changed(rod, "position", np.negative))
     assert str(found).count("\n") == len(found) - 1, "printed, a line for each"
     assert found._repr_html_().count("<tr>") == len(found) + 1
-    assert found[-1].sentence.startswith("not asked what the record can show")
+    assert found[-1].sentence.startswith("not checked which effects the record can show")
     assert [f.topic for f in found if f.concern == "warning"] == ["signs"]
 
 

@@ -71,7 +71,9 @@ def test_what_drives_an_effect_of_the_model_to_its_bound_is_barred_if_that_is_su
     for error, barred in [(0.66, True), (0.67, False)]:  # three standard errors of 2
         base = model("coulomb", "viscous", damping=(2.0, error))
         said = objection(of(base), candidate_at(base, "spring", DAMPING), low)
-        assert (said == f"drives {DAMPING} to a bound, which the model needs without it") == barred
+        assert (
+            said == f"drives to a bound what the model needs without this effect: {DAMPING}"
+        ) == barred
         assert bool(said) == barred
     both = model("coulomb", "viscous", "bias")
     drives = candidate_at(both, "spring", "device.bias.force", DAMPING)
@@ -81,7 +83,10 @@ def test_what_drives_an_effect_of_the_model_to_its_bound_is_barred_if_that_is_su
 def test_what_needs_a_parameter_of_its_own_at_a_bound_is_another_effect_unless_noise_is_left():
     base, at = model("coulomb"), "device.presliding.stiffness"
     bound = candidate_at(base, "presliding", at)
-    assert objection(of(base), bound, floor(0.01)) == f"needs {at} at a bound: it is another effect"
+    assert (
+        objection(of(base), bound, floor(0.01))
+        == f"fits only with {at} at a bound, where it is another effect"
+    )
     assert objection(of(base), bound, floor(0.2)) == "", "only noise is left"
     # a base that left noise already is no worse without it
     assert "another effect" in objection(of(base, error=0.31), bound, floor(0.2))

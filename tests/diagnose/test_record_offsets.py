@@ -96,7 +96,7 @@ def test_the_file_says_it_and_the_answer_gives_it_back(rod, tmp_path):
         "bias",
         "N",
     )
-    assert f"own of {own['record']}: bias {own['value']:.4g} N" in ladder_text(found)
+    assert f"offset of {own['record']} alone: bias {own['value']:.4g} N" in ladder_text(found)
     json.dumps(answer(found))
     write_predictions(found, tmp_path / "predictions.csv")
     rows = np.genfromtxt(tmp_path / "predictions.csv", delimiter=",", names=True, dtype=None)

@@ -366,4 +366,4 @@ def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
     found = check_experiment(shifted(adequate, 1.0))
     (shift,) = [f for f in found if f.topic == "time shift"]
     assert shift.concern == "note"
-    assert "logger's" in shift.sentence
+    assert "delay of the logger" in shift.sentence

@@ -75,7 +75,7 @@ def test_an_effect_that_all_records_do_not_ask_for_is_set_aside(tmp_path):
     recorded = experiment(tmp_path, drag=0.0, speeds=(0.3, 0.32))
     _, _, none = judge_drag(recorded)
     assert none is not None and none.candidate.key == ("quadratic_drag", "device")
-    assert "the fit records leave its values open" in none.reason
+    assert "the fit records do not determine its values" in none.reason
 
 
 def test_an_experiment_without_a_check_record_has_nothing_to_hold_an_effect_against(tmp_path):

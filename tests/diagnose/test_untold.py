@@ -63,7 +63,7 @@ def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagno
     assert find_doubtful_rung(rungs, prepared_case) is None
     last = replace(rungs[-1], fit=with_errors(fit, 1.5))
     rung, why = find_doubtful_rung((little_more_left(rungs[0], fit), last), prepared_case)
-    assert rung.added == added and "not told from absence" in why
+    assert rung.added == added and "the effect may be absent" in why
 
 
 def little_more_left(rung, fit):
@@ -151,7 +151,7 @@ def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, ex
         set_aside=(SetAside(gone, 0.03, "gap = 0.1 +- 0.2 m is not told from absence"),),
     )
     text = ladder_text(whole)
-    assert "cannot be told: the level at rest" in text
+    assert "not determined: the level at rest" in text
     assert "set aside: backlash at device (3.00 %): gap" in text
     content = answer(whole)
     assert content["cannot_tell"][0]["effect"] == "stribeck"
@@ -183,7 +183,7 @@ def test_two_forces_that_take_each_other_away_are_neither_of_them(diagnosis, pre
         }
     )
     said = implausible_effects(much, prepared_case)
-    assert "only their sum is known" in said["spring", "device"]
+    assert "only the sum of the two is known" in said["spring", "device"]
     assert ("hardening_spring", "device") not in said or "neutral" in str(said)
 
 
@@ -197,14 +197,14 @@ def product(*errors, known):
     [
         (
             product(0.51, 0.3, known=0.149),
-            "a * b is known to 15 %, each of them alone to 51 %, 30 %",
+            "a * b is known within 15 %, each factor only within 51 %, 30 %",
         ),
         (product(0.51, 0.3, known=0.151), ""),  # as well as the better of the two, nearly
         (product(0.49, 0.4, known=0.01), ""),  # each is known well enough
-        (product(0.3, 0.51, 0.4, known=0.1), "a * b * c is known to 10 %"),
+        (product(0.3, 0.51, 0.4, known=0.1), "a * b * c is known within 10 %"),
         (
             product(3.0, 2.0, known=0.9),
-            "a * b is known to 90 %, each of them alone to 3e+02 %, 2e+02 %",
+            "a * b is known within 90 %, each factor only within 3e+02 %, 2e+02 %",
         ),
         (None, ""),
     ],

@@ -63,7 +63,7 @@ def test_a_width_is_determined_by_motion_beyond_it(tmp_path, speed, open_width):
     said = explain_open_width(fit, Candidate(EFFECT, "device"), prepared)
     assert bool(said) == open_width
     if open_width:
-        assert "rad/s leaves as little as" in said and "do not determine it" in said
+        assert "rad/s fits as well as" in said and "do not determine it" in said
 
 
 def test_only_what_is_essential_and_free_is_asked(tmp_path):
@@ -122,7 +122,7 @@ def test_a_width_is_held_at_a_quarter_and_at_four_times_its_value(asked):
     assert all(v.fixed for v in values)
     for scores, other in [((2.9, 9.0), "0.125"), ((9.0, 2.9), "2"), ((9.0, -9.0), "2")]:
         said, _ = asked(dict(zip((0.125, 2.0), scores, strict=True)))
-        assert said.startswith(f"width = {other} rad/s leaves as little as 0.5 rad/s")
+        assert said.startswith(f"width = {other} rad/s fits as well as 0.5 rad/s")
     assert asked({0.125: 3.1, 2.0: 3.1})[0] == ""
 
 

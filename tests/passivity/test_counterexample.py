@@ -104,4 +104,4 @@ def test_evidence_says_what_a_motion_that_does_not_return_would_keep():
     rng = np.random.default_rng(1)
     claim = search_counterexample(diagram, stroke=0.02, speed=0.1, rng=rng, tries=3)
     assert claim.status == "evidence" and "that returns" in claim.statement
-    assert "on the way back to its start one gives out 0." in claim.verdict.searched
+    assert "on the way back to its start one releases 0." in claim.verdict.searched

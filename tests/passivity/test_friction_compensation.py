@@ -72,7 +72,7 @@ def test_a_record_whose_energy_is_not_confirmed_is_refused(tmp_path):
     file = tmp_path / "motion.json"
     write_record(compensated(1.5).record, file)
     file.write_text(file.read_text().replace('"energy": ', '"energy": 1'))
-    with pytest.raises(ModelError, match="the replay gives out"):
+    with pytest.raises(ModelError, match="the replay releases"):
         read_record(file)
     file.write_text("[]")
     with pytest.raises(ModelError, match="no record of a motion"):

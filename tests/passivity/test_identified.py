@@ -59,7 +59,7 @@ def test_bristle_damping_below_a_falling_level_is_not_dropped():
     assert own.claim.record.replay() > 0
     found = claims_on(body)
     assert found["estimate"].status == found["95 % interval"].status == "unknown"
-    assert "bristle damping may give out energy" in str(found["estimate"].verdict)
+    assert "bristle damping may release energy" in str(found["estimate"].verdict)
     assert list(margins(identify_device(body))) == []
 
 

@@ -119,7 +119,10 @@ def test_values_that_are_not_told_and_effects_set_aside_stand_on_the_page(diagno
         set_aside=(SetAside(other, 0.034, "it is not told from absence"),),
     )
     found = {f.topic: f for f in cannot_tell(both)}
-    assert found["values that are not told"].sentence == f"{added}: the level at rest is not told."
+    assert (
+        found["values that are not determined"].sentence
+        == f"{added}: the level at rest is not told."
+    )
     aside = found["effects set aside"]
     assert aside.sentence == (
         f"{other} lowered the error to 3.40\u202f% and was taken out again: it is not told from "

@@ -125,7 +125,7 @@ def test_an_effect_that_helps_and_is_not_named_is_said_to_beside_those_that_are(
     both, other = two_added(diagnosis)
     text = verdict(both)
     assert text.startswith("Your model lacks stribeck at device. With them, the force error")
-    assert f" {other} helps, but is less likely than not what is missing." in text
+    assert f" {other} helps, but is less likely than not." in text
     each = verdict(replace(both, verdict="undecided", named=()))
     assert f"with stribeck at device and {other} the force error" in each
     assert "but each is less likely than not" in each
@@ -146,13 +146,13 @@ def test_what_is_left_is_near_noise_or_more_is_missing_or_may_hide_in_a_floor_th
     diagnosis,
 ):
     near = verdict(with_floor(diagnosis, floors=1.5))
-    assert "What is left is near what sensor noise alone would leave, " in near
+    assert "The remaining error is near what sensor noise alone would leave, " in near
     far = with_floor(diagnosis, floors=4.0, drawn=3.0)
-    assert f"left is {number(far.left, 2)} times what sensor noise" in verdict(far)
+    assert f"error is {number(far.left, 2)} times what sensor noise" in verdict(far)
     assert "more is missing." in verdict(far)
     held = with_floor(diagnosis, floors=4.0, drawn=3.0, held=True)
-    assert f"which was held at {percent(held.floor.value)}" in verdict(held)
-    assert f"sensors leave {percent(held.floor.drawn)}" in verdict(held)
+    assert f"the noise floor of {percent(held.floor.value)}" in verdict(held)
+    assert f"sensor errors leave {percent(held.floor.drawn)}" in verdict(held)
     assert "more is missing" in verdict(with_floor(diagnosis, floors=4.0, drawn=1.1, held=True))
 
 

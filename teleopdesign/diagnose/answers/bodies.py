@@ -1,4 +1,4 @@
-"""The bodies of a model as plain data: the tables that experiments and diagrams have for them."""
+"""Bodies of a model as plain data, in the tables of experiments, diagrams and answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Of which experiment an answer is: title, records, and a digest of all that was read of them."""
+"""Fingerprint of an experiment: title, records and a digest, so that an answer fits its records."""
 
 from __future__ import annotations
 

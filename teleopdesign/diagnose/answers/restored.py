@@ -1,4 +1,4 @@
-"""A diagnosis from its answer file and its experiment: nothing is sought or estimated anew."""
+"""Read a diagnosis back from its answer file and its experiment, without a new search or fit."""
 
 from __future__ import annotations
 

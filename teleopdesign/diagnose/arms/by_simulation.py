@@ -1,4 +1,4 @@
-"""The model of an arm compared by simulation: all joints move as they like under their commands.
+"""An arm compared by simulation: all joints move freely under their recorded commands.
 
 As `compare_by_simulation` does for bodies: each joint starts on the measured motion and is left
 alone for a horizon, all joints together, so that a joint that comes away pulls the others along.

@@ -1,4 +1,4 @@
-"""The motion that the model of an arm makes under the recorded commands of all its joints.
+"""Simulated motion of an arm: the motion of its model under the recorded commands of all joints.
 
 The bodies of all joints are one diagram, joined by the inertia matrix of the links. Friction and
 every other effect at a joint are those of its body, in the loop that simulates any diagram. What

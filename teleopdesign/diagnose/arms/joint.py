@@ -1,4 +1,4 @@
-"""One joint of an arm while its ladder is climbed, with what the other joints say of the links."""
+"""One joint of an arm during the search, with what the other joints tell about the links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The ladder of an arm: effects at its joints, those first that explain most of the whole arm.
+"""The ladder of an arm: effects at its joints, added in the order of what they explain of the arm.
 
 What one joint lacks leads the links astray, and other joints seem to lack something too. So the
 joint is taken first at which an effect takes most away from the squares of all joints; the others

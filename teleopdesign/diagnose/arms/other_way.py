@@ -1,4 +1,4 @@
-"""Whether a coupling between two joints is told from one that acts the other way.
+"""Direction of a coupling between two joints: do the records distinguish it from the reverse one?
 
 What couples two joints both ways alike may be a part of the links' inertia. Then a force at one
 joint by the motion of another leaves the same as the opposite force at that other joint: links take
@@ -36,6 +36,7 @@ def untold_way(
     there = Candidate(added.effect, other)
     return Untold(
         added,
-        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm, "
-        f"where {100 * last.check_error:.3g} % are left: links can take up what couples both alike",
+        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm's "
+        f"forces instead of {100 * last.check_error:.3g} %: parameters of the links can imitate a "
+        "coupling that acts both ways",
     )

@@ -1,4 +1,4 @@
-"""What a joint's ladder added, held against the whole arm: which effects stay with all joints.
+"""Effects of one joint tested on the whole arm: which stay when all joints are estimated together.
 
 The records of one joint may support an effect that stands for what another joint lacks, or for
 links that were led astray. With all joints estimated together it helps no more, and is set aside.
@@ -20,9 +20,9 @@ from .joint import Joint
 from .prepared import PreparedArm
 
 #: why an effect that one joint's records supported is not there
-NO_HELP = "it helps no more with all joints estimated together"
+NO_HELP = "it lowers the error no more once all joints are estimated together"
 #: the same of one that passes on less of what sensors read: error and noise floor fall together
-NO_MORE_THAN_NOISE = "it weakens the noise of the sensors and explains no more than that"
+NO_MORE_THAN_NOISE = "it only weakens the noise of the sensors"
 
 
 def hold_against_arm(

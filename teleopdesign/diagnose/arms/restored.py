@@ -1,4 +1,4 @@
-"""The diagnosis of an arm from its answer file: nothing is sought or estimated anew."""
+"""Read the diagnosis of an arm back from its answer file, without a new search or fit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clipped channels: a signal that would go on runs flat against one value.
+"""Clipped channels: a signal that stays at one value where it should continue.
 
 A sine that is sampled often enough rests near its peak too, and a body rests where it was put: it
 counts as clipped only where the signal arrives with speed, again and again, and stops dead.

@@ -67,7 +67,7 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     if step is not None:
         text = (
             f"moves in steps of {step:.4g} {signal.unit}, {step / stated:.0f} times the stated "
-            f"{stated:.4g}: the encoder leaves more open than is stated; write resolution = "
+            f"{stated:.4g}: the encoder is coarser than stated; write resolution = "
             f"{_as_written(signal, step):.4g} at channels.{signal.name}."
         )
     else:
@@ -77,7 +77,7 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
             text += f", but {swapped[0]} is: are the two columns swapped?"
         elif read_step < stated:
             concern = "note"
-            text += ", but finer: it leaves less open than is stated."
+            text += ", but in finer ones."
         else:
             text += f", but of {read_step:.4g}."
     return [

@@ -1,4 +1,4 @@
-"""Force steps: a command or a force that is logged in coarse steps."""
+"""Force steps: a command or a force with a coarse resolution in the log."""
 
 from __future__ import annotations
 

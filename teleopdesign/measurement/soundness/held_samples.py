@@ -1,4 +1,4 @@
-"""Held samples: readings that repeat the one before where they should have changed.
+"""Held samples: readings that repeat the reading before although the body moves.
 
 Single ones come from a log that runs faster than what it records, long ones from a sensor that is
 stuck, a channel that is constant throughout from a wire that is not connected.
@@ -54,7 +54,7 @@ def check_repeats(signal: Signal) -> list[Finding]:
             "held samples",
             "warning" if part > 0.05 else "note",
             f"{signal.name}: {len(odd)} samples ({100 * part:.2g} % of those in motion) repeat the "
-            "one before while the body goes on: the log is not in step with the sensor.",
+            "sample before although the body moves: the log is not in step with the sensor.",
             {"count": float(len(odd)), "part": part, "time": signal.time(row)},
             signal.record.file,
             signal.around(row, odd, name="repeats the one before", span=30),

@@ -1,4 +1,4 @@
-"""Noise: what is stated of a channel against what its readings scatter.
+"""Noise: stated noise of a channel compared with the scatter of its readings.
 
 Seen noise is the content near the Nyquist frequency (`reading_noise`); the median over pieces of
 the record ignores motion that is rich there. The noise floor of a diagnosis rests on these numbers.

@@ -1,4 +1,4 @@
-"""Outliers and jumps: single samples off the others' course, and positions that leap.
+"""Outliers and jumps: single samples far from their neighbours, and positions that jump.
 
 A lone sample is what replacing it by the cubic through its four neighbours explains away; a jump is
 what shifting all that follows explains away. Steps, impacts and chatter are neither.

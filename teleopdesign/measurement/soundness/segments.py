@@ -1,4 +1,4 @@
-"""Gaps: where records are interrupted, and what is too short to be compared."""
+"""Gaps: interruptions of a record, and segments too short for a comparison."""
 
 from __future__ import annotations
 

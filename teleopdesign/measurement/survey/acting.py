@@ -1,4 +1,4 @@
-"""Which of two logged forces acted: the one that was wanted, or the current that a drive measured.
+"""Desired or measured current: which of two logged forces acted.
 
 A controller that follows a model logs the force that its model asks for. Friction that the model
 lacks is in the measured current alone: the wanted force would say that nothing is missing.

@@ -1,4 +1,4 @@
-"""What is known of a log while it is surveyed: columns on one grid, and what they are taken for."""
+"""Results of a survey: columns of a log on one grid, and the quantity that each may hold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How columns of a log go together: wraps, and what is the derivative of what."""
+"""Relations between columns of a log: wraps, and which column is the derivative of which."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the lines above a table say of constants: "8192 counts per turn", "kt = 0.1 Nm/A"."""
+"""Constants in the lines above a table: "8192 counts per turn", "kt = 0.1 Nm/A"."""
 
 from __future__ import annotations
 

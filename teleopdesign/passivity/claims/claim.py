@@ -83,7 +83,7 @@ class Refutation(ByValue):
     holds = False
 
     def __str__(self) -> str:
-        return f"{self.method}: gives out {self.record.energy:.4g} J"
+        return f"{self.method}: releases {self.record.energy:.4g} J"
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,8 +156,8 @@ class Claim(ByValue):
         verdict = self.verdict
         if isinstance(verdict, Refutation) and not (verdict.replayed > 0 < verdict.record.energy):
             why = (
-                f"{verdict.method}: a motion that should give out {verdict.record.energy:.4g} J "
-                f"gives out {verdict.replayed:.4g} J where it is replayed: it shows nothing"
+                f"{verdict.method}: a motion that should release {verdict.record.energy:.4g} J "
+                f"releases {verdict.replayed:.4g} J in its replay: no refutation"
             )
             object.__setattr__(self, "verdict", Unknown(why))
 

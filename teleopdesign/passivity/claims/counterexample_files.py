@@ -56,7 +56,7 @@ def read_record(path: str | Path) -> Counterexample:
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as problem:
         raise ModelError(f"{path}: no record of a motion: {problem}"[:300]) from problem
     if abs(replayed - stated) > 1e-6 * abs(stated) or replayed <= 0:
-        raise ModelError(f"{path}: states {stated:g} J, the replay gives out {replayed:g} J")
+        raise ModelError(f"{path}: states {stated:g} J, the replay releases {replayed:g} J")
     return record
 
 

@@ -1,4 +1,4 @@
-"""A margin or a claim of any kind at points of a box: what is seen there, and no proof."""
+"""A margin or a claim at points of a box: numbers, no proof."""
 
 from __future__ import annotations
 

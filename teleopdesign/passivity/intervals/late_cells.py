@@ -1,4 +1,4 @@
-"""A sum of late polynomials over a box: shown to be nowhere zero on the axis, part by part.
+"""Quasi-polynomials with dead times over a box: no zero on the axis, shown part by part.
 
 About the middle m of a part, with half widths r, a monomial moves by at most (abs(m) + r)^a -
 abs(m)^a, and e^(-j w tau) by at most the change of w tau. So f(jw) is not zero in a part where

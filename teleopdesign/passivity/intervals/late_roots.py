@@ -1,4 +1,4 @@
-"""Zeros of a sum of late polynomials: the rightmost that a search finds, and a proof of one.
+"""Roots of a quasi-polynomial with dead times: the rightmost one found, and a proof of one.
 
 f(s) = sum_k p_k(s) e^(-s T_k),   as dead time (s) -> coefficients in s, highest first
 """

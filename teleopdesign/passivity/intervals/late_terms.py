@@ -1,4 +1,4 @@
-"""A sum of late polynomials with values and dead times within intervals, in exact numbers."""
+"""Quasi-polynomials with values and dead times in intervals, in exact numbers."""
 
 from __future__ import annotations
 

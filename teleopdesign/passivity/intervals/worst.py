@@ -1,4 +1,4 @@
-"""The least margin of a claim in a box, as far as a search finds it. Nothing is proved here."""
+"""The least margin of a claim in a box, by search; no proof."""
 
 from __future__ import annotations
 

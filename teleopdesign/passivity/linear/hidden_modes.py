@@ -1,4 +1,4 @@
-"""Modes of a diagram that grow by themselves, those that its ports do not show included.
+"""Growing modes of a diagram, hidden modes included.
 
 An impedance is what ports do from rest. A pole of a controller that a zero of the next one cancels
 is not in it: from rest it never moves, but the least disturbance grows without end, and may come
@@ -49,7 +49,7 @@ from .in_full import (
 from .polynomials import fraction, is_hurwitz
 
 #: why nothing is proved of a system for which `grows_unseen` holds
-UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
+UNSEEN = "from rest its impedance is that of a passive port, but a mode that no port shows grows"
 _ONE = sp.Poly(1, S, domain="QQ")
 
 

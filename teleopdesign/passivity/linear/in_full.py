@@ -1,4 +1,4 @@
-"""All equations of a linear diagram as polynomials in s, nothing cancelled between them.
+"""All equations of a linear diagram as polynomials in s, without cancellation.
 
 A law brings the equations of its states, an effect its numerator and denominator, so that a
 mode is there as often as there are states for it. A transfer function shows less: what one block

@@ -64,7 +64,7 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
             return Claim(statement, Unknown(NO_WAVE))
         if is_rounded(system) and _rests_on_rounding(z, wave):
             why = (
-                f"it fails by less than a change of {NEARBY:.1g} of coefficients decides: rounding"
+                f"it fails, but a relative change of coefficients by {NEARBY:.1g} decides: rounding"
             )
             return Claim(statement, Unknown(why))
         w, a = float(wave.frequency), float(wave.rate)

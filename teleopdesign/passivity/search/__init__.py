@@ -1,1 +1,1 @@
-"""Motions that release energy, sought: along strokes by simulation, and as growing waves."""
+"""Search for motions that release energy: strokes by simulation, and growing waves."""

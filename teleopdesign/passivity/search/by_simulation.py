@@ -195,7 +195,7 @@ def search_counterexample(
         raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")
     length, rate = (unit_of(q, first_axis(diagram)) for q in ("position", "velocity"))
     statement = (
-        f"the port {port[0]}, {port[1]} of the {diagram.name} gives out no energy over any motion "
+        f"the port {port[0]}, {port[1]} of the {diagram.name} releases no energy over any motion "
         f"that returns, within {stroke:.3g} {length} and {speed:.3g} {rate}"
     )
     on_the_way = [(0.0, 0.0)]
@@ -215,14 +215,14 @@ def search_counterexample(
             return Claim(statement, Refutation(f"a motion found by search, {name}", confirmed))
     best = max(s for s, _, _ in motions)
     if not np.isfinite([best, *(x for pair in on_the_way for x in pair)]).all():
-        return Claim(statement, Unknown("the simulated forces leave the finite numbers"))
+        return Claim(statement, Unknown("the simulated forces are not finite"))
     searched = (
-        f"{len(motions)} motions (sinusoids, stops and reversals, random paths), none gives out "
-        "energy; which is no proof"
+        f"{len(motions)} motions (sinusoids, stops and reversals, random paths), none releases "
+        "energy; a search is no proof"
     )
     most, turned = max(on_the_way)
     if most > _LENT * turned:
-        searched += f"; on the way back to its start one gives out {most:.3g} J"
+        searched += f"; on the way back to its start one releases {most:.3g} J"
     return Claim(statement, Evidence(True, searched, -best, "of the energy turned over"))
 
 

@@ -1,4 +1,4 @@
-"""What a theorem needs of its numbers: stated beside it, and checked before it claims anything.
+"""Hypotheses of a theorem about its numbers: stated beside it, and checked at every call.
 
     @under(damping=NOT_NEGATIVE, sample_time=POSITIVE, controller=FREE)
     def sampled_passivity(controller, *, damping, sample_time): ...

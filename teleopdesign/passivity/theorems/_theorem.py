@@ -1,4 +1,4 @@
-"""What a theorem is here: which questions about a device it answers, and its claims about them.
+"""A theorem: which questions about a device it answers, and its claims.
 
 A file of this folder states its mathematics as functions of numbers, each with its hypotheses, and
 a `THEOREM`: what of it is asked about every device and diagram. Another file is another theorem.

@@ -1,4 +1,4 @@
-"""Any compensator whose force stays within the level of ideal friction is passive beside it.
+"""Any compensator whose force is bounded by the level of ideal friction is passive with it.
 
 The force of friction at any speed is at least f_C against the motion, that of the compensator at
 most f_D along it, so f_D <= f_C is enough; beyond it a Dahl compensator of that level releases

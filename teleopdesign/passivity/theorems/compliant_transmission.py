@@ -113,7 +113,7 @@ def free_motion(
     statement = (
         f"slow free motion of a joint (motor {motor_level:g} N, link {link_level:g} N behind "
         f"{transmission_stiffness:g} N/m) with compensator ({compensator_level:g} N, "
-        f"{compensator_stiffness:g} N/m) gives out no energy"
+        f"{compensator_stiffness:g} N/m) releases no energy"
     )
     margin = free_motion_margin(
         motor_level=motor_level,

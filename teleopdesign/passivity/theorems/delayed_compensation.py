@@ -1,4 +1,4 @@
-"""A compensator that acts late: what it releases, and when small motion stays passive.
+"""A delayed compensator: the energy that it releases, and when small motion stays passive.
 
 Along x = A sin(w t) a Dahl compensator of describing function N that sees the position tau late
 releases

@@ -1,4 +1,4 @@
-"""A spring between master and slave with a dead time each way: absolutely stable, and until when.
+"""A spring between master and slave with a delay each way: the limit of absolute stability.
 
 With dampings b_m, b_s of master and slave, stiffness P and one-way delay T the criterion of
 Llewellyn reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.

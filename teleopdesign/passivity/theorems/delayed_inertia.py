@@ -1,4 +1,4 @@
-"""How much inertia may be cancelled from an acceleration that is late and low-passed.
+"""How much inertia may be cancelled with a delayed and low-passed acceleration.
 
     Z = m s + B - mhat s F(s) e^(-s tau),   F = 1/(T s + 1)^r
 

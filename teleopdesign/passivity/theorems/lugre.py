@@ -154,7 +154,7 @@ def add_bristle_damping(
     )
     if s2 * low < s1 * (high - low):
         why = (
-            f"bristle damping may give out energy where the level falls from {decimal(high)} to "
+            f"bristle damping may release energy where the level falls from {decimal(high)} to "
             f"{decimal(low)} N, unless viscous damping is {float(s1 * (high / low - 1)):.4g} N s/m "
             "or more; the pair without both is proved"
         )
@@ -281,7 +281,9 @@ def _claims(question: Question) -> list[TopicClaim]:
         stribeck_velocity=values["stribeck.stribeck_velocity"],
     )
     if device.body.level() != plain and not claim.holds:
-        why = "the condition fails, and no motion is sought where the level is not Stribeck's alone"
+        why = (
+            "the condition fails, and no motion is searched where the level is not Stribeck's alone"
+        )
         claim = Claim(claim.statement, Unknown(why))
     return [TopicClaim("the device's own friction", claim, time="any")]
 

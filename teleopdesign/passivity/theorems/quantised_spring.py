@@ -1,4 +1,4 @@
-"""A sampled virtual spring on an encoder with steps, and what friction compensation costs it.
+"""A sampled virtual spring on an encoder with steps, and its limit with friction compensation.
 
 The position is rounded to steps Delta (error q within h = Delta/2) each T, the force -K (x + q) is
 held; the body has damping b and Coulomb friction f_C, of which up to f_D is cancelled. Over a

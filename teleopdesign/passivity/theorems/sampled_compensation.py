@@ -155,13 +155,13 @@ def sampled_compensation(
     )
     statement = (
         f"Dahl friction {decimal(f_c)} N, {decimal(presliding)} N/m and damping {decimal(b)} N s/m "
-        f"with a Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, each "
-        f"{decimal(period)} s, is passive"
+        f"with a Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, "
+        f"every {decimal(period)} s, is passive"
     )
     helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(presliding))
     motion = _find_best(helps, against, float(b), float(period), late)
     if motion is None:
-        why = f"a motion gives out energy, but one of more than {LONGEST:g} samples"
+        why = f"a motion releases energy, but one of more than {LONGEST:g} samples"
         return Claim(statement, Unknown(why))
     how = (
         f"trembling {motion.path:.3g} m a sample, {motion.power:.3g} W: friction relaxes, and "
@@ -206,7 +206,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     assert computer is not None and question.bristle is not None and question.late is not None
     level, stiffness = question.bristle
     if device.bristle_damping.high > 0:
-        why = "no theorem here is about bristle damping beside a compensator in a computer"
+        why = "no theorem covers bristle damping beside a compensator in a computer"
         statement = "the device's friction with its sampled compensator is passive"
         return [TopicClaim("any motion, sampled", Claim(statement, Unknown(why)))]
     claim = sampled_compensation(

@@ -134,7 +134,7 @@ def velocity_compensation(
     presliding = None if presliding_stiffness is None else exact(presliding_stiffness)
     period = sp.S(0) if sample_time is None else exact(sample_time)
     contact = "ideal" if presliding is None else f"presliding ({decimal(presliding)} N/m)"
-    computer = f", sampled each {decimal(period)} s, {late} late," if period else ""
+    computer = f", sampled every {decimal(period)} s, {late} late," if period else ""
     statement = (
         f"{contact} friction {decimal(f_c)} N and damping {decimal(b)} N s/m with a compensator of "
         f"velocity ({decimal(f_d)} N, a = {decimal(a)} m/s){computer} is passive"
@@ -228,7 +228,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     assert law is not None and question.late is not None
     topic = "law of velocity, damping counted"
     if device.bristle_damping.high > 0:
-        why = "no theorem here is about bristle damping beside a law of velocity"
+        why = "no theorem covers bristle damping beside a law of velocity"
         statement = "the device's friction beside its compensator of velocity is passive"
         return [TopicClaim(topic, Claim(statement, Unknown(why)), spends_damping=True)]
     claim = velocity_compensation(

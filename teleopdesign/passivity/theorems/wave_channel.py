@@ -1,4 +1,4 @@
-"""Waves to and fro: the channel takes energy at its ends, whatever passive stands at them.
+"""Wave variables: a channel that is passive at its ends, for any delay that grows slowly.
 
 With W_1 = b v_m + F_c, W_2 = b v_d - F_P at the ends and f W_1(t - T_1), f W_2(t - T_2) as they
 arrive, the power into the channel is
@@ -46,7 +46,7 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
     statement = (
         f"a channel of waves of {decimal(b)} N s/m, scaled by {decimal(f)}, with delays that "
-        f"{grows}, gives out no more energy at both ends than came in, in continuous time"
+        f"{grows}, releases no more energy at both ends than came in, in continuous time"
     )
     if f**2 > 1 - d:
         return Claim(statement, Unknown("scale^2 is above 1 - delay_growth"))

@@ -1,4 +1,4 @@
-"""What a sweep does not show of a two-port with dead times: poles, residues, ends of the axis.
+"""Two-ports with dead times: poles, residues and ends of the axis, which no sweep shows.
 
 An entry is a sum of r_k(s) e^(-s T_k), r_k rational. Its poles are those of the r_k; at s = 0 and
 at both ends of the axis all is decided in rational arithmetic, at other poles numerically. What is

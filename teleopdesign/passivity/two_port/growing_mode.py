@@ -1,4 +1,4 @@
-"""A two-port that grows by itself between passive terminations: what refutes absolute stability.
+"""A growing motion of a two-port between passive terminations: it refutes absolute stability.
 
     Z(s) V + diag(Z1, Z2) V = 0,   v(t) = Re(V e^(s t)),   s = a + j w,   a > 0
 

@@ -1,4 +1,4 @@
-"""Where a sweep over frequency has to look though its steps are wider: across resonances."""
+"""Frequencies between the steps of a sweep where a resonance may lie."""
 
 from __future__ import annotations
 

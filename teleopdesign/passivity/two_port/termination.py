@@ -1,4 +1,4 @@
-"""What a port ends in: a damper with a mass and a spring, or a clamp.
+"""Terminations of a port: a damper with a mass and a spring, or a clamp.
 
 R + m s + k/s with R, m, k >= 0. At one s of the open right half plane, such a termination takes
 every value with abs(arg) <= arg s, and a positive-real function takes no other.
