@@ -10,42 +10,62 @@ which travel the two are hardly distinguished (`untold`).
 
 from __future__ import annotations
 
+from ..effects import Effect
 from .adequacy import is_adequate
 from .candidates import Candidate
 from .decision import is_supported
 from .evidence import whole_score
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
+from .order import simplicity
 from .plausibility import untold_of
 from .ranking import Ranking
 from .rung import Rung
 from .rungs import estimate_without, reorder_and_refit
 
 
-def name_commoner(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with a commoner effect in the place of one that the records do not tell from it.
+def compare_look_alikes(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with one effect in the place of another that the records hardly tell from it.
 
-    None: noise is left, or the records tell all accepted effects from commoner ones.
+    Where more than noise is left: the more common effect, such as gravity for a spring. Where noise
+    is left: the simpler one. None: the records distinguish them, or the right ones are there.
     """
-    if is_adequate(state.fit, state.floor, criteria=search.criteria):
-        return None
+    noise = is_adequate(state.fit, state.floor, criteria=search.criteria)
     for rung in state.rungs[1:]:
-        moved = _with_commoner(search, state, rung)
-        if moved is not None and moved.effects not in state.visited:
-            return moved
+        assert rung.added is not None
+        for other in _list_look_alikes(rung.added, state, simpler=noise):
+            moved = _exchange_for(search, state, rung, other)
+            if moved is not None and moved.effects not in state.visited:
+                return moved
     return None
 
 
-def _with_commoner(search: LadderSearch, state: LadderState, rung: Rung) -> LadderState | None:
-    """The ladder with the commoner effect in the place of a rung's; None: not supported there."""
+def _list_look_alikes(added: Candidate, state: LadderState, *, simpler: bool) -> list[Candidate]:
+    """What may stand for an effect: what is simpler, or else what is more common."""
+    model = state.fit.model
+
+    def fits(other: Effect) -> bool:
+        if simpler:
+            fewer = simplicity(Candidate(other, added.at)) < simplicity(added)
+            return other.commoner == added.effect.name and fewer
+        return added.effect.commoner == other.name
+
+    others = [Candidate(e, added.at) for e in model.known.values() if fits(e)]
+    return [
+        c for c in others if c.key not in state.gone and not model.body(c.at).has(c.effect.name)
+    ]
+
+
+def _exchange_for(
+    search: LadderSearch, state: LadderState, rung: Rung, other: Candidate
+) -> LadderState | None:
+    """The ladder with a look-alike in the place of a rung's effect; None: it is not supported."""
     model, criteria, added = state.fit.model, search.criteria, rung.added
     assert added is not None
-    commoner = model.known.get(added.effect.commoner)
-    if commoner is None or rung.replaced is not None or model.body(added.at).has(commoner.name):
-        return None
-    other = Candidate(commoner, added.at)
-    untold = untold_of(added.effect, added.at, model, search.prepared)
-    if untold is None or other.key in state.gone:
+    if (
+        rung.replaced is not None
+        or untold_of(added.effect, added.at, model, search.prepared) is None
+    ):
         return None
     without = estimate_without(model, rung, search.prepared)
     if without is None:

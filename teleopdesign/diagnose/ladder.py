@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import is_a_tone
-from .commoner import name_commoner
+from .commoner import compare_look_alikes
 from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
@@ -136,7 +136,7 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         fewer = remove(search, added)
         # two effects that each make the other one superfluous would take turns
         return added if fewer is None or fewer.effects in state.visited else fewer
-    for settle in (straighten, compare_alternatives, name_commoner):
+    for settle in (straighten, compare_alternatives, compare_look_alikes):
         if (moved := settle(search, state)) is not None:
             return moved
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
