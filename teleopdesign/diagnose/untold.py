@@ -9,9 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..effects import are_alike
+from ..errors import ModelError
 from .candidates import Candidate
+from .criteria import CRITERIA, Criteria
 from .diagnosis import Untold
-from .fit import Fit
+from .evidence import whole_score
+from .fit import Fit, estimate
 from .plausibility import untold_of
 from .prepare import Prepared
 from .products import product_of
@@ -34,9 +38,43 @@ def untold(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Untold, ...]:
         if not fit.model.body(added.at).has(added.effect.name):
             continue
         by_effect = untold_of(added.effect, added.at, fit.model, prepared)
-        said = [by_effect or "", known_together(fit, added)]
+        said = [by_effect or alike_on_records(fit, added, prepared), known_together(fit, added)]
         sentences += [Untold(added, one) for one in said if one]
     return tuple(sentences)
+
+
+def alike_on_records(
+    fit: Fit, candidate: Candidate, prepared: Prepared, *, criteria: Criteria = CRITERIA
+) -> str:
+    """A sentence where these records do not tell an effect from the one that its file names, or "".
+
+    Gravity, and a spring with its rest position (`spring` and `bias`): over much of a turn the two
+    differ, but where more than noise is left this may say little.
+    """
+    if prepared.is_of_an_arm:  # gravity is in its links
+        return ""
+    body = fit.model.body(candidate.at)
+    for other in fit.model.known.values():
+        if not are_alike(candidate.effect, other) or body.has(other.name):
+            continue
+        if body.axis in other.elsewhere:
+            continue
+        more = len(candidate.effect.parameters) > len(other.parameters) and not body.has("bias")
+        names = (other.name, *(["bias"] if more and "bias" in fit.model.known else []))
+        try:
+            model = fit.model.without_effect(candidate.effect.name, at=candidate.at)
+            for name in names:
+                model = model.with_effect(name, at=candidate.at)
+        except ModelError:  # another effect needs it
+            return ""
+        instead = estimate(model, prepared)
+        if whole_score(instead, fit) >= criteria.close:
+            continue
+        return (
+            f"these records hardly distinguish it from {' and '.join(f'`{n}`' for n in names)}, "
+            f"with which {100 * instead.check_error:.3g} % of the force would be left"
+        )
+    return ""
 
 
 def known_together(fit: Fit, candidate: Candidate) -> str:

@@ -26,6 +26,7 @@ class Names:
     needs: tuple[tuple[str, str], ...] = ()
     known: dict[str, None] = field(default_factory=lambda: {"device": None}, hash=False)
     parameters: dict[str, None] = field(default_factory=dict, hash=False)
+    axis: str = "revolute"
 
     @property
     def effects(self):

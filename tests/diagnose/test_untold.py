@@ -1,6 +1,7 @@
 """What records cannot tell of parameters is said, and no model keeps what is not surely there."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from teleopdesign.diagnose.identifiability import doubt, explains_most, is_ident
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.plausibility import implausible_effects
 from teleopdesign.diagnose.products import Product, best_product
-from teleopdesign.diagnose.untold import known_together, untold
+from teleopdesign.diagnose.untold import alike_on_records, known_together, untold
 from teleopdesign.effects import EFFECTS
 
 
@@ -229,6 +230,7 @@ def test_what_is_untold_is_said_of_each_effect_that_the_last_model_has_in_order(
         return by_effect[effect.name]
 
     monkeypatch.setattr(untold_module, "untold_of", of_effect)
+    monkeypatch.setattr(untold_module, "alike_on_records", lambda fit, c, prepared: "")
     monkeypatch.setattr(untold_module, "known_together", lambda fit, c: together[c.effect.name])
     said = [(one.candidate.effect.name, one.sentence) for one in untold(rungs, None)]
     assert said == [("bias", "a level at rest"), ("spring", "a * b"), ("viscous", "a * c")]
@@ -239,3 +241,43 @@ def test_what_is_untold_is_said_of_each_effect_that_the_last_model_has_in_order(
     last = replace(rungs[-1], fit=table.fit("spring"))
     assert [one.sentence for one in untold((*rungs[:-1], last), None)] == ["a * b"]
     assert untold(rungs[:1], None) == ()
+
+
+def alike(monkeypatch, named, *there, errors, arm=False, axis="revolute"):
+    """What is said of a named effect, where each set of effects leaves a stated error."""
+    table = Table(lambda names: errors[frozenset(names)])
+    last = table.fit(named, *there)
+    known = {n: EFFECTS[n] for n in ("spring", "gravity", "bias", "cogging")}
+    last.model = replace(last.model, known=known, axis=axis)
+    monkeypatch.setattr(untold_module, "estimate", table.estimate)
+    prepared = SimpleNamespace(is_of_an_arm=arm)
+    return alike_on_records(last, Candidate(EFFECTS[named], "device"), prepared)
+
+
+LINE = {
+    frozenset({"gravity"}): 0.25,
+    frozenset({"spring"}): 0.25,
+    frozenset({"spring", "bias"}): 0.2501,
+    frozenset({"gravity", "bias"}): 0.25,
+}
+
+
+def test_gravity_is_said_to_look_like_a_spring_with_its_rest_position(monkeypatch):
+    said = alike(monkeypatch, "gravity", errors=LINE)
+    assert "from `spring` and `bias`" in said and "25 %" in said
+    beside = alike(monkeypatch, "gravity", "bias", errors=LINE)
+    assert "from `spring`, " in beside, "the constant is there already"
+    assert "from `gravity`, " in alike(monkeypatch, "spring", errors=LINE)
+
+
+def test_effects_that_the_records_distinguish_are_not_said_to_look_alike(monkeypatch):
+    far = {**LINE, frozenset({"spring", "bias"}): 0.4}
+    assert alike(monkeypatch, "gravity", errors=far) == ""
+    assert alike(monkeypatch, "cogging", errors={frozenset({"cogging"}): 0.25}) == ""
+    both = {frozenset({"gravity", "spring"}): 0.25}
+    assert alike(monkeypatch, "gravity", "spring", errors=both) == "", "the model has both"
+
+
+def test_where_gravity_is_no_torque_of_the_axis_a_spring_looks_like_nothing_else(monkeypatch):
+    assert alike(monkeypatch, "spring", errors=LINE, axis="prismatic") == ""
+    assert alike(monkeypatch, "spring", errors=LINE, arm=True) == "", "the links have it"
