@@ -18,7 +18,7 @@ def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
     parser.add_argument(
         "--body",
         metavar="NAME",
-        help="one body of a teleoperator, or the joint of an arm, which must be said",
+        help="one body of a teleoperator, or the joint of an arm (required for an arm)",
     )
     if pose:
         parser.add_argument(

@@ -33,11 +33,11 @@ def diagnose_all(options: argparse.Namespace) -> int:
     for name in ("json", "predictions", "figure", "report"):
         if getattr(options, name) is not None:
             raise ExperimentError(
-                f"--{name}: is of one folder, found it beside --output: every answer goes there, "
+                f"--{name}: is for one folder, found it with --output: every answer goes there, "
                 "and `teleopdesign report ANSWER` makes its page"
             )
     if options.simulate:
-        raise ExperimentError("--simulate: is of one folder, found it beside --output")
+        raise ExperimentError("--simulate: is for one folder, found it with --output")
     for folder in options.folder:
         if not folder.is_dir():
             raise ExperimentError(f"{folder}: no such folder")

@@ -108,8 +108,8 @@ def add_search(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quick",
         action="store_true",
-        help="a first look: two effects at most, no pairs, no exchanges, windows of long records; "
-        "what was left out is printed",
+        help="a first diagnosis: at most two effects, no pairs, no exchanges, windows of long "
+        "records; what was left out is printed",
     )
     add_candidate_options(parser)
 
@@ -117,8 +117,8 @@ def add_search(parser: argparse.ArgumentParser) -> None:
 def add_candidate_options(parser: argparse.ArgumentParser) -> None:
     """Adds the options that choose the candidate effects."""
     for option, text in (
-        ("--only", "the effects that are tried (all that the model could take)"),
-        ("--exclude", "effects that are not tried"),
+        ("--only", "only these effects are candidates (default: all that the model lacks)"),
+        ("--exclude", "these effects are no candidates"),
     ):
         parser.add_argument(
             option, action="extend", nargs="+", default=[], metavar="EFFECT", help=text

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """
   teleopdesign new log.csv                          looks, asks, writes log/experiment.toml
-  teleopdesign new log.csv --yes                    takes every guess
+  teleopdesign new log.csv --yes                    accepts every guess
   teleopdesign new a.mat b.mat --output arm         fits on a.mat, checks on b.mat
   teleopdesign new log.csv --fit-span 5 40 --check-span 45 60
   teleopdesign new log.csv --torque-constant "0.037 N*m/A" --gear-ratio 50
@@ -39,7 +39,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--overwrite", action="store_true", help="write an experiment.toml that is there anew"
     )
-    parser.add_argument("--yes", action="store_true", help="take every guess, ask nothing")
+    parser.add_argument("--yes", action="store_true", help="accept every guess, ask nothing")
     parser.add_argument("--title", help="of the experiment; default: the log's name")
     parser.add_argument("--axis", choices=("prismatic", "revolute"))
     for name, text in (
@@ -106,7 +106,7 @@ def run(options: argparse.Namespace) -> int:
     )
     print(survey_text(survey, options.logs[0].name))
     if survey.guesses and not options.yes and not ask:
-        print("\nno terminal to ask on: every guess is taken, as with --yes")
+        print("\nno terminal to ask on: every guess is accepted, as with --yes")
     experiment = load_experiment(folder)
     print()
     print(experiment)
@@ -119,7 +119,7 @@ def run(options: argparse.Namespace) -> int:
     if boxes := explain_boxes(survey.columns):
         print(boxes)
     if survey.guesses:
-        print("where a guess is wrong: the same command with the option below it, and --overwrite")
+        print("if a guess is wrong: the same command with the option below it, and --overwrite")
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
     return 0

@@ -56,8 +56,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="[BODY.]NAME=VALUE[UNIT]",
-        help="another limit than the records have shown: low, high, speed, acceleration, jerk or "
-        "force, such as speed=0.2m/s; SI where no unit is given (may be repeated)",
+        help="another limit than the largest value in the records: low, high, speed, acceleration, "
+        "jerk or force, such as speed=0.2m/s; SI where no unit is given (may be repeated)",
     )
     parser.add_argument(
         "--duration", type=float, default=20.0, metavar="S", help="longest motion, s (20)"
@@ -68,7 +68,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=float,
         const=120.0,
         metavar="S",
-        help="make each rival the truth and diagnose; none is begun after S seconds (120)",
+        help="simulate each rival as the true effect and diagnose; no simulation starts after S "
+        "seconds (120)",
     )
 
 

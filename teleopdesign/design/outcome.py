@@ -13,6 +13,7 @@ from ..diagrams import ANY, Attached, Block, Diagram, Moving, haptic_interface
 from ..diagrams.toml_writing import diagram_text
 from ..errors import ModelError
 from ..frequency import FrequencyResponse
+from ..measurement.toml_text import comment_text
 from ..passivity import Claim
 from ..plain_data import write_json
 from ..realise.friction_interval import FrictionInterval
@@ -104,7 +105,7 @@ class Design(ByValue):
             content = diagram_text(self.diagram)
         except ModelError:
             content = diagram_text(replace(self.diagram, blocks=_nameless(self.diagram)))
-        return "\n".join([*(f"# {line}" for line in comments), "", content])
+        return "\n".join([*map(comment_text, comments), "", content])
 
     def as_dict(self) -> dict[str, Any]:
         """The design as plain data; SI units."""

@@ -22,7 +22,7 @@ from .ranking import Ranking
 
 @dataclass(frozen=True)
 class Floors:
-    """The noise floor of a model, twice.
+    """The noise floor of a model: as drawn, and limited by the error of the model.
 
     drawn: what its readings, drawn anew, leave
     allowed: what counts as noise in decisions: never above what the records themselves leave, nor

@@ -1,19 +1,19 @@
 """A controller faster than its log: the error that unlogged commands between rows leave.
 
-A controller that is faster than the log changes its command within a row. The log holds one value
-of many, and what lies between them acts unseen, such as the steps of an encoder that the controller
-differentiates. In the log that is a scatter from row to row, as of a sensor. Corners at reversals
-are lost too, but they are rare: the scatter does not tell them.
+A controller that is faster than the log changes its command within a row. The log holds only one of
+several commands; the others act without being logged, such as the steps of an encoder that the
+controller differentiates. In the log this is a scatter from row to row, as from a sensor. Corners
+at reversals are lost too, but they are rare, and the scatter does not show them.
 
-Where the log is as fast as the controller the same scatter is held for the whole row, acts, and
-moves the body: there it is no noise. So it counts only at the end of a search, and only where
+Where the log is as fast as the controller, the same scatter is held for the whole row, acts and
+moves the body: there it is no noise. So it counts only at the end of a search, and only if
 
-- the command is late by about half a row: the value that is logged lies amid those that act;
-- a black box learns next to nothing of what is left from the motion, as no effect did;
-- what is left is as small as the scatter makes it.
+- the command is late by about half a row: the logged value lies in the middle of those that act;
+- a black box learns hardly anything of the residual from the motion, as no effect did;
+- the residual is no larger than the scatter explains.
 
-It makes no effect more likely: what was added to a model whose rest may be scatter may stand in for
-it, so that effects are believed by the floor of the sensors.
+The scatter makes no effect more probable, because an added effect may imitate it. Probabilities
+use the noise floor of the sensors.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Residuals of several bodies, computed separately; a body that hardly changed is not recomputed.
 
-Along measured motions the bodies of a model have nothing in common: what one leaves unexplained
-depends on its parameters alone. A search at one body needs no tangents of the other, and in a
-fit the other soon stands still.
+Along measured motions the bodies of a model do not interact: the residual of a body depends on its
+parameters alone. A search at one body needs no tangents of the other bodies, and in a fit the
+parameters of the other bodies soon stop changing.
 """
 
 from __future__ import annotations

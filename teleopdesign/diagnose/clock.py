@@ -1,16 +1,16 @@
 """Delay of a log against its position: when is the delay accepted, and when is it physics?
 
-Estimated on the fit records beside a model that lacks much, a shift may take up a part of what is
-missing, as a wrong effect would. Like an effect it must not raise the error on the check records.
+With a model that lacks much, a shift may imitate a part of the missing force, as a wrong effect
+would. So, like an effect, a shift must not raise the error on the check records.
 
-A shift that ends at its bound describes a part of a dead time that is longer than a logger's. Where
-a dead time in its place surely leaves less on the check records, all of it is physics, and the
-shift is held at none: the candidates are held against the model without it. Otherwise what a shift
-at its bound leaves may be too little for a search, and a late actuator passes for an adequate one.
+A shift at its bound describes a part of a dead time that is longer than a logger's. If a dead time
+instead of the shift surely leaves less on the check records, the whole delay is physics, and the
+shift is set to zero, so that candidates can explain it. Otherwise the error with a shift at its
+bound may be too small for a search, and a late actuator would seem adequate.
 
-The filter of a force sensor makes the hand's force late beside the command, and an `actuator_lag`
-stands in for it. So its time constant is estimated where more than noise is left, and taken where
-it explains surely more than chance and more than every effect does.
+The filter of a force sensor delays the hand's force against the command, and an `actuator_lag` can
+imitate this. So the time constant of the filter is estimated where more than noise is left. It is
+accepted if it explains surely more than chance and more than every effect.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
 
 
 def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
-    """The fit with each body's shift estimated, or held at none, whichever leaves less unseen.
+    """The fit with each body's shift estimated, or zero, whichever has the lower check error.
 
     One at its bound is held at none too where it stands for a dead time.
     fit: with shifts of either kind;  returns: the fit itself where the other kind leaves no less

@@ -14,7 +14,7 @@ from .stated_fit import estimate_stated
 
 
 def corrected_fit(search: LadderSearch) -> Fit:
-    """The fit of the stated model as a diagnosis that adds nothing to it reports it."""
+    """The fit of the stated model as reported by a diagnosis that adds no effect."""
     fit = estimate_stated(search.stated, search.prepared)
     fit = with_paying_shift(fit, search.prepared)
     drawn = noise_floor(fit.model, search.prepared, search.generator())

@@ -106,7 +106,7 @@ def is_supported(
 def objection(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> str:
-    """Which check bars a candidate however much it explains, in words; "" where none does.
+    """The rule that excludes a candidate whatever it explains, in words; "" where none does.
 
     One that drives a parameter of the model to its bound, and whose effect the model still has,
     describes the records, but is no missing physics beside the model's effects. One that needs a
@@ -132,7 +132,7 @@ def objection(
 def helps_but_is_barred(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> str:
-    """Which check bars a candidate that lowers the check error by enough to matter; "" if none."""
+    """The rule that excludes a candidate that lowers the check error by enough; "" if none."""
     less = ranked.fit.check_error**2 < (1.0 - criteria.relevant) * base.check_error**2
     if not (less or lowers_check_squares(base, ranked.fit, criteria=criteria)):
         return ""
@@ -208,7 +208,7 @@ def _is_near_absence(fit: Fit, name: str, absent: float) -> bool:
 
 
 def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> float:
-    """Share of the base's squares that a first step must gain for the search to go on.
+    """Predicted gain, as a share of the base's squares, from which a search continues.
 
     The floor is never above what a candidate leaves. So beside a base that leaves little more than
     its floor, only what takes away of_floor / (1 + of_floor) of the squares can be better: a first

@@ -39,7 +39,7 @@ class OpenQuestion(ByValue):
 
 @dataclass(frozen=True)
 class Untold:
-    """What records cannot tell of an accepted effect's parameters, in a sentence."""
+    """A sentence on parameters of an accepted effect that the records do not determine."""
 
     candidate: Candidate
     sentence: str
@@ -50,7 +50,7 @@ class Untold:
 
 @dataclass(frozen=True)
 class SetAside:
-    """An effect that lowered the error and was taken out again: with it, and why."""
+    """An effect that lowered the error and was removed again, with its error and the reason."""
 
     candidate: Candidate
     check_error: float
@@ -62,7 +62,7 @@ class SetAside:
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis(ByValue):
-    """What a recording says about a model.
+    """Result of a diagnosis: the ladder of effects, its fits, and the verdict.
 
     verdict: "effects_missing", "model_adequate" or "undecided"
     rungs: the user's model re-estimated, then one rung an effect

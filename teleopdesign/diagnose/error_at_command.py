@@ -1,8 +1,8 @@
 """The residual as an error of the recorded command.
 
-What makes the recorded force unpredictable has not explained it: with less force acting there is
-less to explain. So the figure of `error` is taken of the residual seen at the command too, and what
-counts must be smaller in both.
+A model in which less force acts has less force to explain, but may ignore the recorded command. So
+the force error is also computed from the residual mapped back to the command, and an effect must
+lower both errors.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Exchange: an accepted effect is replaced by one that explains the records better beside the rest,
 or as well with fewer parameters.
 
-Effects are added one at a time, so an early one may only stand in for what was not there yet. Where
-more than noise is left in the end, each of those that others followed is taken out once, and the
-rivals that it beat when it was added are ranked in its place. Effects that explained equally well
-when one of them was added are compared again beside what followed.
+Effects are added one at a time, so an early effect may only imitate effects that were added later.
+If more than noise is left at the end, each effect that others followed is removed once, and the
+rivals that it beat when it was added are ranked at its place. Effects that explained the records
+equally well when one of them was added are compared again together with later effects.
 """
 
 from __future__ import annotations

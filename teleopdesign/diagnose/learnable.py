@@ -1,11 +1,12 @@
 """Learnable force: the part of the residual that boosted trees predict from the motion alone.
 
-Boosted trees learn the low-passed residual from the motion alone: place, velocity, acceleration,
+Boosted trees learn the low-passed residual from the motion alone: position, velocity, acceleration,
 direction, time and travel since the last reversal. They predict records that they have not seen. So
-what they take away is a function of the motion, whatever its law; what they leave does not repeat,
-or depends on what was not measured. That is a ceiling for models, as the noise floor is a floor.
+the force that they predict is a function of the motion, whatever its law. The rest does not repeat,
+or depends on quantities that were not measured. This limits models from above, as the noise floor
+does from below.
 
-At a joint of an arm the motion of all joints is told: what one must give depends on the others.
+At a joint of an arm the inputs are the motions of all joints, because the joints are coupled.
 
 The commanded force is no input: a model that has it as an input predicts it from itself.
 """

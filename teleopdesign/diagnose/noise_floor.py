@@ -103,7 +103,7 @@ def _draw_reading(
 
 
 def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:
-    """The stretch's motion as its sensors would read it once more."""
+    """The motion of a stretch in a new reading by its sensors."""
     motion, channels = stretch.motion, prepared.experiment.channels
     side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals

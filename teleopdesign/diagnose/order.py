@@ -70,7 +70,7 @@ def alternatives_of(
 
 
 def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
-    """What else takes away at least half of what the best does, whether or not by more than chance.
+    """Other effects that remove at least half as much as the best, by chance or not.
 
     To be said where the model before left only noise: there a gain is small, and what brings it
     about may be something else.

@@ -1,15 +1,15 @@
 """A tone from outside: a force at one frequency that does not follow the motion, such as hum.
 
-It moves the machine a little, at its frequency. A body with a lightly damped tip that resonates
-there moves so without any force, and effects that are not there can stand in for the tone. So an
-effect counts only if it leaves surely less than a plain tone does, where motion holds next to
-nothing at the tone's frequency that could have brought it about, nor its direction or its size.
+A tone moves the machine a little, at its frequency. A model with a lightly damped tip that
+resonates there moves in the same way without any force, so absent effects can imitate the tone. So
+an effect counts only if it leaves surely less than a plain tone does. This test is made where the
+motion, its direction and its size have hardly any part at the frequency of the tone.
 
-Hum of the mains moves the machine itself, so that its motion holds the tone all the same. Its
-frequency reveals it: there the tone is held against effects unless the motion is mostly that.
+Hum of the mains moves the machine itself, so the motion contains the tone. At the frequency of the
+mains the tone is compared with effects unless most of the motion is at this frequency.
 
-A body that sticks shows nothing of the tone, for its friction balances it: so the tone is taken
-both off the residual and as a force on the body, whichever leaves less.
+A stuck body does not show the tone, because friction balances it. So the tone is subtracted from
+the residual or applied as a force on the body, whichever leaves less.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
 
 
 def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str | None:
-    """What an effect's file says that these records cannot tell of its parameters; None.
+    """What the file of an effect says about parameters that these records do not determine; None.
 
     raises ModelError: as `implausible_effects`
     """
@@ -105,7 +105,7 @@ def _ask_effect(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
 def record_facts(
     model: Model, place: str, prepared: Prepared, numbers: Mapping[str, float] | None = None
 ) -> RecordFacts:
-    """What all records say of the body at that place.
+    """Facts of all records about the body at that place.
 
     numbers: the body's, by their names; default: those of the model
     """

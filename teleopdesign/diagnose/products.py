@@ -1,7 +1,8 @@
 """Products of parameters that the records determine, where they determine no single factor.
 
-A level and the speed below which it acts, a spring and what hangs on it: along a valley of nearly
-equal squares each parameter runs far, and a product of their powers hardly changes.
+Examples are a friction level and the speed below which it acts, or a spring and the mass on it.
+Along a valley of nearly equal squares each parameter changes much, but a product of powers hardly
+does.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class Product:
 
 
 def product_of(fit: Fit, effect: str) -> Product | None:
-    """The product of an effect's parameters that a fit tells best; None: fewer than two count.
+    """The product of an effect's parameters with the least error; None: fewer than two count.
 
     Parameters that are zero, angles and those at a bound have no part in a product.
     effect: with its place, "device.stribeck"

@@ -1,14 +1,14 @@
 """Effect of sensor readings on estimates: their spread and their bias.
 
-Where readings cannot tell a direction, friction may be anything up to its level, and what noise
-asks for is followed on one side only; noise in an acceleration makes an inertia look smaller. Such
-shifts are small, but larger than what residuals tell: at the optimum those are as small as they can
-be. So the final model is simulated where the records were made. Its parameters are known;
-its motion is read by the stated sensors and estimated from again, and by how much that misses is
-how much the first estimate did (a parametric bootstrap: Efron, Tibshirani, An Introduction to the
-Bootstrap, 1993, chapters 6 and 10). Where it is much, it is estimated again at the values that it
-leads to, until they agree (indirect inference: Gourieroux, Monfort, Renault, J. Applied
-Econometrics 8, 1993): a tip that swings in the band looks damped by noise the more, the less it is.
+Where readings show no direction, friction may have any value up to its level, and follows noise on
+one side only. Noise in an acceleration makes an inertia look smaller. Such shifts are small, but
+larger than residuals suggest, because residuals are smallest at the optimum. So the final model is
+simulated along the records. Its true parameters are known. The stated sensors read its motion, and
+the parameters are estimated from these readings. The error of this estimate is that of the first
+estimate (a parametric bootstrap: Efron, Tibshirani, An Introduction to the Bootstrap, 1993,
+chapters 6 and 10). Where the error is large, it is estimated again at the corrected values, until
+they agree (indirect inference: Gourieroux, Monfort, Renault, J. Applied Econometrics 8, 1993). An
+example is a tip that resonates within the bandwidth: noise makes its damping look larger.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ from .simulated_course import dead_times
 
 @dataclass(frozen=True)
 class LoggerClock:
-    """What is known of any log beforehand; `CLOCK` is in use."""
+    """Prior knowledge of the clock of a logger; `CLOCK` is in use."""
 
     #: samples, standard deviation of a shift: twice this is one row. Lower: a delay of less than a
     #: row is called physics; higher: what a shift imitates is left open
@@ -189,7 +189,7 @@ def name_of_hand(body: str) -> str:
 
 @dataclass(frozen=True)
 class RecordShift:
-    """By how much the log of a body's force is late, as a fitted model has it.
+    """Delay of the log of a body's force, as estimated by a fitted model.
 
     at: its body, or as `name_of_hand` says;  late, stderr: s;  row: s between samples
     may_delay: whether the model has a dead time there

@@ -29,7 +29,7 @@ class Replaced:
 
 
 def make_replaced(ranked: Ranked, before: Model) -> Replaced | None:
-    """What a candidate takes the place of; before: the model that still has it."""
+    """The effect that a candidate replaces; before: the model that still has this effect."""
     return None if ranked.instead_of is None else restore_replaced(ranked.instead_of, before)
 
 

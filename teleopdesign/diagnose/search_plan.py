@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class SearchPlan:
-    """Sizes of a search; `PLAN` are those in use. More takes longer and misses less."""
+    """Sizes of a search; `PLAN` are those in use. Larger ones take longer and miss less."""
 
     #: most effects that one diagnosis adds: each takes one ranking of the whole catalogue
     most_effects: int = 6

@@ -33,7 +33,7 @@ UNKNOWN = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Knowledge(ByValue):
-    """What joints know of the base parameters: squares b^T matrix b - 2 vector^T b.
+    """Information of joints on the base parameters: squares b^T matrix b - 2 vector^T b.
 
     matrix: (b, b);  vector: (b,)
     """

@@ -1,13 +1,13 @@
 """Effects that lower the error without explaining it: they stand in for something else.
 
-For values that the fit records leave open: a check record that moves as no fit record does is
-missed by a complete model too, where the fit records do not tell its parameters, friction and
-damping at one speed, say. An effect that moves these values may seem to explain it. So the model
-with the effect, and without it, is estimated on all records together: there no value is open that
-any record tells, and the effect must still leave surely less of the check records.
+Values that the fit records do not determine (for example friction and damping, at one speed): if a
+check record moves as no fit record does, a complete model has an error there too. An effect that
+changes these values may seem to explain the error. So the model is estimated on all records
+together, with the effect and without it. The effect must still leave surely less of the check
+records.
 
-For what readings bring in: a structure passes on less of the noise in an acceleration. What then is
-left may be less, and yet more than before beside what the sensors make of the model.
+Noise of the readings: a structure passes less of the noise in an acceleration. The error may then
+be smaller, and yet larger in noise floors of the new model.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def stands_in_for_values(
     *,
     criteria: Criteria = CRITERIA,
 ) -> SetAside | None:
-    """The effect of a rung, and why it is none: the base explains as much by other values.
+    """The effect of a rung that other values of the base explain as well, with the reason.
 
     base: the fit without the rung;  returns: None where the effect explains more
     """
@@ -75,7 +75,7 @@ def stands_in_for_readings(
     *,
     criteria: Criteria = CRITERIA,
 ) -> SetAside | None:
-    """The effect of a rung, and why it is none: beside what readings bring in it leaves no less.
+    """The effect of a rung that only weakens the error of sensor readings, with the reason.
 
     before, after: the noise floors of the two models, as drawn;  returns: None where it leaves less
         in noise floors too, or noise only

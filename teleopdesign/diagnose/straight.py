@@ -1,9 +1,9 @@
 """Forces of position in a ladder: a straight line in place of two bends that cancel.
 
-A cable, a bushing and a constant load together pull by a straight line of the place: `spring` and
-`bias`. A ladder adds one effect at a time, and a bend of two parameters, such as `gravity` over a
-part of a turn, does more than either of the two alone; the next effect then takes the bend away
-again. Where a ladder ends, the forces of the place that it added are held against the line.
+A cable, a bushing and a constant load together are a force linear in position: `spring` and `bias`.
+A ladder adds one effect at a time. A curved force with two parameters, such as `gravity` over a
+part of a turn, explains more than either of the two alone, and the next effect then cancels its
+curvature. At the end of a ladder its forces of position are compared with a straight line.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .rungs import ranking_alone, reorder_and_refit
 
 
 def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with a straight line for forces of the place that do no better; None: they do.
+    """The ladder with a straight line for forces of position that do no better; None: they do.
 
     The line takes the place of effects with more parameters where these are not surely better, and
     of effects with as many where the line is. Once in a ladder, so that the two cannot take turns.

@@ -1,8 +1,8 @@
 """A move of the ladder: many effects at once, then removal of those that are not needed.
 
-Of three effects that are missing a fourth can do more alone than any of them, and stand in their
-way at every step: a drag that grows with the square of the speed does what a fall of friction at
-low speed, a damper and a smaller drag do together. Added all at once they share the work.
+If three effects are missing, a fourth effect may explain more than any of the three alone, and
+block them at every step. For example, a drag with the square of the speed can imitate a fall of
+friction at low speed, a damper and a smaller drag together. Adding all at once avoids this.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .search_plan import PLAN
 
 
 def add_together(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Put the best candidates, added to the user's model at once, in the place of all rungs.
+    """Replace all rungs by the best candidates, added to the user's model at once.
 
     Once, where more than noise is left. Each must be needed beside the others, deserve its name,
     and together they must explain most of what the rungs leave.

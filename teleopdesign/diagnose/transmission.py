@@ -1,8 +1,8 @@
 """A move of a ladder: add a transmission with friction behind it, the commonest gear.
 
-A pair like others (`pairs`), but neither of the two leads to the other: beside a gap without
-friction no friction helps, for the search of that gap ended elsewhere. Their search begins at
-courses of the tip (`tip_start`).
+A pair like others (`pairs`), but a search from one of the two does not find the other: with a gap
+that was fitted without friction, friction does not help. So the search starts at simulated motions
+of the tip (`tip_start`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .width import OpenWidths
 
 
 def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Add a transmission and the friction behind it, or put them in place of all that was added.
+    """Add a transmission with friction behind it, or replace all added effects by the two.
 
     In place of all: where the two explain most of what the rungs leave.
     """

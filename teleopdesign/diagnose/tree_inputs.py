@@ -17,7 +17,7 @@ REST = 0.5
 
 
 def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] = ()) -> list[Array]:
-    """What the trees are told (n, k), for each motion.
+    """Inputs of the trees (n, k), for each motion.
 
     beside: for each motion, those of an arm's other joints at the same times
     """

@@ -1,8 +1,9 @@
 """Parameters of accepted effects that the records do not determine.
 
-An effect may be there beyond doubt while its parameters are not: a level at rest that no force ever
-reached is an extrapolation, and of two parameters a record may show one product. What follows from
-physics an effect's file says (`untold`); what follows from the records is seen here.
+An effect may be certain although its parameters are not: a level at rest that no measured force
+reached is an extrapolation, and a record may determine only the product of two parameters. The
+file of an effect states what follows from physics (`untold`); this file states what follows from
+the records.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ PRODUCT = 0.5
 
 
 def untold(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Untold, ...]:
-    """What the records cannot tell of the effects of a ladder, by its last fit; in their order."""
+    """Parameters of the effects of a ladder that the records do not determine, by the last fit."""
     fit, sentences = rungs[-1].fit, []
     for rung in rungs[1:]:
         added = rung.added
@@ -78,7 +79,7 @@ def alike_on_records(
 
 
 def known_together(fit: Fit, candidate: Candidate) -> str:
-    """The product of an effect's open parameters that the records do tell; "" where there is none.
+    """A sentence on a product of open parameters that the records determine; "" where none.
 
     Parameters that are zero, angles and those at a bound have no part in a product.
     """

@@ -1,8 +1,8 @@
 """Widths that the records do not determine, such as that of a backlash.
 
-A tip that knocks against its gap meets it at moments that depend on all that was before: the
-squares go up and down with the width. A standard error is the slope within one dent of them, and
-knows nothing of the next dent. So the parameter is held at other values, and the rest fitted again.
+The moments at which a tip meets its gap depend on the whole motion before. So the sum of squares
+has several minima over the width, and a standard error describes only one of them. The parameter is
+fixed at other values, and the other parameters are fitted again.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .prepare import Prepared
 def explain_open_width(
     fit: Fit, candidate: Candidate, prepared: Prepared, *, criteria: Criteria = CRITERIA
 ) -> str:
-    """Which other value of an essential parameter leaves as little, as a sentence; "": none does.
+    """A sentence on another value of an essential parameter that fits as well; "": none does.
 
     Each is held at a part and at a multiple of its value (`Criteria.times`), the others are fitted
     again from where they are.

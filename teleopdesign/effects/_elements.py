@@ -1,7 +1,7 @@
 """Elements of a Maxwell-slip friction: which element a parameter belongs to.
 
-The hysteresis of several springs is the same in any order of them. A fit ends in one order or
-another, and what records must tell is asked of the first two.
+The hysteresis of several springs does not depend on their order. A fit ends in any order, so the
+elements are sorted, and the records must determine the first two.
 """
 
 from __future__ import annotations

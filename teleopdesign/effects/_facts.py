@@ -1,8 +1,8 @@
 """Facts of the records about a body, with which an effect checks its parameters.
 
-An effect deserves its name only where its parameters mean what the name says: something periodic
-must be seen to repeat, a bristle must deflect within the travel. Each effect says so in its
-file, as `plausible(p, facts)`: None, or one sentence that says what the values stand for instead.
+An effect deserves its name only if its parameters fit the name: a period must repeat in the
+records, a bristle must deflect within the travel. The file of each effect states its rules as
+`plausible(p, facts)`: None, or one sentence that says what the values stand for instead.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Hum of the mains in the log of a force: a tone of 50 or 60 Hz that no position shows.
 
-A force that acted at that frequency would have moved the body. What moves nothing stands in the log
-alone, and is taken off before forces are compared: an effect that rings there would stand in for
-it.
+A force at that frequency would have moved the body. A tone without motion is only in the log, and
+is subtracted before forces are compared. Otherwise an effect with a resonance there would imitate
+the tone.
 """
 
 from __future__ import annotations

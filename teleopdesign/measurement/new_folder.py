@@ -15,7 +15,7 @@ from .first_guess import FirstGuess, guess_from
 from .record import read_record
 from .survey import Survey, spans_of
 from .toml_table import Table
-from .toml_text import inline_text, string_text
+from .toml_text import comment_text, inline_text, string_text
 
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
@@ -180,10 +180,12 @@ def experiment_text(
     for key, entry in survey.channels.items():
         comments = [w for k, w in survey.guesses.items() if k.startswith(f"channels.{key}.")]
         line = f"{key} = {_table(entry)}"
-        lines += [f"# guessed: {c}" for c in comments] + [line]
+        lines += [comment_text(f"guessed: {c}") for c in comments] + [line]
     if survey.unused:
         lines += ["", "# columns of the log that are in no channel:"]
-        lines += [f"#   {string_text(name)}: {why}" for name, why in survey.unused.items()]
+        lines += [
+            comment_text(f"  {string_text(name)}: {why}") for name, why in survey.unused.items()
+        ]
     lines.append("")
     for record in records:
         lines.append("[[records]]")

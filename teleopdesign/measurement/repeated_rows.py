@@ -1,9 +1,9 @@
 """Repeated rows: rows in which no channel has a new reading, read as lost.
 
-A body at rest repeats its position, and a command may stay or follow it; a force that is measured
-with noise repeats only together with all the rest. Where what is read seldom repeats by itself and
-does so together, and where a position stops and goes on within a row, such rows are lost ones. Many
-in a row may be a rest: they are lost where a reading leaps afterwards by what it went on meanwhile.
+A body at rest repeats its position, and a command may be constant or follow the position. A force
+measured with noise repeats only if all channels repeat. Repeated rows are lost rows if the readings
+seldom repeat separately, or if a position stops for one row and then continues. Many repeated rows
+may be a rest: these are lost rows only if a reading jumps afterwards by the motion in between.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from ..quantity import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, ModelValue
 from .reading import reading_table
-from .toml_text import inline_text, string_text
+from .toml_text import comment_text, inline_text, string_text
 
 if TYPE_CHECKING:
     from .experiment import Experiment
@@ -75,7 +75,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         for name, parameters in experiment.environment.effects.items():
             lines.append(f"{name} = {inline_text({k: _value(v) for k, v in parameters.items()})}")
         lines.append("")
-    lines += [f"# {line}".rstrip() for line in reading_table(experiment.reading)]
+    lines += [comment_text(line) for line in reading_table(experiment.reading)]
     lines += ["[channels]", 'time = { column = "t", unit = "s" }']
     one = tuple(experiment.bodies) == ("device",)
     present = [k for k in experiment.channels if all(k in r.signals for r in experiment.records)]

@@ -6,6 +6,9 @@ import json
 import re
 from collections.abc import Mapping
 
+#: control characters that a comment may not hold: all but the tab
+_CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
+
 
 def string_text(text: str) -> str:
     """A basic string of TOML: that of JSON, but for one control character that JSON leaves."""
@@ -15,6 +18,15 @@ def string_text(text: str) -> str:
 def key_text(name: str) -> str:
     """A key of TOML: bare where TOML allows it, else in quotes."""
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else string_text(name)
+
+
+def comment_text(text: str) -> str:
+    """A comment of TOML on one line; control characters, which TOML forbids there, as escapes."""
+    return f"# {_CONTROL.sub(lambda one: _escape(one[0]), text)}".rstrip()
+
+
+def _escape(character: str) -> str:
+    return f"\\x{ord(character):02x}"
 
 
 def inline_text(entries: Mapping[str, str]) -> str:

@@ -6,11 +6,11 @@ back, so that the available storage V of the forces x solves
 
     V(x) = max(0, max over both directions of (released over the travel + V(x after it)))
 
-It is iterated on a grid of the forces, with linear interpolation. Where it settles, a storage
-function is known numerically. Where it grows without end, energy comes out or the grid is too
-coarse: interpolation lies above a convex V. Where V bends the other way it lies below, and takes
-what short trips give out; so round trips of every length are looked at without a grid.
-Evidence either way.
+V is iterated on a grid of the forces, with linear interpolation. Where the iteration converges, a
+storage function is known numerically. Where V grows without end, energy comes out or the grid is
+too coarse, because interpolation lies above a convex V. Where V is concave, interpolation lies
+below it and may hide the energy of short trips. So round trips of every length are checked without
+a grid. Either result is evidence.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def _shows_energy(effect: Effect, body: Body, reach: Reach | None, errors: float
 
 
 def falsely_linear(diagram: Diagram) -> list[str]:
-    """What is declared linear and is not, as "block.effect" or "block"."""
+    """Laws that are declared linear and are not, as "block.effect" or "block"."""
     names = []
     for part in diagram.blocks:
         body = getattr(part, "body", None)

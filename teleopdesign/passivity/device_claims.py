@@ -48,7 +48,7 @@ class Compensator:
 
 @dataclass(frozen=True)
 class Margin:
-    """A limit for the designer, with its meaning in words.
+    """A limit of a design value, with its meaning in words.
 
     value: in `unit` (SI), rounded to the side on which it is kept: the printed number is safe
     """

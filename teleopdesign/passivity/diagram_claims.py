@@ -105,7 +105,7 @@ def diagram_claims(
 
 
 def wave_claims(diagram: Diagram) -> list[TopicClaim]:
-    """The theorem about waves, where a diagram is wired by `wave_variables` and it proves it."""
+    """The theorem about wave variables, if the diagram is wired by `wave_variables`."""
     if not any(part.dead_time is not None for part in diagram.controls):
         return []  # without delays the linear tests decide either way
     try:

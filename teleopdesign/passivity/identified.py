@@ -160,7 +160,7 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
 
 
 def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
-    """Effects that may supply energy, or are of a kind that no theorem on friction is about.
+    """Effects that may supply energy, or that no theorem on friction covers.
 
     Those of a user that declare not to, where nothing has checked that, are among them.
     errors: standard errors of the parameters to either side

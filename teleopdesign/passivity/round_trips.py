@@ -1,7 +1,7 @@
 """Periodic motions between two points: the energy that each round trip releases, exactly.
 
-Where friction takes less of some round trip than a compensator gives, energy comes out at each
-round, without end. A grid of forces blurs trips that are short beside its cells.
+If friction dissipates less in some round trip than a compensator supplies, energy comes out in each
+round, without end. A grid of forces cannot resolve trips that are short compared with its cells.
 """
 
 from __future__ import annotations

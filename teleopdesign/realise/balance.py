@@ -1,10 +1,11 @@
 """Static friction along a measured motion: the force that balances where no motion is certain.
 
-Between its bounds friction takes the value that leaves least within the bandwidth: accelerated
-projected steps (Beck, Teboulle, SIAM J. Imaging Sciences 2, 2009) on the low-passed difference to
-what is needed. Clipping what is needed itself would turn its noise above the bandwidth into a bias
-below it, and few plain steps stop short of what the edge of the band asks for: next to a turn a
-right model then leaves two to four times its noise. Values and tangents go through together.
+Between its bounds friction has the value that leaves the smallest residual within the bandwidth.
+Accelerated projected steps (Beck, Teboulle, SIAM J. Imaging Sciences 2, 2009) compute it from the
+low-passed difference to the needed force. Clipping the needed force itself would turn its noise
+above the bandwidth into a bias below it. A few plain steps do not converge near the edge of the
+band: next to a reversal a right model then leaves two to four times its noise. Values and tangents
+are computed together.
 """
 
 from __future__ import annotations

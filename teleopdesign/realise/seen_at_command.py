@@ -2,14 +2,15 @@
 
     gain g: r / g     lag: (1 + tau s) r     delay: r, earlier by it     ripple: r / (1 + r sin ...)
 
-Nothing here knows an effect. Each law between the command and what moves the body is linearised
-along the motion by its derivatives: the stages of the actuation, friction that the acting force
-makes, forces that depend on it. A law then is a gain, sample by sample, of a command held for good,
+No effect is known here by name. Each law between the command and the force that moves the body is
+linearised along the motion by its derivatives: the stages of the actuation, friction and forces
+that depend on the acting force. A law is then a gain for a constant command, sample by sample,
 times dynamics that are 1 at rest, with coefficients at their mean along the motion:
 
     H(s) = law_command + law_delayed e^(-s delay) + law_state (s - rate_state)^-1 rate_command
 
-The residual is divided by both. Where a gain is next to none the command has no influence: blind.
+The residual is divided by both. Where a gain is nearly zero the command has no influence: the
+sample is blind.
 """
 
 from __future__ import annotations

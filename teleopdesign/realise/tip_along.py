@@ -4,12 +4,12 @@ A tip behind a transmission with a gap, which dry friction slows:
 
     dw/dt = f - d sgn w,   f = q^2 (s -+ g/2) + 2 z q (v - w) outside the gap, abs(s) > g/2, else 0
 
-s is how far the actuator's side is ahead of the tip, v and w are their velocities. The tip's own
-inertia m_t does not stand here: it takes m_t f of the force. So one course of the tip serves every
-m_t, with the stiffness m_t q^2, the damping 2 m_t z q and the level m_t d.
+s is the position of the actuator's side minus that of the tip, v and w are their velocities. The
+inertia m_t of the tip is not in this equation: the force on the tip is m_t f. So one motion of the
+tip serves every m_t, with the stiffness m_t q^2, the damping 2 m_t z q and the level m_t d.
 
-Thousands of courses are cheap: no tangents, no correction by what is left unexplained. They say
-where a search begins; the laws of `effects` say where it ends (tests hold the two together).
+Thousands of motions are cheap: no tangents, no correction by the residual. They give the start of
+a search; the laws of `effects` give its end (tests compare the two).
 """
 
 from __future__ import annotations

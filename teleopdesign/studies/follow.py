@@ -161,7 +161,7 @@ class _Search:
 
 
 def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed: int) -> Followed:
-    """Of the simulated values in the box, those that follow the target most closely."""
+    """Find values in the box with which the simulation follows the target most closely."""
     search = _Search(case, box, target, 1 / _noise(target, target.size))
     first = shares_of(box, start_values(case, box))
     points = np.vstack([first, unit_box(box.names).inside(starts, seed)])

@@ -93,7 +93,7 @@ PointFunction = Callable[..., Any]
 
 @dataclass(frozen=True, eq=False)
 class Kind(ByValue):
-    """A measure that the package has: function(point, **options) -> Amount, or several by name.
+    """A measure of the package: function(point, **options) -> Amount, or several by name.
 
     options: name -> default; `...` where it is required
     signals: all that it needs of a simulation: signals, or options that name them

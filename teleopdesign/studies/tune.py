@@ -168,7 +168,7 @@ def problem_of(
 
 
 def search_with_rounds(problem: Problem, evaluations: int) -> tuple[CheckedLimit, ...]:
-    """Search, check the best point, and search on where a limit fails at a point not looked at."""
+    """Search, check the best point, and continue where a limit fails at a new point."""
     for left in reversed(range(_ROUNDS)):
         if not problem.trials or left == _ROUNDS - 1:
             search(problem, evaluations)

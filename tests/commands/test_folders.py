@@ -82,7 +82,7 @@ def test_a_record_that_has_changed_is_diagnosed_again(rod, few, tmp_path):
 def test_several_folders_need_a_place_for_their_answers(runs, refused, tmp_path):
     assert "2 folders: expected --output DIR" in refused("diagnose", *runs)
     line = refused("diagnose", *runs, "--output", tmp_path / "a", "--json", tmp_path / "b.json")
-    assert "--json: is of one folder" in line
+    assert "--json: is for one folder" in line
     assert "no such folder" in refused("diagnose", tmp_path / "no", "--output", tmp_path / "a")
 
 

@@ -242,8 +242,8 @@ def test_friction_that_no_record_has_shown_backward_is_said(designed, rod):
     from teleopdesign.design.notes import notes_on
 
     one_way = replace(designed, reach=replace(designed.reach, both_ways=False))
-    assert not any("one way only" in n for n in designed.notes)
-    assert any("one way only" in n for n in notes_on(one_way, rod))
+    assert not any("in one direction only" in n for n in designed.notes)
+    assert any("in one direction only" in n for n in notes_on(one_way, rod))
 
 
 def test_the_impedance_that_a_hand_feels_is_predicted_and_lowered(designed):

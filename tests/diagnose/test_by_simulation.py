@@ -128,7 +128,7 @@ def test_a_simulation_that_cannot_be_is_refused_by_the_command(tmp_path, capsys)
     assert main(["diagnose", folder, "--loop", "100", "1"]) == 2
     assert "--simulate" in capsys.readouterr().err
     assert main(["diagnose", folder, "--simulate", "--output", str(tmp_path / "answers")]) == 2
-    assert "--simulate: is of one folder" in capsys.readouterr().err
+    assert "--simulate: is for one folder" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -53,7 +53,7 @@ class ArmRung(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class ArmDiagnosis(ByValue):
-    """What a recording says about the model of an arm.
+    """Result of a diagnosis of an arm: the ladder of effects at its joints, and the verdict.
 
     verdict: "effects_missing", "model_adequate" or "undecided"
     rungs: the user's model re-estimated, then one rung an effect, over all joints

@@ -173,7 +173,7 @@ def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, flo
 
 
 def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
-    """Stretches with what a joint feels of the links: where it is at rest, friction takes that up.
+    """Stretches with the force of the links at a joint; at rest, friction balances this force.
 
     Else a row at rest would say that the links are what the model has already.
     """
@@ -193,7 +193,7 @@ def remove_links(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
 
 
 def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:
-    """What one joint knows of the base parameters, its parameters free.
+    """Information of one joint on the base parameters, with its own parameters free.
 
     size: root of the squares that count as one observation's
     """
@@ -260,7 +260,7 @@ def _sum(known: list[Knowledge]) -> Knowledge:
 def with_others(
     prepared: Prepared, known: Mapping[str, Knowledge], size: float, model: Model
 ) -> Prepared:
-    """A joint's records with what the other joints know of the links; model: of that joint."""
+    """Records of a joint with what the other joints tell of the links; model: of this joint."""
     (joint,) = model.bodies
     mine = known[joint]
     nothing = Knowledge(np.zeros_like(mine.matrix), np.zeros_like(mine.vector))

@@ -17,7 +17,7 @@ from .prepared import PreparedArm
 
 @dataclass(frozen=True)
 class Joint:
-    """Where the ladder of one joint stands.
+    """State of the search at one joint.
 
     is_stale: others have changed what the links are
     other: the joint whose motion is its channel `other_position`; None: none was chosen
@@ -41,7 +41,7 @@ class Joint:
 def begin_joint(
     name: str, search: LadderSearch, records: Prepared, model: Model, prepared: PreparedArm
 ) -> Joint:
-    """A joint whose ladder begins, with what the others say of the links now.
+    """A joint at the start of its search, with the present information on the links.
 
     records: its own, with that;  prepared: those of the arm
     """
@@ -61,7 +61,7 @@ def others_of(joints: Mapping[str, Joint]) -> dict[str, str]:
 def with_known(
     records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
 ) -> Prepared:
-    """A joint's records with what the other joints say of the links by their fits."""
+    """Records of a joint with the information of the other joints on the links, by their fits."""
     if prepared.base is None:
         return records[joint]
     sizes = misfits({j: f.model for j, f in fits.items()}, prepared)

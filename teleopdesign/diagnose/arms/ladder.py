@@ -1,8 +1,8 @@
 """The ladder of an arm: effects at its joints, added in the order of what they explain of the arm.
 
-What one joint lacks leads the links astray, and other joints seem to lack something too. So the
-joint is taken first at which an effect takes most away from the squares of all joints; the others
-are looked at again with what it then says of the links.
+A missing effect at one joint gives wrong parameters of the links, so other joints seem to lack
+effects too. So the joint comes first whose effect removes most of the squares of all joints. The
+other joints are searched again with the new information on the links.
 """
 
 from __future__ import annotations

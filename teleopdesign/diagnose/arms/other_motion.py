@@ -50,7 +50,7 @@ def with_other_motion(records: Prepared, other: Prepared) -> Prepared:
 
 
 def most_coupled(joint: str, records: Prepared, fit: Fit, prepared: PreparedArm) -> str | None:
-    """The other joint whose motion promises most at a joint.
+    """The other joint with the largest predicted gain of a coupling at a joint.
 
     records, fit: of the joint, with what the others say of the links
     returns: None where its log states another motion, or no effect asks for one

@@ -1,7 +1,8 @@
 """Effects of one joint tested on the whole arm: which stay when all joints are estimated together.
 
-The records of one joint may support an effect that stands for what another joint lacks, or for
-links that were led astray. With all joints estimated together it helps no more, and is set aside.
+The records of one joint may support an effect that imitates a missing effect of another joint, or
+an error of the links' parameters. With all joints estimated together such an effect no longer
+lowers the error, and is set aside.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ def _count_held(joint: Joint, there: Sequence[ArmRung]) -> int:
 
 
 def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
-    """Why an effect is not there with all joints estimated together; "": it is.
+    """Why an effect is removed once all joints are estimated together; "": it stays.
 
     One that passes on less of what sensors read must explain more than that: the hidden tip of a
     structure follows the force that was measured, and with it a part of its noise.
