@@ -23,7 +23,7 @@ SUITE = {
     "delay": LateSpring(),
 }
 #: machines whose laws have kinks or jumps that steps do not meet: force and position, about three
-#: times what was measured (docs/limits.md)
+#: times what was measured (docs/trust.md)
 KINKED = {
     "Dahl oscillator": (Bristle(), 2e-4, 1e-5),
     "hard gap": (replace(Gap(), stiffness=2e4), 2e-3, 1e-5),

@@ -32,10 +32,10 @@ ALGEBRAIC = [
 LAW = 1e-9
 #: of a number: some units in its last place
 ROUNDING = mp.mpf("1e-15")
-#: of the level: what the guard of the step leaves (10 steps a reload: 2e-4, docs/design.md)
+#: of the level: what the guard of the step leaves (10 steps a reload: 2e-4)
 BRISTLE = 1e-3
 #: of the amplitude, at once and for each radian: at 20 steps a period RK4 is late by
-#: 0.3^4/120 = 7e-5 of a radian in each (docs/limits.md)
+#: 0.3^4/120 = 7e-5 of a radian in each (docs/trust.md)
 AT_ONCE, EACH_RADIAN = 1e-4, 1e-4
 
 
