@@ -29,6 +29,9 @@ STARTS_ANEW, LATE = 0.2, 0.06
 REMAINS, ALONE = 0.85, 0.8
 #: low-passed share of samples in sure motion from which a row counts
 CLEAR_MOTION = 0.98
+#: ratio of `phase_of_shift` above which a motion has one frequency: 0.9 for a sine on a real motor,
+#: 0.4 for a motion of many frequencies
+ONE_FREQUENCY = 0.7
 #: shifts of forces that are in step with the motion, s
 ON_TIME: Mapping[str, float] = {"actuator_force": 0.0, "interaction_force": 0.0}
 
@@ -69,6 +72,23 @@ def transform_in_band(
     return BandTransforms(
         motion, keep, forces, s.multiply(np.vstack([rest[None], columns]), low)[:, keep]
     )
+
+
+def phase_of_shift(stretches: Sequence[Stretch], body: str, seconds: float) -> float:
+    """Phase (rad) by which a shift turns a motion of nearly one frequency; 0 for other motions.
+
+    Velocity squared over position times acceleration, rms about their means: 1 for a sine.
+    """
+    motions = [s.motion for s in stretches if s.motion.body == body]
+    position, velocity, acceleration = (
+        float(np.sqrt(sum(np.sum((y - y.mean()) ** 2) for y in signals)))
+        for signals in zip(
+            *((m.position, m.velocity, m.acceleration) for m in motions), strict=True
+        )
+    )
+    if not velocity**2 > ONE_FREQUENCY * position * acceleration:
+        return 0.0
+    return seconds * acceleration / velocity
 
 
 def rows_of(parts: Sequence[BandTransforms], shifts: Mapping[str, float]) -> Array:

@@ -18,6 +18,7 @@ from ..model import Model
 from ..quantity import unit_of
 from ..standard_error import with_standard_error
 from .force_balance import ForceBalance, force_balances
+from .force_timing import phase_of_shift
 from .swapped_columns import check_swapped
 from .unit_slips import NEAR, POWERS, scale_of_forces, slips
 
@@ -234,7 +235,12 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     where = _name(prepared, balance.body, first)
     remedy = f'write delay = {{ value = {1e3 * seconds:.3g}, unit = "ms" }} at channels.{where}'
     less = max(map(abs, late.values()))
-    if less < h or balance.left > UNEXPLAINED or len(late) > 1:
+    turned = phase_of_shift(prepared.of("fit"), balance.body, less)
+    if turned > 1.0:
+        concern = "note"
+        remedy = f"on a motion of one frequency this is a phase of {turned:.2g} rad, and a wrong "
+        remedy += "gain or a missing force may look the same: no delay before you know it"
+    elif less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
         concern, remedy = "note", "columns are shifted, or something between them is compliant"
     elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:

@@ -130,6 +130,42 @@ def test_a_channel_shifted_by_whole_samples_is_named_with_the_time(rod, quantity
     assert set(found.numbers) & {"left", "unshifted"}
 
 
+@pytest.mark.parametrize(("other", "concern"), [(0.0, "note"), (1.0, "warning")])
+def test_a_shift_by_a_radian_and_more_is_no_delay_on_a_motion_of_one_frequency(other, concern):
+    """A hand's force 0.29 s late at 0.8 Hz: its phase is that of another force, or of a gain."""
+    t = np.arange(0.0, 20.0, 5e-3)
+
+    def moved(t):
+        return np.sin(5.0 * t) + other * np.sin(2.1 * t + 1.0) + other * 0.1 * np.sin(23.0 * t)
+
+    v, a = np.gradient(moved(t), t), np.gradient(np.gradient(moved(t), t), t)
+    hand = 0.5 * np.sin(3.3 * t) + 0.3 * np.sin(9.1 * t + 0.4)
+    late = np.interp(t - 0.29, t, hand)
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(t))
+    data = {
+        "t": t,
+        "x": moved(t),
+        "F": 0.1 * a + 0.4 * np.sign(v) + 0.2 * v - hand + noise,
+        "f": late,
+    }
+    experiment = td.experiment(
+        data,
+        axis="prismatic",
+        time="t",
+        position={"column": "x", "resolution": 1e-4},
+        actuator_force="F",
+        interaction_force="f",
+        inertia=0.1,
+        bandwidth=10.0,
+        effects=["coulomb", "viscous"],
+    )
+    found = the_one(experiment, "time shift")
+    assert found.concern == concern and found.numbers["interaction_force.lag"] == pytest.approx(
+        0.29, abs=0.02
+    )
+    assert ("no delay before you know it" in found.sentence) == (concern == "note")
+
+
 # teleoperators
 
 
