@@ -6,7 +6,8 @@ import pytest
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.measurement.survey.content import explain_ambiguity, reasons
+from teleopdesign.measurement.survey.acting import current_that_acted
+from teleopdesign.measurement.survey.content import SurveyedColumn, explain_ambiguity, reasons
 
 T = 0.005 * np.arange(1200)
 Q = np.sin(2 * np.pi * 0.7 * T) + 0.2 * np.sin(2 * np.pi * 2.1 * T)
@@ -90,3 +91,30 @@ def test_long_lists_of_columns_end_in_dots_and_short_ones_do_not():
         why = reasons(dict.fromkeys(names, "text"))
         assert ("..." in why) == (many > 3) and why.count("text") == min(many, 3)
     assert reasons({}) == ""
+
+
+def acted(wanted, measured):
+    columns = {
+        "torque_cmd": SurveyedColumn("torque_cmd", wanted, wanted, None),
+        "motor_current": SurveyedColumn("motor_current", measured, measured, None),
+    }
+    return current_that_acted("torque_cmd", columns, {"torque_cmd": 1.0, "motor_current": 0.9})
+
+
+@pytest.mark.parametrize("apart", [0.05, 0.15, 0.5, 0.9])
+@pytest.mark.parametrize("late", [0, 3])
+def test_a_current_acted_by_the_part_of_it_that_was_not_wanted(apart, late):
+    """In any unit, delayed, with noise of single rows: what else the motor did in slow waves."""
+    noise = 0.05 * np.random.default_rng(0).normal(size=len(T))
+    wanted, other = np.sin(2 * np.pi * 1.0 * T), np.cos(2 * np.pi * 1.5 * T)
+    measured = 7.0 * ((1 - apart**2) ** 0.5 * np.roll(wanted, late) + apart * other) + noise + 2.0
+    if apart < 0.1:  # a hundredth of the squares
+        assert acted(wanted, measured) is None
+    else:
+        column, share = acted(wanted, measured)
+        assert column == "motor_current" and share == pytest.approx(apart, abs=0.02)
+
+
+def test_a_current_that_stays_and_one_of_a_few_rows_did_not_act():
+    assert acted(U, np.full(len(T), 2.0)) is None
+    assert acted(U[:8], Q[:8]) is None
