@@ -1,5 +1,7 @@
 """What a survey writes and says of a log: wraps, units of another axis, doubts among columns."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -118,3 +120,13 @@ def test_a_current_acted_by_the_part_of_it_that_was_not_wanted(apart, late):
 def test_a_current_that_stays_and_one_of_a_few_rows_did_not_act():
     assert acted(U, np.full(len(T), 2.0)) is None
     assert acted(U[:8], Q[:8]) is None
+
+
+def test_a_column_left_out_says_what_the_motion_explains_of_it_and_of_what_was_taken():
+    noise = np.random.default_rng(0).normal(size=len(T))
+    log = {"t [s]": T, "q [rad]": Q, "torque_a [Nm]": U, "torque_b [Nm]": U + noise, "c": noise}
+    unused = look(log).unused
+    of_force = r": the motion explains (\d+)% of it, of 'torque_a \[Nm\]' (9\d|100)%"
+    second = re.fullmatch("a force beside 'torque_a \\[Nm\\]'" + of_force, unused["torque_b [Nm]"])
+    nothing = re.fullmatch("no force by its name" + of_force, unused["c"])
+    assert second and nothing and int(nothing[1]) < int(second[1]) < 100

@@ -1,0 +1,62 @@
+"""What fills lost rows, and by how much it is said to err: exact where it must be, known by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.measurement.record_clock import RecordClock
+from teleopdesign.measurement.resample import filling_error, interpolate_by_rule
+
+H = 0.01
+
+
+def clock_of(places, segments=None):
+    """A clock whose rows lie at these samples."""
+    places = np.asarray(places)
+    n = int(places[-1]) + 1
+    whole = segments or (slice(0, n),)
+    rows = tuple(slice(*np.searchsorted(places, [s.start, s.stop]).tolist()) for s in whole)
+    return RecordClock(places, H * places, places, H * np.arange(n), H, whole, rows)
+
+
+@given(
+    c=st.lists(st.floats(-3.0, 3.0), min_size=4, max_size=4),
+    lost=st.lists(st.integers(3, 56), max_size=6),
+)
+def test_a_position_that_moves_as_a_cubic_is_filled_without_error(c, lost):
+    places = np.setdiff1d(np.arange(60), lost)
+    x = np.polyval(c, places / 30.0 - 1.0)
+    assert filling_error(x, clock_of(places), "position", step=0.0) == pytest.approx(0.0, abs=1e-12)
+    filled = interpolate_by_rule(x, places * 1.0, np.arange(60.0), "position", step=0.0)
+    assert filled == pytest.approx(np.polyval(c, np.arange(60) / 30.0 - 1.0), abs=1e-9)
+
+
+@given(a=st.floats(-2.0, 2.0), b=st.floats(-2.0, 2.0))
+def test_a_line_is_filled_without_error_and_a_parabola_errs_by_half_its_second_difference(a, b):
+    k = np.arange(40.0)
+    for rule in ("line", "held"):
+        said = filling_error(b * k + a * k**2, clock_of(np.arange(40)), rule, step=0.0)
+        assert said == pytest.approx(abs(a), abs=1e-9)
+
+
+@pytest.mark.parametrize("step", [0.5, 2.0])
+def test_steps_of_an_encoder_are_filled_by_steps(step):
+    """Half a step a row: the reading between two that differ by a step is the first or the second."""
+    even, slow = np.arange(80), np.arange(80) // 2
+    assert filling_error(step * even, clock_of(even), "position", step=step) == 0.0
+    said = filling_error(step * slow, clock_of(even), "position", step=step)
+    assert said == pytest.approx(step / np.sqrt(2), rel=0.02)
+    # three steps a row are no longer seen one by one
+    fast = 3 * even + even % 2
+    said = filling_error(step * fast, clock_of(even), "position", step=step)
+    assert said == pytest.approx(step * 4 / 3, rel=1e-9)
+
+
+def test_what_lies_beside_a_gap_or_an_end_tells_no_error():
+    assert np.isnan(filling_error(np.arange(4.0), clock_of(np.arange(4)), "line", step=0.0))
+    assert np.isnan(filling_error(np.arange(6.0), clock_of([0, 1, 2, 4, 5, 6]), "line", step=0.0))
+    # the leap between two stretches is in neither
+    x = np.r_[np.zeros(20), np.full(20, 50.0)]
+    halves = (slice(0, 20), slice(20, 40))
+    assert filling_error(x, clock_of(np.arange(40), halves), "line", step=0.0) == 0.0
