@@ -1,4 +1,4 @@
-"""What fills lost rows, and by how much it is said to err: exact where it must be, known by hand."""
+"""What fills lost rows, and by how much it errs: exactly, where that is known by hand."""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def test_a_line_is_filled_without_error_and_a_parabola_errs_by_half_its_second_d
 
 @pytest.mark.parametrize("step", [0.5, 2.0])
 def test_steps_of_an_encoder_are_filled_by_steps(step):
-    """Half a step a row: the reading between two that differ by a step is the first or the second."""
+    """Half a step a row: between two that differ by a step, it reads the first or the second."""
     even, slow = np.arange(80), np.arange(80) // 2
     assert filling_error(step * even, clock_of(even), "position", step=step) == 0.0
     said = filling_error(step * slow, clock_of(even), "position", step=step)

@@ -202,7 +202,7 @@ def test_noise_that_stops_is_of_lost_rows_where_it_is_shown_on_both_sides(first,
 def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chance_makes(
     times, is_lost
 ):
-    """Three readings of twenty values each agree in a row by chance once in 8000: of 2000 rows one is no surprise."""
+    """Three readings of twenty values each agree in a row by chance once in 8000 rows."""
     random = np.random.default_rng(1)
     x, one, two = random.integers(0, 20, (3, ROWS)).astype(float)
     at = np.linspace(100, ROWS - 100, times).astype(int)
