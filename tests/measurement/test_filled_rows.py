@@ -1,12 +1,14 @@
 """What fills lost rows, and by how much it errs: exactly, where that is known by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from teleopdesign.measurement.record_clock import RecordClock
-from teleopdesign.measurement.resample import filling_error, interpolate_by_rule
+from teleopdesign.measurement.resample import command_phase, filling_error, interpolate_by_rule
 
 H = 0.01
 
@@ -27,6 +29,7 @@ def clock_of(places, segments=None):
 def test_a_position_that_moves_as_a_cubic_is_filled_without_error(c, lost):
     places = np.setdiff1d(np.arange(60), lost)
     x = np.polyval(c, places / 30.0 - 1.0)
+    assume(np.all(np.diff(x)) and np.all(x[2:] != x[:-2]))  # else it stands, as far as rows tell
     assert filling_error(x, clock_of(places), "position", step=0.0) == pytest.approx(0.0, abs=1e-12)
     filled = interpolate_by_rule(x, places * 1.0, np.arange(60.0), "position", step=0.0)
     assert filled == pytest.approx(np.polyval(c, np.arange(60) / 30.0 - 1.0), abs=1e-9)
@@ -40,7 +43,7 @@ def test_a_line_is_filled_without_error_and_a_parabola_errs_by_half_its_second_d
         assert said == pytest.approx(abs(a), abs=1e-9)
 
 
-@pytest.mark.parametrize("step", [0.5, 2.0])
+@pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
 def test_steps_of_an_encoder_are_filled_by_steps(step):
     """Half a step a row: between two that differ by a step, it reads the first or the second."""
     even, slow = np.arange(80), np.arange(80) // 2
@@ -60,3 +63,36 @@ def test_what_lies_beside_a_gap_or_an_end_tells_no_error():
     x = np.r_[np.zeros(20), np.full(20, 50.0)]
     halves = (slice(0, 20), slice(20, 40))
     assert filling_error(x, clock_of(np.arange(40), halves), "line", step=0.0) == 0.0
+
+
+@given(
+    gaps=st.lists(st.integers(1, 8), min_size=2, max_size=20),
+    begin=st.integers(-6, 6),
+    seed=st.integers(0, 99),
+)
+def test_a_command_acts_in_a_sample_with_its_mean_and_before_its_first_row_as_in_it(
+    gaps, begin, seed
+):
+    """At eighths of a sample; no two rows are further apart than one."""
+    at = (begin + np.cumsum([0, *gaps])) / 8.0
+    values = np.random.default_rng(seed).normal(size=len(at))
+    grid = np.arange(int(np.ceil(at[-1])) + 2.0)
+    made = interpolate_by_rule(values, at, grid, "held", step=0.0, slower_clock=True)
+    times = grid[:, None] + (np.arange(8) + 0.5) / 8.0
+    which = np.maximum(np.searchsorted(at, times, side="right") - 1, 0)
+    assert made == pytest.approx(values[which].mean(axis=1), abs=1e-12)
+
+
+@pytest.mark.parametrize("phase", [-0.3, 0.2, 0.35])
+def test_the_instant_at_which_a_command_changes_between_rows_is_read_off(phase):
+    """Rows scatter; two between the same two changes say the same."""
+    random = np.random.default_rng(3)
+    places = np.arange(1500)
+    at = places + random.uniform(-0.45, 0.45, 1500)
+    clock = replace(clock_of(places), stamps=H * at)
+    held = random.normal(size=1502)
+    values = held[np.floor(at - phase).astype(int) + 1]
+    assert command_phase(values, clock) == pytest.approx(phase, abs=0.03)
+    assert command_phase(random.normal(size=1500), clock) is None
+    assert command_phase(np.zeros(1500), clock) is None
+    assert command_phase(held[:1500], clock_of(places)) is None
