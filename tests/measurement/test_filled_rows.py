@@ -7,8 +7,14 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+import teleopdesign as td
+from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.conversion import Conversion
+from teleopdesign.measurement.record import record_of
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.resample import command_phase, filling_error, interpolate_by_rule
+from teleopdesign.measurement.signals_of_log import rule_of
+from teleopdesign.measurement.tables import LogColumns
 
 H = 0.01
 
@@ -96,3 +102,81 @@ def test_the_instant_at_which_a_command_changes_between_rows_is_read_off(phase):
     assert command_phase(random.normal(size=1500), clock) is None
     assert command_phase(np.zeros(1500), clock) is None
     assert command_phase(held[:1500], clock_of(places)) is None
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_a_record_fills_each_signal_by_its_rule_and_says_by_how_much_that_errs(size):
+    """In any unit: positions by a curve, forces by a line; the error is a part of the force."""
+    t = H * np.arange(1000)
+    x, u = size * np.sin(2 * np.pi * 1.37 * t + 0.3), size * np.cos(2 * np.pi * 0.9 * t)
+    kept = np.setdiff1d(np.arange(1000), np.arange(50, 950, 50))
+    f = size * np.sin(2 * np.pi * 2.1 * t)
+    table = {"t": t[kept], "x": x[kept], "u": u[kept], "f": f[kept]}
+    made = td.experiment(
+        table, axis="prismatic", position="x", actuator_force="u", interaction_force="f",
+        inertia=1.0,
+    )  # fmt: skip
+    (record,) = made.records
+    off = {k: record.signals[f"device.{k}"] - y for k, y in
+           (("position", x), ("actuator_force", u), ("interaction_force", f))}  # fmt: skip
+    assert np.abs(off["position"]).max() < 2e-5 * size
+    bend = (2 * np.pi * 2.1 * H) ** 2 / 2 * np.abs(f[50:950:50]).max()
+    assert np.abs(off["interaction_force"]).max() == pytest.approx(bend, rel=0.02)
+    (said,) = (s for s in record.reading if s.topic == "lost rows")
+    lost = 18 / 1000
+    rms = [(2 * np.pi * k * H) ** 2 / 2 * size / np.sqrt(2) for k in (0.9, 2.1)]
+    error = np.sqrt(lost * sum(r**2 for r in rms) / (np.mean(u**2) + np.mean(f**2)))
+    assert said.size == pytest.approx(error, rel=0.02)
+    assert "18 rows lost, 1.8 %" in said.observed
+    assert f"adds at most {100 * said.size:.2g} % of the force" in said.effect
+
+
+@pytest.mark.parametrize(
+    ("quantity", "values", "rule"),
+    [
+        ("position", [0.0, 1.0, 2.0], "position"),
+        ("actuator_force", [0.1, 0.25, 0.7], "held"),
+        ("interaction_force", [0.0, 1.0, 2.0], "line"),
+        ("velocity", [0.0, 1.0, 2.0], "line"),
+        ("other_position", [0.0, 1.0, 2.0], "held"),
+        ("temperature", [20.0, 21.0, 22.0], "held"),
+        ("temperature", [20.1, 20.2, 20.3], "line"),
+        ("temperature", np.arange(200.0), "line"),
+    ],
+)
+def test_between_rows_states_are_held_and_what_is_measured_goes_along_a_line(
+    quantity, values, rule
+):
+    channel = Channel(quantity, "device", "x", "1", None, None)
+    assert rule_of(channel, np.resize(np.asarray(values, dtype=float), 6000)) == rule
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.05, -0.02])
+@pytest.mark.parametrize("rate", [250.0, 62.5])
+def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay(delay, rate):
+    """In any order, with stamps that come twice."""
+    t = H * np.arange(1000)
+    stamps = np.arange(0.0, 10.0, 1.0 / rate)
+    mixed = np.random.default_rng(0).permutation(np.r_[stamps, stamps[5:9]])
+    tone = lambda at: np.sin(2 * np.pi * 0.7 * at)  # noqa: E731
+    columns = LogColumns(
+        {"t": t, "x": tone(t), "u": tone(t + 0.2), "f": tone(mixed - delay)}, {"f": mixed}
+    )
+    whats = {"position": "x", "actuator_force": "u", "interaction_force": "f"}
+    channels = {
+        f"device.{what}": Channel(
+            what, "device", name, "1", None, None,
+            Conversion((name,), (1.0,), delay=delay * (name == "f")),
+        )
+        for what, name in whats.items()
+    }  # fmt: skip
+    channels["time"] = Channel("time", None, "t", "s", None, None)
+    record = record_of(
+        columns, "log", file="log", use="fit", offset_names=frozenset(), channels=channels,
+        bodies={}, sample_rate=None,
+    )  # fmt: skip
+    inner = slice(10, -10)
+    off = record.signals["device.interaction_force"] - tone(t)
+    assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01
+    (said,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
+    assert said.endswith(f", {rate:g} Hz")
