@@ -285,3 +285,14 @@ def test_cells_are_stamps_where_each_that_is_filled_is_one(cells, seconds):
     else:
         read = read - np.nanmin(read)
         np.testing.assert_allclose(read, seconds)
+
+
+@pytest.mark.parametrize("width", [2, 3, 5])
+@pytest.mark.parametrize("more", [0, 1, 2])
+def test_names_of_columns_that_are_never_filled_are_left_off(tmp_path, width, more):
+    names = ["t", "x", "u", "f", "g"][:width]
+    path = tmp_path / "log.csv"
+    head = ",".join([*names, *["Comment", "Remark"][:more]])
+    rows = "".join(",".join(f"{k + 0.5 * j}" for j in range(width)) + "\n" for k in range(100))
+    path.write_text(f"{head}\n{rows}")
+    assert open_text(path, "log.csv").names == tuple(names)

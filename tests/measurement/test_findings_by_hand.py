@@ -171,3 +171,16 @@ def test_a_limit_of_a_command_may_be_meant_and_one_of_a_sensor_is_not(quantity, 
     assert ("largest" if side > 0 else "smallest") in found.sentence
     begins = found.graph.series[0].x[0]
     assert begins == pytest.approx((at[0] - 100) * H)
+
+
+@pytest.mark.parametrize("row", [150, 450, 550])
+def test_a_lone_sample_or_leap_of_a_later_stretch_is_told_by_its_row_in_the_record(row):
+    halves = (slice(0, 300), slice(300, 600))
+    x = np.random.default_rng(0).normal(size=600)
+    x[row] += 100.0
+    (found,) = check_outliers(channel(x, segments=halves))
+    assert found.numbers["row"] == row + 1 and found.numbers["time"] == pytest.approx(row * H)
+    x[row] -= 100.0
+    x[row:] += 100.0 * (np.arange(row, 600) < halves[row >= 300].stop)
+    (found,) = check_jumps(channel(x, segments=halves))
+    assert found.numbers["time"] == pytest.approx((row - 1) * H)

@@ -130,3 +130,17 @@ def test_a_column_left_out_says_what_the_motion_explains_of_it_and_of_what_was_t
     second = re.fullmatch("a force beside 'torque_a \\[Nm\\]'" + of_force, unused["torque_b [Nm]"])
     nothing = re.fullmatch("no force by its name" + of_force, unused["c"])
     assert second and nothing and int(nothing[1]) < int(second[1]) < 100
+
+
+@pytest.mark.parametrize(("counts", "said"), [(2000, 2000), (2600, 4096), (3333, 4096)])
+def test_counts_of_a_turn_that_no_encoder_has_are_not_read_off_a_velocity(counts, said):
+    columns = {
+        "t": T,
+        "pos [inc]": np.round(3.0 * counts * Q),
+        "v [rpm]": 180.0 * np.gradient(Q, T),
+    }
+    survey = look(columns | {"current [mA]": U})
+    assert survey.channels["position"]["counts_per_turn"] == said
+    why = survey.guesses["channels.position.counts_per_turn"]
+    assert ("agrees with" in why) == (said == counts)
+    assert ("look at the encoder" in why) == (said != counts)
