@@ -1,14 +1,18 @@
 """Bounds of acting forces and of damping where the law is simple enough to say them by hand."""
 
 from math import inf
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import teleopdesign as td
 from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.realise.acting_bound import largest_acting_force
 from teleopdesign.realise.damping_interval import damping_interval
+from teleopdesign.realise.friction_along import _bound_sliding
 from teleopdesign.realise.friction_interval import Interval
+from teleopdesign.realise.traced import Traced
 
 
 def with_law(law, role, size=0.5, **more):
@@ -45,3 +49,18 @@ def test_where_no_damping_is_known_it_is_zero_and_what_may_push_is_named(damping
     braked = body.with_values({"viscous.damping": td.Value(0.7)})
     found = damping_interval(braked, errors=0.0)
     assert found.least.low == pytest.approx(0.2) and found.supplying == ()
+
+
+@pytest.mark.parametrize("is_even", [True, False])
+def test_sliding_friction_is_against_the_motion_and_at_rest_anything_between(is_even):
+    """With its tangents: those of the level that bounds it."""
+    random = np.random.default_rng(0)
+    forward = Traced(np.arange(1.0, 7.0), random.normal(size=(2, 6)))
+    backward = forward if is_even else Traced(np.arange(6.0, 0.0, -1.0), random.normal(size=(2, 6)))
+    direction = np.array([1, 0, -1, 0, 1, -1])
+    low, high = _bound_sliding(SimpleNamespace(direction=direction), forward, backward)
+    for k, way in enumerate(direction):
+        least = forward.rows()[:, k] if way > 0 else -backward.rows()[:, k]
+        most = -backward.rows()[:, k] if way < 0 else forward.rows()[:, k]
+        assert (low.rows()[:, k] == least).all() and (high.rows()[:, k] == most).all()
+        assert (least == most).all() == bool(way)
