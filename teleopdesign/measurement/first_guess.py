@@ -60,7 +60,8 @@ def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, A
     band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     s = spectrum(len(position), sample_time)
     low = s.lowpass(band)
-    moved = s.transform(position) * low
+    # from its first place on: at rest far from zero rounding is no motion
+    moved = s.transform(position - position[:1]) * low
     velocity, acceleration = s.back(moved * s.derivative(1)), s.back(moved * s.derivative(2))
     speed = np.abs(velocity)
     direction = np.where(speed > _SLOW * speed.max(initial=0.0), np.sign(velocity), 0.0)

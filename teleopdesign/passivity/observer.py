@@ -153,6 +153,8 @@ def _stderr(
     ends = np.concatenate([[0.0], acting[0] ** 2 + acting**2])
     along = travel if held else np.concatenate([travel[:1] / 2, (travel[1:] + travel[:-1]) / 2])
     pulled = np.concatenate([[0.0], np.cumsum(along**2)])
+    if not held:  # the last force so far acts along half of the travel before it
+        pulled[1:] += (travel / 2) ** 2
     variance = position_noise**2 * (inside + ends) + force_noise**2 * pulled
     return np.asarray(np.sqrt(variance))
 

@@ -49,7 +49,7 @@ PASSING = {
 }
 
 
-def one_way():
+def one_way(side=1):
     """A slide in one direction, its command between 2 and 4 N."""
     rng, n = np.random.default_rng(3), int(12 * RATE)
     speed = 0.3 * (1 + 0.2 * smooth_noise(rng, n, 1.0))
@@ -57,8 +57,8 @@ def one_way():
         body="device",
         file="made",
         time=np.arange(n) / RATE,
-        position=np.cumsum(np.maximum(speed, 0.05)) / RATE,
-        command=np.clip(3.0 + 0.4 * smooth_noise(rng, n, 2.0), 2.0, 4.0),
+        position=side * np.cumsum(np.maximum(speed, 0.05)) / RATE,
+        command=side * np.clip(3.0 + 0.4 * smooth_noise(rng, n, 2.0), 2.0, 4.0),
         interaction=None,
         sample_time=1 / RATE,
         rows=slice(0, n),
@@ -121,13 +121,16 @@ def test_actuation_is_led_back_as_the_format_says():
         np.testing.assert_allclose(found.residual[inside], known[inside], atol=0.01)
 
 
-def test_samples_beyond_a_limit_are_blind():
-    motion = one_way()
+@pytest.mark.parametrize("side", [1, -1])
+def test_samples_beyond_a_limit_are_blind(side):
+    motion = one_way(side)
     seen = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
-    np.testing.assert_array_equal(seen.blind, motion.command > 3.0)
+    np.testing.assert_array_equal(seen.blind, side * motion.command > 3.0)
     assert not seen.weak
-    weak = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 0.5}), motion)
-    assert weak.blind.all() and weak.weak
+    # beside friction of 1 N
+    for limit, is_weak in ((0.5, True), (0.9, True), (1.1, False)):
+        held = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": limit}), motion)
+        assert held.blind.all() and held.weak == is_weak
 
 
 @pytest.mark.parametrize("gain", [1.0, 0.4, -0.4, 3.0, 0.0])

@@ -353,3 +353,17 @@ def test_five_lost_rows_are_filled_and_six_are_a_pause(lost, stretches):
     record = read(t)
     assert len(record.segments) == stretches
     assert len(record.time) == (300 if stretches == 1 else 300 - lost)
+
+
+@pytest.mark.parametrize(("force", "position"), [("s", "rad"), ("N*m", "A"), ("A", "rad")])
+def test_a_constant_of_a_motor_is_asked_for_beside_a_current_that_is_a_force(force, position):
+    t = np.arange(400) / 200.0
+    with pytest.raises(ExperimentError) as refused:
+        td.experiment(
+            {"t": t, "x": np.sin(t), "y": np.cos(t)},
+            axis="revolute",
+            inertia=1.0,
+            position={"column": "x", "unit": position},
+            actuator_force={"column": "y", "unit": force},
+        )
+    assert ("torque_constant" in str(refused.value)) == (force == "A")

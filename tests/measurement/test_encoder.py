@@ -65,3 +65,11 @@ def test_the_jitter_of_a_clock_is_read_off_what_scatters_with_speed(jitter, size
     step = 1e-4 * size
     assert sampling_jitter(step * np.round(even / step), step, H) == 0.0
     assert sampling_jitter(read[:400], 0.0, H) == 0.0, "too short to tell"
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1.0, 1e3])
+def test_a_step_is_known_to_the_digits_that_the_whole_travel_tells_in_any_unit(unit):
+    """From neighbours on, whose few steps say it to half a per cent, to places far apart."""
+    random = np.random.default_rng(0)
+    counts = random.choice(10_000, 500, replace=False) + random.uniform(-0.1, 0.1, 500)
+    assert grid_of(unit * counts, unit) == pytest.approx(unit, rel=1e-5)

@@ -125,3 +125,13 @@ def test_a_pendulum_below_its_own_rate_is_no_turned_inertia(rate, stiffness):
     assert is_turned(-force, x, 0.01)
     if rate > 0.1:  # slower, inertia is 3 % of the friction
         assert explain_force(force, x, 0.01).inertia == pytest.approx(0.05, rel=0.3)
+
+
+def test_of_a_body_that_rests_nothing_is_read_and_nothing_fails():
+    force = np.random.default_rng(0).standard_normal(len(T))
+    for still in (np.zeros(len(T)), np.full(len(T), 2.5)):
+        guess = explain_force(force, still, H)
+        assert (guess.inertia, guess.level, guess.damping) == (0.0, 0.0, 0.0)
+        assert guess.explained == pytest.approx(0.0, abs=1e-9)
+        assert not is_turned(force, still, H)
+        assert balance_factor(force, force, still, H) == (0.0, np.inf)

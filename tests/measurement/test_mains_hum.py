@@ -92,3 +92,19 @@ def test_a_tone_that_a_position_shows_or_that_is_a_fiftieth_of_the_force_is_none
     assert hum_of(force, [still + tone], h) is None
     assert hum_of(force[:1900], [], h) is None, "too short to part it from what is beside it"
     assert hum_of(force[::10], [], 10 * h) is None, "the samples do not tell so high a frequency"
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("frequency", [50.0, 59.94])
+def test_a_hum_is_told_with_frequency_and_share_in_any_unit(unit, frequency):
+    t = 1e-3 * np.arange(8000)
+    random = np.random.default_rng(0)
+    motion = np.sin(2 * np.pi * 1.3 * t) + 0.01 * random.normal(size=8000)
+    for share, is_told in ((0.03, True), (0.003, False)):
+        tone = np.sqrt(2) * share * motion.std() * np.sin(2 * np.pi * frequency * t + 1)
+        hum = hum_of(unit * (motion + tone), [np.sin(2 * np.pi * 1.3 * t)], 1e-3)
+        assert (hum is not None) == is_told
+        if hum:
+            assert hum.mains == round(frequency, -1)
+            assert hum.frequency == pytest.approx(frequency, abs=2e-3)
+            assert hum.rms == pytest.approx(share * unit * motion.std(), rel=0.2)

@@ -158,3 +158,55 @@ def test_a_sample_that_repeats_is_seen_where_the_motion_before_and_behind_it_is(
     x = 10.0 * np.arange(400.0)
     x[at + 1] = x[at]
     assert repeats(x, 1.0).tolist() == found
+
+
+def halted(before, leap, after, rows=(100, 100)):
+    """A motion by so much a row that stands for 12 rows, leaps, and goes on by so much a row."""
+    changes = [[before] * rows[0], [0.0] * 12, [leap], [after] * rows[1]]
+    return np.concatenate([[0.0], np.cumsum(np.concatenate(changes))])
+
+
+@pytest.mark.parametrize(
+    ("before", "leap", "after", "is_lost"),
+    [(1, 6, 1, True), (1, -6, 1, True), (2, 6, 1, False), (1, 6, 2, False), (1, 4, 1, False)],
+)
+def test_a_stand_is_lost_rows_where_the_leap_after_it_is_large_beside_both_sides(
+    before, leap, after, is_lost
+):
+    x = halted(before, leap, after)
+    rows = np.flatnonzero(repeated_rows([x, 2 * x], [x]))
+    assert rows.tolist() == (list(range(101, 113)) if is_lost else [])
+
+
+@pytest.mark.parametrize(
+    ("rows", "is_lost"), [((5, 100), True), ((4, 100), False), ((100, 5), True), ((100, 4), False)]
+)
+def test_a_stand_at_an_end_of_a_record_tells_nothing(rows, is_lost):
+    x = halted(1, 6, 1, rows)
+    assert repeated_rows([x, 2 * x], [x]).any() == is_lost
+
+
+@pytest.mark.parametrize(
+    ("first", "is_lost"), [(300, True), (20, True), (19, False), (965, True), (968, False)]
+)
+def test_noise_that_stops_is_of_lost_rows_where_it_is_shown_on_both_sides(first, is_lost):
+    """Of a body that rests under a constant command, and a sensor of its force."""
+    force = np.random.default_rng(0).normal(size=1000)
+    force[first : first + 13] = force[first]
+    still = np.zeros(1000)
+    lost = np.flatnonzero(repeated_rows([still, still, force], [still], [force]))
+    assert lost.tolist() == (list(range(first + 1, first + 13)) if is_lost else [])
+
+
+@pytest.mark.parametrize(("times", "is_lost"), [(1, False), (2, True), (20, True)])
+def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chance_makes(
+    times, is_lost
+):
+    """Three readings of twenty values each agree in a row by chance once in 8000 rows."""
+    random = np.random.default_rng(1)
+    x, one, two = random.integers(0, 20, (3, ROWS)).astype(float)
+    at = np.linspace(100, ROWS - 100, times).astype(int)
+    for y in (x, one, two):
+        y[at] = y[at - 1]
+    lost = np.flatnonzero(repeated_rows([x, one, two], [x], [one, two]))
+    assert lost.tolist() == (at.tolist() if is_lost else [])

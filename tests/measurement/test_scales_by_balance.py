@@ -65,9 +65,10 @@ def test_without_a_hand_a_constant_stays_open(joint):
     assert "fill it in" in survey.guesses["channels.actuator_force.torque_constant"]
 
 
-def test_a_torque_that_no_name_calls_the_hands_is_found_beside_a_current(joint):
-    survey = look(in_amperes(joint, hand="tcp_torque"))
-    assert survey.channels["interaction_force"]["column"] == "tcp_torque"
+@pytest.mark.parametrize("name", ["tcp_torque", "tipforce", "Endkraft", "tau2"])
+def test_a_torque_that_no_name_calls_the_hands_is_found_beside_a_current(joint, name):
+    survey = look(in_amperes(joint, hand=name))
+    assert survey.channels["interaction_force"]["column"] == name
     constant = survey.channels["actuator_force"]["torque_constant"]["value"]
     assert constant == pytest.approx(CONSTANT, rel=0.03)
 

@@ -450,11 +450,12 @@ def test_a_stay_at_a_limit_lasts_three_samples_after_four_of_approach(lasts, sta
 
 
 @pytest.mark.parametrize(
-    ("approach", "stays"), [([0.0, 2.0, 2.7, 3.0], 0), ([3.0, 2.0, 1.0, 0.0], 0), ([0, 1, 2, 3], 1)]
+    ("approach", "stays"), [([0.0, 2.0, 2.6, 3.0], 0), ([3.0, 2.0, 1.0, 0.0], 0), ([0, 1, 2, 3], 1)]
 )
-def test_a_signal_that_comes_to_rest_or_turned_away_did_not_run_into_a_limit(approach, stays):
-    x = np.array([*approach, 4.0, 4.0, 4.0], dtype=float)
-    assert visits(x, 4.0, 0.1, noisy=False)[0] == stays
+@pytest.mark.parametrize("unit", [1.0, 1e3, 1e-3])
+def test_a_signal_that_comes_to_rest_or_turned_away_did_not_run_into_a_limit(approach, stays, unit):
+    x = unit * np.array([*approach, 4.0, 4.0, 4.0], dtype=float)
+    assert visits(x, unit * 4.0, unit * 0.1, noisy=False)[0] == stays
 
 
 @pytest.mark.parametrize(
@@ -485,3 +486,15 @@ def test_segments_of_which_over_a_tenth_is_too_short_need_care(rod):
     record = replace(rod.records[0], segments=(*segments, slice(2000, 12_000)))
     (found,) = check_segments(record)
     assert found.concern == "warning" and found.numbers["left_out"] == pytest.approx(2.0)
+
+
+def test_what_is_in_order_is_said_beside_what_is_not_and_never_of_the_same(rod, tmp_path):
+    def said(experiment):
+        return sorted((f.topic, f.concern) for f in check_signals(experiment))
+
+    assert said(rod) == [("channels", "fine"), ("sample clock", "fine")]
+    lone = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3e-4))
+    assert said(lone) == [("outliers", "warning"), ("sample clock", "fine")]
+    jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
+    late = rewritten(tmp_path, np.arange(12_000) / RATE + jitter)
+    assert said(late) == [("channels", "fine"), ("sample clock", "note")]

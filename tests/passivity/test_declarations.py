@@ -9,6 +9,7 @@ from teleopdesign import EFFECTS
 from teleopdesign.controllers import (
     CONTROLLERS,
     ControlLaw,
+    Stage,
     broken_declarations,
     controller,
     load_controller,
@@ -19,6 +20,7 @@ from teleopdesign.errors import ModelError
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.declarations import (
     falsely_linear,
+    is_kept,
     is_shipped,
     keeps_its_bound,
     unchecked_energy,
@@ -233,3 +235,16 @@ def test_an_effect_called_coulomb_is_not_coulomb_friction_for_waves(tmp_path):
     assert wave_claim(waves(slide.with_effect(mine, {"size": 50.0}))).status == "unknown"
     honest = slide.with_effect(EFFECTS["coulomb"], {"level": 0.5})
     assert wave_claim(waves(honest)).status == "proved"
+
+
+@pytest.mark.parametrize(("power", "kept"), [(1, True), (2, False)])
+def test_a_law_that_is_no_shipped_one_is_held_against_what_it_declares(power, kept):
+    """Whatever its name: that of the catalogue makes it none of the catalogue."""
+    for name in ("mine", "gain"):
+        law = ControlLaw(
+            law=lambda now, p: p.size * now.input**power,
+            parameters={"size": Parameter("dimensionless", "k")},
+            linear=True,
+        ).named(name, "A law.")
+        assert is_kept(Stage(law, {"size": 2.0})) == kept
+    assert is_kept(DAHL.stages[0]) and is_kept(controller("gain", {"gain": 2.0}).stages[0])

@@ -4,11 +4,13 @@ import mpmath
 import pytest
 import sympy as sp
 
+from teleopdesign.passivity import two_port
 from teleopdesign.passivity.two_port.delayed_two_port import (
     _fades,
     _far_size,
     _real_far_out,
     late_terms,
+    obstacles,
 )
 from teleopdesign.realise.lti import S
 
@@ -62,3 +64,21 @@ def test_couplings_fade_before_the_real_parts_do_or_it_is_said_that_they_do_not(
     z = [late_terms(sp.sympify(e)) for e in entries]
     assert _fades(z, "passive") == passive
     assert _fades(z, "absolutely stable") == stable
+
+
+@pytest.mark.parametrize("criterion", ["passive", "absolutely stable"])
+@pytest.mark.parametrize(
+    ("own", "across"), [(5.5, 6), (6.5, 6), (1.1, 1), (0.9, 1), (3, 0), (-1, 0)]
+)
+@pytest.mark.parametrize("pole", [S, S**2 + 4, S**2 + sp.Rational(7, 3)])
+def test_beside_a_dead_time_what_two_ports_share_without_loss_is_held_against_their_product(
+    criterion, own, across, pole
+):
+    """Springs, or oscillators, of a network that acts alike both ways: own squared, or nothing."""
+    shape = (1 if pole == S else S) / pole
+    rest = 5 + sp.exp(-S / 10) / (1 + S) / 10
+    own, across = sp.Rational(str(own)) * shape, across * shape
+    system = two_port([[own + rest, across], [across, own + 5]])
+    shown = [text for text in obstacles(system, criterion) if text.startswith("the residues at")]
+    is_met = own / shape >= across / shape
+    assert bool(shown) == (not is_met)

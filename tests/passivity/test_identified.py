@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import teleopdesign as td
-from teleopdesign.controllers import controller
+from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.errors import ModelError
@@ -192,3 +192,52 @@ def test_a_level_without_an_upper_bound_is_refused_where_one_is_needed():
     assert statuses(body_of(**load))["any law within the level"] == "proved"
     with pytest.raises(ModelError, match="no upper bound of the friction level over any acting"):
         identify_device(body_of(**load, presliding={"stiffness": 1e4}))
+
+
+@pytest.mark.parametrize(
+    ("damping", "viscous", "is_known"),
+    [(30, 12.01, True), (30, 11.9, False), (0.5, 0.3, True), (0.5, 0.1, False)],
+)
+def test_a_limit_of_design_is_said_where_viscous_damping_makes_up_for_the_bristles(
+    damping, viscous, is_known
+):
+    """The bristle's damping times what the level falls by, over the level: 0.4 of it."""
+    bristle = {"stiffness": 2e4, "bristle_damping": damping}
+    body = body_of(**SLOPE, presliding=bristle, viscous={"damping": viscous})
+    assert bool(margins(identify_device(body))) == is_known
+
+
+@pytest.mark.parametrize("slope", [{}, SLOPE])
+@pytest.mark.parametrize("level", [0.3, 0.45])
+def test_a_claim_is_proved_up_to_the_limit_that_is_said_and_no_further(slope, level):
+    body = body_of(**slope, presliding={"stiffness": 2e4, "bristle_damping": 0.0})
+    device = identify_device(body)
+
+    def is_proved(level, stiffness):
+        return claims_on(body, level, stiffness)["95 % interval"].status == "proved"
+
+    said = {
+        m.text.partition(" at ")[0]: m.value
+        for m in margins(device, Compensator("dahl", level, 1.5e4))
+    }
+    softest = said["largest sigma_D"]
+    assert is_proved(level, softest) and not is_proved(level, 1.01 * softest)
+    least = said["least f_D"]
+    if least < 0.5:
+        assert is_proved(least, 1.5e4)
+    assert not is_proved(0.99 * least, 1.5e4)
+    largest = margins(device)[1].value
+    assert is_proved(largest, 1e3) and not is_proved(1.01 * largest, 1e3)
+
+
+@pytest.mark.parametrize("gain", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_cancellation_of_several_stages_is_not_judged_by_one_of_them(gain, first):
+    """A Dahl law of 0.4 N behind a gain of two drives friction of 0.5 N."""
+    dahl = controller("dahl", {"level": 0.4, "stiffness": 1e4})
+    more = controller("gain", {"gain": gain})
+    stages = (*dahl.stages, *more.stages) if first else (*more.stages, *dahl.stages)
+    body = body_of(presliding={"stiffness": 2e4, "bristle_damping": 0.0})
+    (alone,) = friction_pairs(haptic_interface(body, cancellation=dahl))
+    assert [one.claim.status for one in pair_claims(alone)] == ["proved"]
+    assert friction_pairs(haptic_interface(body, cancellation=Controller(stages))) == []

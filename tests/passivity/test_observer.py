@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import xarray
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -141,3 +143,23 @@ def test_energy_is_surely_below_zero_from_196_errors_of_it(lowest, is_certain):
     found = PortEnergy(xarray.Dataset(data, coords={"time": 0.1 * np.arange(4)}))
     assert found.certain == is_certain
     assert (found.lowest, found.when) == (lowest, pytest.approx(0.2))
+
+
+@settings(max_examples=20)
+@given(seed=st.integers(0, 999), n=st.integers(3, 9), held=st.booleans())
+def test_the_error_of_the_energy_is_what_noise_of_each_sample_makes_of_it(seed, n, held):
+    """The energy is linear in each reading: one more unit of one says by how much it errs."""
+    random = np.random.default_rng(seed)
+    position, force, time = random.normal(size=n), random.normal(size=n), 0.1 * np.arange(n)
+
+    def energy(position, force):
+        return observe(time, position, force, held=held).data["energy"].values
+
+    now, variance = energy(position, force), np.zeros(n)
+    for k in range(n):
+        more = np.eye(n)[k]
+        variance += (0.3 * (energy(position + more, force) - now)) ** 2
+        variance += (0.7 * (energy(position, force + more) - now)) ** 2
+    said = observe(time, position, force, held=held, position_noise=0.3, force_noise=0.7)
+    assert said.data["stderr"].values == pytest.approx(np.sqrt(variance), abs=1e-12)
+    assert now[0] == 0.0 and said.data["stderr"].values[0] == 0.0

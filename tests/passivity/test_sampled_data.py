@@ -169,3 +169,10 @@ def test_a_wall_with_filtered_velocity_is_a_law_of_its_own():
 def test_wrong_input_is_one_clear_line(law, sample_time, message):
     with pytest.raises(ModelError, match=message):
         sampled_passivity(law, damping=1, sample_time=sample_time)
+
+
+def test_a_wall_of_damping_alone_is_passive_up_to_that_of_the_device():
+    """No stiffness is asked for, so none is too large."""
+    law = WALL_DAMPING * (Z - 1) / (sp.Rational(1, 1000) * Z)
+    found = z_width(damping=5, sample_time=0.001, law=law, wall_damping=np.array([0, 4.9, 5.1, 50]))
+    assert np.isinf(found.stiffness[:2]).all() and np.isnan(found.stiffness[2:]).all()

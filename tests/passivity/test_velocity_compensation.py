@@ -19,7 +19,7 @@ JOINT = {"coulomb_level": 0.5, "smoothing_velocity": 0.01}
 sizes = st.floats(-3, 3).map(lambda x: 10**x)
 
 
-@given(level=sizes, own=sizes, smoothing=sizes, damping=sizes, gives=st.booleans())
+@given(level=sizes, own=sizes, smoothing=sizes, damping=sizes | st.just(0.0), gives=st.booleans())
 def test_the_condition_is_that_of_the_square_roots(level, own, smoothing, damping, gives):
     claim = velocity_compensation(
         coulomb_level=level,
@@ -41,6 +41,7 @@ def test_the_condition_is_that_of_the_square_roots(level, own, smoothing, dampin
     ("own", "damping", "gives", "status"),
     [
         (0.5, 0.0, None, "proved"),
+        (0.51, 0.0, None, "refuted"),
         # sqrt(0.5) + sqrt(0.08) = sqrt(0.98): the two roots touch
         (0.98, 8.0, None, "proved"),
         (0.981, 8.0, None, "refuted"),

@@ -129,6 +129,8 @@ def test_a_law_without_a_bound_has_none():
         (sp.log(S), (1.0, 8.0), 0.0, 2.0794415416798357),
         (sp.log(S), (0.0, 1.0), -inf, 0.0),
         (sp.log(S), (-1.0, 1.0), -inf, inf),
+        (sp.log(S), (-1.0, 0.0), -inf, inf),
+        (sp.log(S), (0.0, 0.0), -inf, inf),
     ],
     ids=str,
 )

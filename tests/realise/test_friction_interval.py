@@ -1,5 +1,6 @@
 """The friction interval holds every level that the body's law takes, and is one everywhere."""
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -181,6 +182,7 @@ def test_a_level_that_falls_without_end_is_refused_with_what_to_give():
     found = friction_interval(with_own(falling), REACH, errors=2.0)
     assert found.lowest.low == pytest.approx(0.5 - 0.1 * 0.05, rel=1e-4)
     assert found.where_lowest == "position 0.05 m"
+    assert REACH.travel == 0.1 and replace(REACH, low=0.2, high=0.5).travel == pytest.approx(0.3)
 
 
 def test_a_law_without_known_bounds_is_refused_by_name():

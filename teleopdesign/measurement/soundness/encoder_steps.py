@@ -40,11 +40,11 @@ def true_step(x: Array, stated: float) -> float | None:
 
 def _as_written(signal: Signal, step: float) -> float:
     """A step in the unit that the channel's resolution is written in."""
-    stated, channel = signal.channel.resolution, signal.channel
+    channel = signal.channel
     if channel.conversion is not None:
         return step / abs(channel.conversion.factor)
     factor = si_factor(channel.unit, quantity=BODY_QUANTITIES[channel.quantity], axis=signal.axis)
-    return step / factor if stated else step
+    return step / factor
 
 
 def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:

@@ -117,7 +117,7 @@ def check_jumps(signal: Signal) -> list[Finding]:
         at, size, _ = jumps(x, signal.rounded_to)
         lone = lone_samples(x, signal.rounded_to)[0]
         for k, leap in zip(at.tolist(), size.tolist(), strict=True):
-            held = x[k] == x[k - 1] or x[k + 1] == x[min(k + 2, len(x) - 1)]
+            held = x[k] == x[k - 1] or x[k + 1] == x[k + 2]
             if held or np.any(np.abs(lone - k) <= 2):
                 continue
             speed = float(np.mean([x[k] - x[k - 1], x[k + 2] - x[k + 1]]))

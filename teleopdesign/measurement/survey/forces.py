@@ -76,7 +76,7 @@ def describe_forces(
         survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
-    motion = x * _position_to_si(survey), h
+    motion = x, h  # in its own unit: no balance of forces asks for the scale of a motion
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
     hand = _find_hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
@@ -86,8 +86,8 @@ def describe_forces(
             survey, hand, "interaction_force", choices
         )
     scale_by_balance(survey, motion, choices)
-    motion = x * _position_to_si(survey), h  # behind a gear that was guessed now
-    _choose_signs(survey, motion, force, hand)
+    # in SI, and behind a gear that was guessed now
+    _choose_signs(survey, (x * _position_to_si(survey), h), force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
 

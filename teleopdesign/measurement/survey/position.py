@@ -285,7 +285,7 @@ def _position_unit(
         )
         scale = (
             factor * si_factor(said, quantity="velocity", axis=axis)
-            if is_unit_of(said, "velocity") and measures(said, "velocity", axis)
+            if measures(said, "velocity", axis)
             else 0.0
         )
         for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):

@@ -1,0 +1,182 @@
+"""What fills lost rows, and by how much it errs: exactly, where that is known by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+import teleopdesign as td
+from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.conversion import Conversion
+from teleopdesign.measurement.record import record_of
+from teleopdesign.measurement.record_clock import RecordClock
+from teleopdesign.measurement.resample import command_phase, filling_error, interpolate_by_rule
+from teleopdesign.measurement.signals_of_log import rule_of
+from teleopdesign.measurement.tables import LogColumns
+
+H = 0.01
+
+
+def clock_of(places, segments=None):
+    """A clock whose rows lie at these samples."""
+    places = np.asarray(places)
+    n = int(places[-1]) + 1
+    whole = segments or (slice(0, n),)
+    rows = tuple(slice(*np.searchsorted(places, [s.start, s.stop]).tolist()) for s in whole)
+    return RecordClock(places, H * places, places, H * np.arange(n), H, whole, rows)
+
+
+@given(
+    c=st.lists(st.floats(-3.0, 3.0), min_size=4, max_size=4),
+    lost=st.lists(st.integers(3, 56), max_size=6),
+)
+def test_a_position_that_moves_as_a_cubic_is_filled_without_error(c, lost):
+    places = np.setdiff1d(np.arange(60), lost)
+    x = np.polyval(c, places / 30.0 - 1.0)
+    assume(np.all(np.diff(x)) and np.all(x[2:] != x[:-2]))  # else it stands, as far as rows tell
+    assert filling_error(x, clock_of(places), "position", step=0.0) == pytest.approx(0.0, abs=1e-12)
+    filled = interpolate_by_rule(x, places * 1.0, np.arange(60.0), "position", step=0.0)
+    assert filled == pytest.approx(np.polyval(c, np.arange(60) / 30.0 - 1.0), abs=1e-9)
+
+
+@given(a=st.floats(-2.0, 2.0), b=st.floats(-2.0, 2.0))
+def test_a_line_is_filled_without_error_and_a_parabola_errs_by_half_its_second_difference(a, b):
+    k = np.arange(40.0)
+    for rule in ("line", "held"):
+        said = filling_error(b * k + a * k**2, clock_of(np.arange(40)), rule, step=0.0)
+        assert said == pytest.approx(abs(a), abs=1e-9)
+
+
+@pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
+def test_steps_of_an_encoder_are_filled_by_steps(step):
+    """Half a step a row: between two that differ by a step, it reads the first or the second."""
+    even, slow = np.arange(80), np.arange(80) // 2
+    assert filling_error(step * even, clock_of(even), "position", step=step) == 0.0
+    said = filling_error(step * slow, clock_of(even), "position", step=step)
+    assert said == pytest.approx(step / np.sqrt(2), rel=0.02)
+    # three steps a row are no longer seen one by one
+    fast = 3 * even + even % 2
+    said = filling_error(step * fast, clock_of(even), "position", step=step)
+    assert said == pytest.approx(step * 4 / 3, rel=1e-9)
+
+
+def test_what_lies_beside_a_gap_or_an_end_tells_no_error():
+    assert np.isnan(filling_error(np.arange(4.0), clock_of(np.arange(4)), "line", step=0.0))
+    assert np.isnan(filling_error(np.arange(6.0), clock_of([0, 1, 2, 4, 5, 6]), "line", step=0.0))
+    # the leap between two stretches is in neither
+    x = np.r_[np.zeros(20), np.full(20, 50.0)]
+    halves = (slice(0, 20), slice(20, 40))
+    assert filling_error(x, clock_of(np.arange(40), halves), "line", step=0.0) == 0.0
+
+
+@given(
+    gaps=st.lists(st.integers(1, 8), min_size=2, max_size=20),
+    begin=st.integers(-6, 6),
+    seed=st.integers(0, 99),
+)
+def test_a_command_acts_in_a_sample_with_its_mean_and_before_its_first_row_as_in_it(
+    gaps, begin, seed
+):
+    """At eighths of a sample; no two rows are further apart than one."""
+    at = (begin + np.cumsum([0, *gaps])) / 8.0
+    values = np.random.default_rng(seed).normal(size=len(at))
+    grid = np.arange(int(np.ceil(at[-1])) + 2.0)
+    made = interpolate_by_rule(values, at, grid, "held", step=0.0, slower_clock=True)
+    times = grid[:, None] + (np.arange(8) + 0.5) / 8.0
+    which = np.maximum(np.searchsorted(at, times, side="right") - 1, 0)
+    assert made == pytest.approx(values[which].mean(axis=1), abs=1e-12)
+
+
+@pytest.mark.parametrize("phase", [-0.3, 0.2, 0.35])
+def test_the_instant_at_which_a_command_changes_between_rows_is_read_off(phase):
+    """Rows scatter; two between the same two changes say the same."""
+    random = np.random.default_rng(3)
+    places = np.arange(1500)
+    at = places + random.uniform(-0.45, 0.45, 1500)
+    clock = replace(clock_of(places), stamps=H * at)
+    held = random.normal(size=1502)
+    values = held[np.floor(at - phase).astype(int) + 1]
+    assert command_phase(values, clock) == pytest.approx(phase, abs=0.03)
+    assert command_phase(random.normal(size=1500), clock) is None
+    assert command_phase(np.zeros(1500), clock) is None
+    assert command_phase(held[:1500], clock_of(places)) is None
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_a_record_fills_each_signal_by_its_rule_and_says_by_how_much_that_errs(size):
+    """In any unit: positions by a curve, forces by a line; the error is a part of the force."""
+    t = H * np.arange(1000)
+    x, u = size * np.sin(2 * np.pi * 1.37 * t + 0.3), size * np.cos(2 * np.pi * 0.9 * t)
+    kept = np.setdiff1d(np.arange(1000), np.arange(50, 950, 50))
+    f = size * np.sin(2 * np.pi * 2.1 * t)
+    table = {"t": t[kept], "x": x[kept], "u": u[kept], "f": f[kept]}
+    made = td.experiment(
+        table, axis="prismatic", position="x", actuator_force="u", interaction_force="f",
+        inertia=1.0,
+    )  # fmt: skip
+    (record,) = made.records
+    off = {k: record.signals[f"device.{k}"] - y for k, y in
+           (("position", x), ("actuator_force", u), ("interaction_force", f))}  # fmt: skip
+    assert np.abs(off["position"]).max() < 2e-5 * size
+    bend = (2 * np.pi * 2.1 * H) ** 2 / 2 * np.abs(f[50:950:50]).max()
+    assert np.abs(off["interaction_force"]).max() == pytest.approx(bend, rel=0.02)
+    (said,) = (s for s in record.reading if s.topic == "lost rows")
+    lost = 18 / 1000
+    rms = [(2 * np.pi * k * H) ** 2 / 2 * size / np.sqrt(2) for k in (0.9, 2.1)]
+    error = np.sqrt(lost * sum(r**2 for r in rms) / (np.mean(u**2) + np.mean(f**2)))
+    assert said.size == pytest.approx(error, rel=0.02)
+    assert "18 rows lost, 1.8 %" in said.observed
+    assert f"adds at most {100 * said.size:.2g} % of the force" in said.effect
+
+
+@pytest.mark.parametrize(
+    ("quantity", "values", "rule"),
+    [
+        ("position", [0.0, 1.0, 2.0], "position"),
+        ("actuator_force", [0.1, 0.25, 0.7], "held"),
+        ("interaction_force", [0.0, 1.0, 2.0], "line"),
+        ("velocity", [0.0, 1.0, 2.0], "line"),
+        ("other_position", [0.0, 1.0, 2.0], "held"),
+        ("temperature", [20.0, 21.0, 22.0], "held"),
+        ("temperature", [20.1, 20.2, 20.3], "line"),
+        ("temperature", np.arange(200.0), "line"),
+    ],
+)
+def test_between_rows_states_are_held_and_what_is_measured_goes_along_a_line(
+    quantity, values, rule
+):
+    channel = Channel(quantity, "device", "x", "1", None, None)
+    assert rule_of(channel, np.resize(np.asarray(values, dtype=float), 6000)) == rule
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.05, -0.02])
+@pytest.mark.parametrize("rate", [250.0, 62.5])
+def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay(delay, rate):
+    """In any order, with stamps that come twice."""
+    t = H * np.arange(1000)
+    stamps = np.arange(0.0, 10.0, 1.0 / rate)
+    mixed = np.random.default_rng(0).permutation(np.r_[stamps, stamps[5:9]])
+    tone = lambda at: np.sin(2 * np.pi * 0.7 * at)  # noqa: E731
+    columns = LogColumns(
+        {"t": t, "x": tone(t), "u": tone(t + 0.2), "f": tone(mixed - delay)}, {"f": mixed}
+    )
+    whats = {"position": "x", "actuator_force": "u", "interaction_force": "f"}
+    channels = {
+        f"device.{what}": Channel(
+            what, "device", name, "1", None, None,
+            Conversion((name,), (1.0,), delay=delay * (name == "f")),
+        )
+        for what, name in whats.items()
+    }  # fmt: skip
+    channels["time"] = Channel("time", None, "t", "s", None, None)
+    record = record_of(
+        columns, "log", file="log", use="fit", offset_names=frozenset(), channels=channels,
+        bodies={}, sample_rate=None,
+    )  # fmt: skip
+    inner = slice(10, -10)
+    off = record.signals["device.interaction_force"] - tone(t)
+    assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01
+    (said,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
+    assert said.endswith(f", {rate:g} Hz")

@@ -1,0 +1,186 @@
+"""Leaps, held samples and limits of single channels: what is said, with which numbers."""
+
+import numpy as np
+import pytest
+from measurement.made_channels import H, channel, swing
+
+from teleopdesign.measurement.soundness.clipping import check_clipped
+from teleopdesign.measurement.soundness.held_samples import (
+    check_constant,
+    check_repeats,
+    check_stuck,
+    check_update,
+)
+from teleopdesign.measurement.soundness.outliers import check_jumps, check_outliers
+
+# leaps
+
+
+def leaping(by, unit="rad", row=700):
+    x = swing()
+    x[row:] += by
+    return channel(x, unit=unit)
+
+
+@pytest.mark.parametrize("part", [-1.04, 0.96, 1.0])
+def test_a_leap_by_about_a_turn_asks_for_an_angle_to_be_unwrapped(part):
+    (found,) = check_jumps(leaping(part * 2 * np.pi))
+    assert "jumps once, most at 0.699 s (row 700)" in found.sentence
+    assert "a whole turn: unwrap the angle" in found.sentence
+    assert found.numbers["size"] == pytest.approx(part * 2 * np.pi, abs=1e-3)
+
+
+@pytest.mark.parametrize(("part", "unit"), [(1.06, "rad"), (0.94, "rad"), (2.0, "rad"), (1.0, "m")])
+def test_a_leap_by_anything_else_is_no_turn(part, unit):
+    (found,) = check_jumps(leaping(part * 2 * np.pi, unit))
+    assert "turn" not in found.sentence and "unwrap" not in found.sentence
+
+
+def test_a_leap_is_shown_with_the_samples_before_and_after_it():
+    (found,) = check_jumps(leaping(3.0))
+    marked = found.graph.series[1]
+    assert marked.x.tolist() == pytest.approx([0.699, 0.7])
+    assert marked.y[1] - marked.y[0] == pytest.approx(3.0, abs=0.02)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("sample", ["before", "after"])
+def test_a_reading_that_was_held_and_catches_up_does_not_leap(sample, way):
+    """At a hundred steps a sample: a sample is held, the next one is where it would be."""
+    x = way * 100.0 * np.arange(2000.0) + np.random.default_rng(0).normal(size=2000)
+    assert check_jumps(channel(x)) == []
+    x[700:] += way * 1000.0
+    assert len(check_jumps(channel(x))) == 1
+    if sample == "before":
+        x[698] = x[699]
+    else:
+        x[701] = x[700]
+    assert check_jumps(channel(x)) == []
+
+
+def test_a_lone_sample_is_no_leap_whatever_its_size():
+    """Of eight to ten times the noise it looks like one, but the lone sample explains it."""
+    leaps = alone = 0
+    for seed in range(100):
+        x = np.random.default_rng(seed).normal(size=600)
+        x[300] += 8.0 + 0.02 * seed
+        leaps += len(check_jumps(channel(x)))
+        alone += len(check_outliers(channel(x)))
+    assert leaps <= 2  # by chance
+    assert alone > 80
+
+
+# samples that are held
+
+
+def held_in_turn(every, n=4000, off=0, part=0.0):
+    """A scatter that changes every so many samples, a part of the changes `off` samples late."""
+    random = np.random.default_rng(0)
+    at = np.arange(0, n, every)
+    at[1:] += off * (random.random(len(at) - 1) < part)
+    values = np.zeros(n)
+    for k, a in enumerate(at):
+        values[a:] = k % 2 + 0.01 * k
+    return channel(values, "interaction_force")
+
+
+@pytest.mark.parametrize("every", [2, 3, 10])
+def test_a_channel_of_a_slower_source_says_its_rate(every):
+    for signal in (held_in_turn(every), held_in_turn(every, off=1, part=0.02)):
+        (found,) = check_update(signal)
+        assert f"changes only every {every} samples" in found.sentence
+        assert f"the log at {1 / H:.4g} Hz" in found.sentence
+        assert found.numbers == {"samples": every, "rate": pytest.approx(1 / H / every)}
+
+
+def test_a_channel_that_changes_at_odd_times_or_always_has_no_rate():
+    assert check_update(held_in_turn(1)) == []
+    assert check_update(held_in_turn(10, off=1, part=0.4)) == []
+    assert check_update(held_in_turn(10, n=500)) == []  # fifty changes, 49 distances
+    assert len(check_update(held_in_turn(10, n=520))) == 1
+
+
+def stuck_at(*holds):
+    x = 100.0 * np.sin(2 * np.pi * 3.0 * H * np.arange(4000))
+    for a, b in holds:
+        x[a:b] = x[a]
+    return channel(x)
+
+
+def test_a_stuck_channel_is_told_from_its_first_to_its_last_sample():
+    (found,) = check_stuck(stuck_at((1005, 1100)))
+    assert (found.numbers["from"], found.numbers["to"]) == (
+        pytest.approx(1.005),
+        pytest.approx(1.099),
+    )
+    assert "from 1.005 to 1.099 s: cut that out" in found.sentence
+    assert found.numbers["duration"] == pytest.approx(0.095) and found.numbers["count"] == 1
+
+
+def test_of_several_stuck_stretches_the_longest_is_told_and_all_are_counted():
+    (found,) = check_stuck(stuck_at((1005, 1040), (2000, 2095), (3010, 3040)))
+    assert "from 2 to 2.094 s (3 times, 0.16 s in all)" in found.sentence
+    assert found.numbers["duration"] == pytest.approx(0.16)
+
+
+def test_samples_that_a_log_repeats_are_counted_among_those_in_motion():
+    """One in twenty is worth knowing, one in ten needs care; what rests does not count."""
+    x = np.concatenate([np.zeros(3000), 10.0 * np.arange(1000)])
+    for every, concern, share in ((20, "note", 0.05), (10, "warning", 0.1)):
+        y = x.copy()
+        at = np.arange(3025, 3975, every)
+        y[at] = y[at - 1]
+        (found,) = check_repeats(channel(y, step=1.0))
+        assert found.concern == concern
+        assert found.numbers["count"] == len(at)
+        assert found.numbers["part"] == pytest.approx(share, abs=0.005)
+    assert check_repeats(channel(y, "interaction_force", step=1.0)) == []
+
+
+@pytest.mark.parametrize(
+    ("quantity", "concern", "words"),
+    [
+        ("actuator_force", "note", "the actuator drives nothing"),
+        ("position", "warning", "the body never moves"),
+        ("interaction_force", "warning", "not connected"),
+    ],
+)
+def test_a_channel_that_says_one_value_is_told_with_what_that_may_mean(quantity, concern, words):
+    (found,) = check_constant(channel(np.full(100, 2.5), quantity))
+    assert found.concern == concern and words in found.sentence
+    assert found.numbers["value"] == 2.5
+    assert check_constant(channel(np.arange(100.0), quantity)) == []
+
+
+# limits
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force"])
+def test_a_limit_of_a_command_may_be_meant_and_one_of_a_sensor_is_not(quantity, side):
+    """Told with its share, shown from the first sample at it."""
+    y = side * np.minimum(swing(4600), 0.8)[600:]
+    (found,) = check_clipped(channel(y, quantity, step=1e-6))
+    is_command = quantity == "actuator_force"
+    assert found.concern == ("note" if is_command else "warning")
+    assert ("fine if the command itself is limited" in found.sentence) == is_command
+    assert ("the channel is clipped" in found.sentence) == (not is_command)
+    at = np.flatnonzero(np.abs(y) == 0.8)
+    assert found.numbers["part"] == pytest.approx(len(at) / len(y))
+    assert found.numbers["count"] == 5
+    assert ("largest" if side > 0 else "smallest") in found.sentence
+    begins = found.graph.series[0].x[0]
+    assert begins == pytest.approx((at[0] - 100) * H)
+
+
+@pytest.mark.parametrize("row", [150, 450, 550])
+def test_a_lone_sample_or_leap_of_a_later_stretch_is_told_by_its_row_in_the_record(row):
+    halves = (slice(0, 300), slice(300, 600))
+    x = np.random.default_rng(0).normal(size=600)
+    x[row] += 100.0
+    (found,) = check_outliers(channel(x, segments=halves))
+    assert found.numbers["row"] == row + 1 and found.numbers["time"] == pytest.approx(row * H)
+    x[row] -= 100.0
+    x[row:] += 100.0 * (np.arange(row, 600) < halves[row >= 300].stop)
+    (found,) = check_jumps(channel(x, segments=halves))
+    assert found.numbers["time"] == pytest.approx((row - 1) * H)

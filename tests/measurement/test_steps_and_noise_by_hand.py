@@ -1,0 +1,184 @@
+"""Steps, noise, stretches and velocities of single channels: what is said, with which numbers."""
+
+import numpy as np
+import pytest
+from measurement.made_channels import H, channel, record_of, swing
+
+from teleopdesign.measurement.conversion import Conversion
+from teleopdesign.measurement.soundness.encoder_steps import check_steps
+from teleopdesign.measurement.soundness.force_steps import check_force_steps
+from teleopdesign.measurement.soundness.mains_hum import check_hum
+from teleopdesign.measurement.soundness.noise import check_noise
+from teleopdesign.measurement.soundness.segments import check_segments
+from teleopdesign.measurement.soundness.time_shift import check_velocity
+
+# steps
+
+
+def test_a_resolution_to_write_is_said_in_the_unit_of_the_channel():
+    """Of counts behind a gear, of degrees, and of one's own unit."""
+    x = 4e-3 * np.round(swing(4000, 250.0))
+    said = {"m": "0.004", "mm": "4"}
+    for unit, step in said.items():
+        (found,) = check_steps(channel(x, step=4e-3, resolution=1e-3, written=unit), [])
+        assert f"write resolution = {step} at channels.position" in found.sentence
+        assert found.numbers == {"stated": 1e-3, "seen": pytest.approx(4e-3)}
+        assert "4 times the stated" in found.sentence
+    turned = Conversion(("x",), (1.0,), factor=-2e-3)
+    (found,) = check_steps(channel(x, step=4e-3, resolution=1e-3, conversion=turned), [])
+    assert "write resolution = 2 at channels.position" in found.sentence
+
+
+def test_a_channel_off_its_stated_steps_names_the_one_that_lies_on_them():
+    random = np.random.default_rng(0)
+    smooth = channel(random.normal(size=3000), step=3.7e-4, resolution=1e-3)
+
+    def other(step):
+        return channel(step * np.round(swing(3000) / step), "velocity", step=step)
+
+    for step, is_swapped in (
+        (1e-3, True),
+        (5e-3, True),
+        (1e-4, False),
+        (1.4e-3, False),
+        (0.2, False),
+    ):
+        (found,) = check_steps(smooth, [other(step)])
+        assert ("but velocity is: are the two columns swapped?" in found.sentence) == is_swapped
+        assert found.concern == ("warning" if is_swapped else "note")
+        assert found.numbers == {"stated": 1e-3, "seen": 3.7e-4}
+    assert "but finer" in found.sentence
+    (coarse,) = check_steps(channel(random.normal(size=3000), step=2e-3, resolution=1e-3), [])
+    assert coarse.concern == "warning" and "but of 0.002" in coarse.sentence
+
+
+@pytest.mark.parametrize("zero", [0.0, 0.3, -17.7])
+@pytest.mark.parametrize(("step", "is_coarse"), [(0.2, True), (0.05, False)])
+def test_a_coarse_force_is_told_from_whatever_zero_its_steps_count(zero, step, is_coarse):
+    random = np.random.default_rng(0)
+    y = step * np.round((swing(4000) + 0.02 * random.normal(size=4000)) / step) + zero * step
+    found = check_force_steps(channel(y, "interaction_force", step=step))
+    assert [f.numbers["step"] for f in found] == [step] * is_coarse
+    if found:
+        assert f"{100 * step / np.sqrt(12) / y.std():.1f} % of what it does" in found[0].sentence
+
+
+def test_positions_relays_and_scatter_are_no_coarse_forces():
+    y = 0.2 * np.round(5 * swing(4000))
+    assert check_force_steps(channel(y, "position", step=0.2)) == []
+    for levels in ((-1.0, 1.0), (0.0, 0.2, 0.4, 0.6)):
+        relay = np.random.default_rng(1).choice(levels, 4000)
+        assert check_force_steps(channel(relay, "actuator_force", step=levels[1] - levels[0])) == []
+    scatter = np.random.default_rng(1).normal(size=4000)
+    assert check_force_steps(channel(scatter, "actuator_force", step=0.5)) == []
+    jumping = np.random.default_rng(1).integers(-5, 6, 4000) * 1.0
+    assert check_force_steps(channel(jumping, "actuator_force", step=1.0)) == []
+    assert check_force_steps(channel(np.ones(100), "actuator_force")) == []
+
+
+# noise
+
+
+def noisy(size, name="interaction_force", **more):
+    random = np.random.default_rng(len(name))
+    return channel(size * random.normal(size=4000) + swing(4000), name, step=1e-9, **more)
+
+
+@pytest.mark.parametrize(
+    ("stated", "words"), [(0.4, "hides effects"), (0.05, "makes noise look like an effect")]
+)
+def test_noise_that_is_stated_wrong_says_what_it_does_to_the_answer(stated, words):
+    (found,) = check_noise(noisy(0.1, noise=stated), [])
+    assert words in found.sentence and found.sentence.count("effect") == 1
+    assert found.numbers["seen"] == pytest.approx(0.1, rel=0.1)
+    assert found.numbers["stated"] == stated
+    assert found.numbers["ratio"] == pytest.approx(0.1 / stated, rel=0.1)
+    assert check_noise(noisy(0.1, noise=0.11), []) == [] == check_noise(noisy(0.1), [])
+
+
+@pytest.mark.parametrize(
+    ("stated", "other", "swapped"),
+    [
+        (0.4, {"size": 0.4}, True),
+        (0.4, {"size": 0.1}, False),  # as quiet
+        (0.4, {"size": 0.4, "noise": 0.4}, False),  # its noise is stated, and there
+        (0.4, {"size": 0.4, "unit": "N*m"}, False),
+        (0.05, {"size": 0.05}, False),  # both are noisy enough
+    ],
+)
+def test_another_column_with_the_stated_noise_is_a_swap_only_where_it_may_be(
+    stated, other, swapped
+):
+    beside = noisy(other.pop("size"), "actuator_force", **other)
+    (found,) = check_noise(noisy(0.1, noise=stated), [beside])
+    assert ("actuator_force has it: are the two columns swapped?" in found.sentence) == swapped
+
+
+# stretches
+
+
+def test_stretches_shorter_than_are_compared_are_told_with_how_much_they_are():
+    def found_of(*lengths):
+        ends = np.cumsum(lengths)
+        segments = tuple(slice(int(b - n), int(b)) for b, n in zip(ends, lengths, strict=True))
+        return check_segments(record_of(int(ends[-1]), segments))
+
+    assert found_of(5000) == []
+    (whole,) = found_of(5000, 2000)
+    assert "left out" not in whole.sentence and whole.concern == "note"
+    assert "2 segments of 2 to 5 s" in whole.sentence and whole.numbers["too_short"] == 0
+    (short,) = found_of(5000, 100, 2000, 200)
+    assert "; 2 of them, 0.3 s in all, are shorter than" in short.sentence
+    assert short.numbers["left_out"] == pytest.approx(0.3)
+
+
+def test_hum_and_velocity_are_looked_at_in_the_longest_stretch():
+    """The tone and the motion lie in it alone, first or last."""
+    t = H * np.arange(6000)
+    random = np.random.default_rng(0)
+    for longest in (slice(0, 4000), slice(2000, 6000)):
+        others = [slice(4000, 6000)] if longest.start == 0 else [slice(0, 2000)]
+        segments = tuple(sorted([longest, *others], key=lambda s: s.start))
+        y = random.normal(size=6000)
+        y[longest] += np.sin(2 * np.pi * 50.0 * t[longest])
+        position = channel(
+            np.where(np.isin(np.arange(6000), np.arange(6000)[longest]), swing(6000), 0),
+            segments=segments,
+        )
+        (hum,) = check_hum(channel(y, "interaction_force", segments=segments), [position])
+        assert hum.numbers["frequency"] == 50.0
+        assert hum.numbers["rms"] == pytest.approx(0.5**0.5, rel=0.2)
+        velocity = channel(1.2 * np.gradient(swing(6000), H), "velocity", segments=segments)
+        (units,) = check_velocity(position, velocity)
+        assert units.numbers["factor"] == pytest.approx(1.2, rel=0.01)
+
+
+@pytest.mark.parametrize(("factor", "late", "topics"), [
+    (1.0, 0.0, []), (1.04, 0.0, []), (1.06, 0.0, ["units"]), (0.94, 0.0, ["units"]),
+    (1.0, 1.5 * H, ["time shift"]), (1.0, -1.5 * H, ["time shift"]), (1.0, 0.7 * H, []),
+    (-1.0, 2 * H, ["units", "time shift"]),
+])  # fmt: skip
+def test_a_velocity_is_doubted_by_factor_and_by_lag(factor, late, topics):
+    t = H * np.arange(4000)
+    x = np.sin(2 * np.pi * 1.3 * t) + 0.3 * np.sin(2 * np.pi * 4.1 * t)
+    v = factor * np.gradient(
+        np.sin(2 * np.pi * 1.3 * (t - late)) + 0.3 * np.sin(2 * np.pi * 4.1 * (t - late)), H
+    )
+    found = check_velocity(channel(x), channel(v, "velocity"))
+    assert [f.topic for f in found] == topics
+    for one in found:
+        assert one.numbers["shift"] == pytest.approx(late, abs=0.02 * H)
+        assert one.numbers["factor"] == pytest.approx(factor, rel=1e-3)
+    if topics == ["time shift"]:
+        assert ("lags" if late > 0 else "leads") in found[0].sentence and "1.5 ms" in found[
+            0
+        ].sentence
+
+
+def test_a_velocity_of_another_body_does_not_follow():
+    t = H * np.arange(4000)
+    (found,) = check_velocity(channel(np.sin(9 * t)), channel(np.cos(23 * t), "velocity"))
+    assert "does not follow the position's derivative" in found.sentence
+    assert found.concern == "warning"
+    (found,) = check_velocity(channel(np.sin(9 * t)), channel(t < 0.1, "velocity"))
+    assert "does not follow" in found.sentence  # where both are compared it is zero

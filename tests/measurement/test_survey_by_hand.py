@@ -1,0 +1,146 @@
+"""What a survey writes and says of a log: wraps, units of another axis, doubts among columns."""
+
+import re
+
+import numpy as np
+import pytest
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey.acting import current_that_acted
+from teleopdesign.measurement.survey.content import SurveyedColumn, explain_ambiguity, reasons
+
+T = 0.005 * np.arange(1200)
+Q = np.sin(2 * np.pi * 0.7 * T) + 0.2 * np.sin(2 * np.pi * 2.1 * T)
+U = 0.02 * np.gradient(np.gradient(Q, T), T) + 0.3 * np.sign(np.gradient(Q, T))
+
+
+def look(columns, **choices):
+    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, remarks=())
+    return survey_log(log, "log", Choices(**choices))
+
+
+@pytest.mark.parametrize(
+    ("name", "turn", "period", "unwrap"),
+    [
+        ("angle [deg]", 360.0, 360.0, True),
+        ("angle [rad]", 2 * np.pi, 2 * np.pi, True),
+        ("angle [deg]", 360.0, 180.0, 180.0),  # a sensor that repeats within the turn
+        ("encoder [counts]", 4096.0, 4096.0, 4096.0),
+    ],
+)
+def test_an_angle_that_wraps_at_a_turn_is_written_so_and_others_with_their_period(
+    name, turn, period, unwrap
+):
+    wrapped = np.mod(2.0 * Q / (2 * np.pi) * turn, period)
+    if turn == 4096.0:
+        wrapped = np.floor(wrapped)
+    survey = look({"t [s]": T, name: wrapped, "torque [Nm]": U})
+    assert survey.channels["position"]["unwrap"] == pytest.approx(unwrap)
+    assert (survey.channels["position"]["unwrap"] is True) == (unwrap is True)
+    assert f"{name!r} wraps at {period:g}" in survey.notes
+
+
+@pytest.mark.parametrize("axis", ["revolute", "prismatic"])
+def test_a_velocity_in_units_of_another_axis_says_no_unit_of_the_position(axis):
+    rate = np.gradient(Q, T)
+    survey = look({"t": T, "pos": Q, "v [mm/s]": rate, "u": U}, axis=axis)
+    assert survey.channels["position"]["unit"] == ("rad" if axis == "revolute" else "mm")
+    assert ("agrees with" in survey.guesses["channels.position.unit"]) == (axis == "prismatic")
+    assert ("velocity" in survey.channels) == (axis == "prismatic")
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("a", "it is the first that moves and may be one"),
+        ("a [rad]", "by its name and unit"),
+        ("a (counts)", "by its name and unit"),
+    ],
+)
+def test_a_doubtful_position_says_what_speaks_for_it(name, why):
+    survey = look({"t": T, name: Q, "tau": U})
+    said = survey.guesses["channels.position.column"]
+    assert said == f"{name!r} is taken for the position: {why}"
+    beside = look({"t": T, name: Q, "b": np.gradient(Q, T), "tau": U})
+    assert "its derivative is there too" in beside.guesses["channels.position.column"]
+
+
+def test_one_of_two_forces_alike_is_a_guess_and_one_alone_is_none():
+    key = "channels.actuator_force.column"
+    alone = {"t [s]": T, "q [rad]": Q, "torque_a [Nm]": U}
+    assert key not in look(alone).guesses
+    noise = 0.05 * np.random.default_rng(0).normal(size=len(T))
+    both = look(alone | {"torque_b [Nm]": U + noise})
+    assert "'torque_b [Nm]' may be it as well" in both.guesses[key]
+
+
+@pytest.mark.parametrize("unit", ["K", "rad/s", "rad", "Hz"])
+def test_a_column_in_units_of_no_force_is_none_whatever_the_motion_explains(unit):
+    log = {"t [s]": T, "q [rad]": Q, f"x [{unit}]": U}
+    with pytest.raises(ExperimentError, match="found no column that could be a force"):
+        look(log)
+    survey = look(log | {"i [A]": U + 2.0 * np.random.default_rng(0).normal(size=len(T))})
+    assert survey.channels["actuator_force"]["column"] == "i [A]"
+
+
+def test_long_lists_of_columns_end_in_dots_and_short_ones_do_not():
+    for many in (1, 3, 4, 9):
+        names = [f"c{k}" for k in range(many)]
+        said = explain_ambiguity("a", names, "the force")
+        assert ("..." in said) == (many > 3) and said.count("'c") == min(many, 3)
+        why = reasons(dict.fromkeys(names, "text"))
+        assert ("..." in why) == (many > 3) and why.count("text") == min(many, 3)
+    assert reasons({}) == ""
+
+
+def acted(wanted, measured):
+    columns = {
+        "torque_cmd": SurveyedColumn("torque_cmd", wanted, wanted, None),
+        "motor_current": SurveyedColumn("motor_current", measured, measured, None),
+    }
+    return current_that_acted("torque_cmd", columns, {"torque_cmd": 1.0, "motor_current": 0.9})
+
+
+@pytest.mark.parametrize("apart", [0.05, 0.15, 0.5, 0.9])
+@pytest.mark.parametrize("late", [0, 3])
+def test_a_current_acted_by_the_part_of_it_that_was_not_wanted(apart, late):
+    """In any unit, delayed, with noise of single rows: what else the motor did in slow waves."""
+    noise = 0.05 * np.random.default_rng(0).normal(size=len(T))
+    wanted, other = np.sin(2 * np.pi * 1.0 * T), np.cos(2 * np.pi * 1.5 * T)
+    measured = 7.0 * ((1 - apart**2) ** 0.5 * np.roll(wanted, late) + apart * other) + noise + 2.0
+    if apart < 0.1:  # a hundredth of the squares
+        assert acted(wanted, measured) is None
+    else:
+        column, share = acted(wanted, measured)
+        assert column == "motor_current" and share == pytest.approx(apart, abs=0.02)
+
+
+def test_a_current_that_stays_and_one_of_a_few_rows_did_not_act():
+    assert acted(U, np.full(len(T), 2.0)) is None
+    assert acted(U[:8], Q[:8]) is None
+
+
+def test_a_column_left_out_says_what_the_motion_explains_of_it_and_of_what_was_taken():
+    noise = np.random.default_rng(0).normal(size=len(T))
+    log = {"t [s]": T, "q [rad]": Q, "torque_a [Nm]": U, "torque_b [Nm]": U + noise, "c": noise}
+    unused = look(log).unused
+    of_force = r": the motion explains (\d+)% of it, of 'torque_a \[Nm\]' (9\d|100)%"
+    second = re.fullmatch("a force beside 'torque_a \\[Nm\\]'" + of_force, unused["torque_b [Nm]"])
+    nothing = re.fullmatch("no force by its name" + of_force, unused["c"])
+    assert second and nothing and int(nothing[1]) < int(second[1]) < 100
+
+
+@pytest.mark.parametrize(("counts", "said"), [(2000, 2000), (2600, 4096), (3333, 4096)])
+def test_counts_of_a_turn_that_no_encoder_has_are_not_read_off_a_velocity(counts, said):
+    columns = {
+        "t": T,
+        "pos [inc]": np.round(3.0 * counts * Q),
+        "v [rpm]": 180.0 * np.gradient(Q, T),
+    }
+    survey = look(columns | {"current [mA]": U})
+    assert survey.channels["position"]["counts_per_turn"] == said
+    why = survey.guesses["channels.position.counts_per_turn"]
+    assert ("agrees with" in why) == (said == counts)
+    assert ("look at the encoder" in why) == (said != counts)
