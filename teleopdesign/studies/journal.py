@@ -134,7 +134,7 @@ class Journal:
         except OSError as error:
             raise ExperimentError(
                 f"{self.path}: cannot be written: {error.strerror}; {len(self.outcomes)} of "
-                f"{self.points} points are kept: the same study goes on from there"
+                f"{self.points} points are kept: the same study continues from there"
             ) from error
 
     def forget_failures(self) -> None:
