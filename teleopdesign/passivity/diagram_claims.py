@@ -1,9 +1,10 @@
 """Claims about every port of a diagram.
 
-They are exact where it is linear, by theorem where only friction and its cancellation are not, and
-else rest on a search for motions that release energy.
+The claims are exact where the diagram is linear. Where only friction and its cancellation are
+nonlinear, they follow from a theorem. All other claims rest on a search for motions that release
+energy.
 
-Controllers act in continuous time in what is proved; the search takes them as `computer` says.
+Proofs hold for controllers in continuous time; the search uses the sampling that `computer` states.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Certificates: what a proof rests on, in a form that a small program verifies.
 
-`checker` knows nothing of this package; it reads the JSON that is written here, and
-states in other words what that proves. A title is for people; it proves nothing.
+`checker` does not use this package. It reads the JSON file that is written here, and states in its
+own words what the file proves. A title is for readers only and proves nothing.
 """
 
 from __future__ import annotations

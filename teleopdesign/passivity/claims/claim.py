@@ -1,8 +1,8 @@
 """A claim and its verdict: proved, refuted, evidence, or unknown.
 
-A proof is exact and carries a certificate that `checker` verifies without the package.
-A refutation is a motion that releases energy, kept so that anyone can replay it. Evidence says
-what was computed or searched, and with what margin; it is never called a proof.
+A proof is exact and has a certificate, which `checker` verifies without the package. A refutation
+is a motion that releases energy; the motion is stored, so anyone can replay it. Evidence states
+what was computed or searched, and the margin. Evidence is never called a proof.
 """
 
 from __future__ import annotations

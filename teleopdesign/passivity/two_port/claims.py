@@ -1,7 +1,8 @@
 """Passivity and absolute stability of a two-port, as claims: exact where it is rational.
 
 With dead times the margins are computed over frequency, and poles, residues and both ends of the
-axis are looked at: what fails is refuted or left unknown, else there is evidence and no more.
+axis are checked. A claim that fails a check is refuted or left unknown. A claim that passes has
+evidence, and no proof.
 """
 
 from __future__ import annotations
