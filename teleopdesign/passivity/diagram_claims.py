@@ -40,7 +40,7 @@ from .theorems.wave_channel import wave_claim
 @check_types
 @dataclass(frozen=True)
 class Search:
-    """How motions are sought; SI.
+    """Settings of the search for motions; SI.
 
     stroke, speed: largest, m or rad;  tries: how many motions;  computer: see `simulate`
     """
@@ -123,8 +123,8 @@ def composed_claim(
 ) -> TopicClaim | None:
     """The sum of parts on the same motions: linear rest, and friction with what cancels it.
 
-    Friction acts on a motion that the ports determine, beside their forces, so that energies add.
-    None where parts of another kind are there, or not each of them is proved.
+    Friction acts on a motion that the ports determine, in parallel with the forces of the ports, so
+    energies add. None where the diagram has other parts, or not every part is proved.
     """
     rest, proofs = diagram, []
     for pair in pairs:

@@ -98,7 +98,7 @@ def storage_certificate(
     proofs: Mapping[str, Mapping[str, Sequence[Term]]],
     example: Mapping[str, sp.Expr | int],
 ) -> Certificate:
-    """That supply >= dV/dt with V >= 0 wherever what is assumed holds.
+    """That supply >= dV/dt with V >= 0 wherever the assumptions hold.
 
     rates: state -> rate of change;  constants: names that do not change; other names are signals
     positive, nonnegative: name -> expression that is assumed to be > 0, >= 0
