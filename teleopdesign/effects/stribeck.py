@@ -40,7 +40,9 @@ EFFECT = Effect(
     parameters={
         "extra_static_level": Parameter("force", "F_S - F_C: extra friction at rest"),
         "stribeck_velocity": Parameter(
-            "velocity", "v_S: extra level down to 1/e", search=FitSearch(starts=(0.02, 0.1, 0.5))
+            "velocity",
+            "v_S: speed where the extra level is down to 1/e",
+            search=FitSearch(starts=(0.02, 0.1, 0.5)),
         ),
     },
     absent={"extra_static_level": 0.0},
