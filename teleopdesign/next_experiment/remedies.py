@@ -40,7 +40,7 @@ EVERY = 3
 class Remedy:
     """A change of the set-up, and the separation of a pair with this change (noise floors).
 
-    change: in words that end "... if";  separation: along the best part, in the worse order
+    change: a clause, what is changed;  separation: along the best part, in the worse order
     """
 
     change: str
