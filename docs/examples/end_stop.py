@@ -2,7 +2,8 @@
 
     F = K max(0, x - x_0)
 
-Damping of the rubber is left out. Where all strokes reach far into it, it is mistaken for `spring`.
+The damping of the rubber is left out. Where all strokes reach far into the rubber, the effect looks
+like `spring`.
 """
 
 from sympy import Max

@@ -54,7 +54,7 @@ def diagnose_all(options: argparse.Namespace) -> int:
         reporter.clear()
         print(
             f"teleopdesign: stopped; {reporter.describe_finished()} kept in {output}, "
-            "the same command goes on from there",
+            "the same command continues from there",
             file=sys.stderr,
         )
         return STOPPED

@@ -78,7 +78,7 @@ def _diagram(options: argparse.Namespace) -> Diagram:
         return haptic_interface(body_of_source(source, options)[0])
     for option in ("answer", "body", "pose"):
         if getattr(options, option):
-            raise ModelError(f"--{option}: found beside a diagram, which brings its own blocks")
+            raise ModelError(f"--{option}: found beside a diagram, which has its own blocks")
     return diagram_of(options.diagram, options.effect)
 
 

@@ -37,10 +37,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--output", type=Path, metavar="FOLDER", help="folder of the experiment")
     parser.add_argument(
-        "--overwrite", action="store_true", help="write an experiment.toml that is there anew"
+        "--overwrite", action="store_true", help="replace an experiment.toml that exists"
     )
     parser.add_argument("--yes", action="store_true", help="accept every guess, ask nothing")
-    parser.add_argument("--title", help="of the experiment; default: the log's name")
+    parser.add_argument("--title", help="title of the experiment; default: the log's name")
     parser.add_argument("--axis", choices=("prismatic", "revolute"))
     for name, text in (
         ("time", "time"),
@@ -61,8 +61,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--gear-ratio", type=float, metavar="N", help="turns of the motor per turn")
     parser.add_argument("--counts-per-turn", type=float, metavar="N", help="of the encoder")
-    parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where there is no time")
-    parser.add_argument("--inertia", type=float, help="if it is known: kg or kg*m^2")
+    parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where the log has no time")
+    parser.add_argument("--inertia", type=float, help="of the body, if known: kg or kg*m^2")
     for use, text in (("fit", "that is fitted"), ("check", "on which errors are computed")):
         parser.add_argument(
             f"--{use}-span",
@@ -119,7 +119,9 @@ def run(options: argparse.Namespace) -> int:
     if boxes := explain_boxes(survey.columns):
         print(boxes)
     if survey.guesses:
-        print("if a guess is wrong: the same command with the option below it, and --overwrite")
+        print(
+            "if a guess is wrong: repeat the command with the option below it, and with --overwrite"
+        )
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
     return 0
@@ -132,7 +134,7 @@ def _spans(options: argparse.Namespace) -> FitAndCheck | None:
         return None
     if fit is None or check is None:
         present, lacking = ("--check-span", "--fit-span")[:: 1 if fit is None else -1]
-        raise ExperimentError(f"{present}: found it alone, expected {lacking} beside it")
+        raise ExperimentError(f"{present}: found alone, expected {lacking} beside it")
     return (fit[0], fit[1]), (check[0], check[1])
 
 
@@ -234,7 +236,7 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
         ):
             continue
         entry = survey.channels.get(quantity, {})
-        answer = ask(f"{key}: {why}\n  Enter takes it; or type another: ").strip()
+        answer = ask(f"{key}: {why}\n  Enter accepts this; or type another value: ").strip()
         if not answer:
             continue
         if part == "unit":

@@ -1,4 +1,4 @@
-"""propose the experiment that best tells what a recording leaves open"""
+"""propose the experiment that distinguishes best the effects that a recording leaves open"""
 
 from __future__ import annotations
 
@@ -101,13 +101,13 @@ def run(options: argparse.Namespace) -> int:
         shown = show_in_simulation(proposal, seconds=options.simulate, progress=say)
         say("")
         print("\n".join(["", *map(str, shown)]))
-        print(f"named in simulation: {sum(s.named for s in shown)} of {len(shown)}")
+        print(f"true effect named in simulation: {sum(s.named for s in shown)} of {len(shown)}")
     if options.output is not None:
         if proposal.reference is not None and proposal.is_useful:
             write_reference(proposal.reference, experiment, options.output)
             print(f"\nwritten: {options.output}")
         else:
-            print(f"\nnot written: {options.output}, for no motion is proposed")
+            print(f"\nnot written: {options.output}, because no motion is proposed")
     if options.json is not None:
         content = _content(proposal, shown)
         write_json(options.json, content)
@@ -123,7 +123,9 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
 
     for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
         if value is not None:
-            raise ExperimentError(f"{option}: not there for an arm: use --output, or --body JOINT")
+            raise ExperimentError(
+                f"{option}: not available for an arm: use --output, or --body JOINT"
+            )
     stated = _read_limits(options.limit, experiment)
     diagnosis = arm_diagnosis_of(experiment, options)
     shown = {j: _shown_limits(diagnosis, j) for j in stated}
@@ -136,7 +138,7 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         write_reference(paths.reference, experiment, options.output)
         print(f"\nwritten: {options.output}")
     elif options.output is not None:
-        print(f"\nnot written: {options.output}, for no motion is proposed")
+        print(f"\nnot written: {options.output}, because no motion is proposed")
     if options.json is not None:
         numbers = {"condition": paths.condition, "recorded": paths.recorded}
         content = {**numbers, "period": paths.period, "standard_errors": dict(paths.errors)}

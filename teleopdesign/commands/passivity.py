@@ -160,7 +160,7 @@ def _check_options(options: argparse.Namespace) -> None:
         options_beside := [n for n in BESIDE_A_DIAGRAM if _is_stated(options, n)]
     ):
         raise ExperimentError(
-            f"--{options_beside[0]}: found beside a diagram, which brings its own blocks"
+            f"--{options_beside[0]}: found beside a diagram, which has its own blocks"
         )
     for name in ("dahl", "smoothed_coulomb"):
         values = getattr(options, name)

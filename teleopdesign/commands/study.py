@@ -32,8 +32,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         type=Path,
-        help="a study: FILE.toml, which needs no Python; or FILE.py, which is RUN, with all that "
-        f"it does, and sets {_NAME} to the arguments of td.study",
+        help="a study: FILE.toml, which needs no Python; or FILE.py, which is RUN, with all its "
+        f"code, and sets {_NAME} to the arguments of td.study",
     )
     parser.add_argument(
         "--workers", type=count_argument, metavar="N", help="processes (default: one for each core)"
@@ -46,16 +46,18 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="F",
         help="write the data set (.nc); finished points are kept in F.part, and the same command "
-        "goes on from there",
+        "continues from there",
     )
-    parser.add_argument("--figure", type=Path, metavar="F", help="draw it (.pdf, .svg, .png)")
+    parser.add_argument(
+        "--figure", type=Path, metavar="F", help="write the figure (.pdf, .svg, .png)"
+    )
     add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Run the study, print what it measured, write what was asked for."""
     if options.scheduler and options.workers is not None:
-        raise ExperimentError("--workers: found beside --scheduler: a cluster brings its own")
+        raise ExperimentError("--workers: found beside --scheduler: a cluster has its own workers")
     if options.out is not None:
         check_output(options.out, (".nc",))
     if options.figure is not None:
@@ -140,9 +142,10 @@ def _run_file(path: Path) -> dict[str, Any]:
 
 def _describe_kept(out: Path | None, reporter: PointReporter) -> str:
     if out is None:
-        return "; nothing is kept: give --out F to keep what is finished"
+        return "; no result is kept: use --out F to keep finished points"
     return (
-        f"; {reporter.describe_finished()} kept in {out}.part, the same command goes on from there"
+        f"; {reporter.describe_finished()} kept in {out}.part, "
+        "the same command continues from there"
     )
 
 

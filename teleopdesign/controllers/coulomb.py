@@ -1,12 +1,13 @@
-"""Ideal Coulomb cancellation: adds the whole level in the direction of motion.
+"""Ideal Coulomb cancellation: adds the whole friction level in the direction of motion.
 
     F = F_C sgn(v),   sgn(0) = 0
 
-Removes Coulomb friction completely wherever the sign of the velocity is known, and is the bound for
-every law that is rounded off. Nothing is added where the velocity is exactly zero. With an encoder
-it changes by F_C at every step that is read near rest; `smoothed_coulomb` or `dahl` are used for
-that reason. Never more than F_C, so it releases no energy where the true level is at least that.
-In a loop in continuous time no step of a simulation resolves the jump: sample it.
+Where the sign of the velocity is known, this law removes Coulomb friction completely. It is the
+bound for every law that is smoothed. Where the velocity is exactly zero, it adds nothing. With an
+encoder the force changes by F_C at every encoder step near rest; `smoothed_coulomb` and `dahl`
+avoid these jumps. The force never exceeds F_C, so it releases no energy where the true level is at
+least F_C. In a loop in continuous time no step of a simulation resolves the jump of the sign:
+sample the law.
 """
 
 from sympy import sign

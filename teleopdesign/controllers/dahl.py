@@ -2,9 +2,9 @@
 
     F = sigma z,   dz/dt = v - (sigma / F_D) abs(v) z
 
-The law is that of the effect `presliding` without bristle damping. Sampled, the travel of the last
-sample moves the bristle exactly, with the sign of the travel: F stays within F_D for any sequence
-of positions.
+The law is that of the effect `presliding` without bristle damping. In the sampled law the bristle
+moves exactly by the travel of the last sample, with the sign of that travel. So F stays within F_D
+for any sequence of positions.
 """
 
 from types import SimpleNamespace

@@ -2,10 +2,10 @@
 
     z_next = z + T (v - (sigma / F_D) abs(v) z),   F = sigma z
 
-Called backward Euler in print; the rate is that at the old sample. With q = T sigma abs(v) / F_D it
-loses its bound F_D from q = 1 on (one step from -F_D reaches (2 q - 1) F_D), and with the bound its
-passivity; beyond q = 2 it diverges (P28 to P30). `dahl` has neither limit at the same cost. In
-continuous time the two are one.
+The publication calls this step backward Euler, but the rate is that at the old sample. Let q = T
+sigma abs(v) / F_D. From q = 1 on the force exceeds its bound F_D (one step from -F_D reaches (2 q -
+1) F_D), and the law is no longer passive. Beyond q = 2 it diverges (P28 to P30). `dahl` has neither
+limit at the same cost. In continuous time the two laws are the same.
 """
 
 from types import SimpleNamespace

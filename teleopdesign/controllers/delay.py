@@ -2,9 +2,9 @@
 
     output(t) = input(t - T),   e^(-s T)
 
-A channel between two sides, or the way to a far sensor. In a computer it is a buffer of samples: a
-whole number of them is exact, and between two samples the output lies on the line that joins them.
-As an analog block it acts in continuous time.
+Examples are a channel between two sides, and the path to a distant sensor. In a computer the dead
+time is a buffer of samples. A whole number of samples is exact; between two samples the output is
+interpolated linearly. An analog block acts in continuous time.
 """
 
 from sympy import exp
@@ -26,7 +26,7 @@ CONTROLLER = ControlLaw(
     law=law,
     transfer=transfer,
     linear=True,
-    parameters={"time": Parameter("time", "T: from input to output; 0: none")},
+    parameters={"time": Parameter("time", "T: time from input to output; 0: none")},
     dead_time="time",
     source="dead time in the sense of any control text",
 )

@@ -1,9 +1,10 @@
-"""Energy limit: the largest force that cannot release more than is in an energy tank.
+"""Energy limit: the largest force that cannot release more energy than an energy tank holds.
 
     output = max(input + E_0, 0)/d
 
-Input is what has come into the tank less what has gone out of it, J, E_0 its reserve, d the largest
-travel of a sample: a force of at most the output takes no more out before the next sample.
+The input is the energy that came into the tank less the energy that went out, in J. E_0 is the
+reserve of the tank, and d is the largest travel of a sample. A force of at most the output releases
+no more energy than the tank holds before the next sample.
 """
 
 from sympy import Max
@@ -22,7 +23,7 @@ def law(now, p):
 CONTROLLER = ControlLaw(
     law=law,
     parameters={
-        "reserve": Parameter("energy", "E_0: what is in the tank at the start"),
+        "reserve": Parameter("energy", "E_0: energy in the tank at the start"),
         "travel": Parameter("position", "d: largest travel of a sample", lower=_SHORTEST),
     },
     source="energy tank in the sense of Franken et al., IEEE Trans. Robotics 27 (2011) 741",

@@ -1,15 +1,16 @@
-"""Friction budget: damps a command that has put more energy in than friction is sure to take out.
+"""Friction budget: damps a command that supplied more energy than friction is sure to dissipate.
 
     E' = F_C abs(v) - F v,   F = input - alpha v
     E >= 0:  alpha = 0;      E < 0:  alpha v^2 = -r E, alpha at most the largest damping
 
-The passivity controller without a force sensor: a stage behind a law that helps the motion, such as
-`dahl`, whose force and motion it sees. Friction F_C is counted, never more than the lowest level
-that can occur (P52): so it bounds the mean of what is cancelled by F_C, whatever the law before it
-asks for, and needs the same number as a law that is bounded by F_C to begin with.
+This is a passivity controller without a force sensor. It is a stage behind a law that helps the
+motion, such as `dahl`, and reads the force and the motion of that law. F_C is the friction that is
+counted: never more than the lowest level that can occur (P52). So the friction budget bounds the
+mean of the cancelled friction by F_C, whatever force the law before it commands. A law that is
+bounded by F_C from the start needs the same number.
 
-Sampled, the energy of a force held over a sample is exact; a delay of the computer between command
-and force is not counted.
+In the sampled law the energy of a force that is held over a sample is exact. A delay of the
+computer between command and force is not counted.
 """
 
 from sympy import Abs
@@ -47,7 +48,7 @@ CONTROLLER = ControlLaw(
         "held": ControllerState("force", zero_rate, law),
     },
     parameters={
-        "counted_level": Parameter("force", "F_C: friction that is counted on"),
+        "counted_level": Parameter("force", "F_C: friction that is counted"),
         **passivity_controller.PARAMETERS,
     },
     source="Hannaford, Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, friction counted (P52)",

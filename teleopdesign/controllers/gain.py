@@ -2,7 +2,7 @@
 
     output = k input
 
-Scales a channel (position or force of the other side), or feeds a force forward.
+A gain scales a channel (position or force of the other side), or feeds a force forward.
 """
 
 from ..effects import Parameter

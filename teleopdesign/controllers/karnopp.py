@@ -1,16 +1,19 @@
-"""Karnopp cancellation: within a band of velocities it balances what is commanded.
+"""Karnopp cancellation: within a band of velocities it balances the commanded force.
 
     F = F_C sgn(v)                     abs(v) > band
     F = u limited to -F_C ... F_C      abs(v) <= band,   u = input
 
-At rest friction is no function of velocity: it balances the force that is commanded. A law of the
-velocity alone can add nothing there that is right for both directions, so this one takes the
-commanded force as its input: R_D in the haptic interface, not the motion. Stuck, the command is
-doubled up to F_C, which halves the command that breaks the device away. F_C sgn(u) would free it at
-any command, but jumps by 2 F_C with the sign of a noisy one; this law is continuous in u, and adds
-nothing where nothing is wanted. Never more than F_C: no energy released where the true level is at
-least that. A band below encoder step over period takes single steps for motion, one below the
-speeds of presliding takes the bristle deflection of the contact for it.
+At rest friction is no function of velocity: it balances the commanded force. A law of the velocity
+alone has no force at rest that is right for both directions. So this law takes the commanded force
+as its input: R_D in the haptic interface, not the motion. While the device is stuck, the law
+doubles the command up to F_C. This halves the command that breaks the device away.
+
+F_C sgn(u) would free the device at any command, but jumps by 2 F_C with the sign of a noisy
+command. This law is continuous in u, and adds nothing where the command is zero. The force never
+exceeds F_C, so it releases no energy where the true level is at least F_C.
+
+A band below encoder step over period takes single encoder steps for motion. A band below the speeds
+of presliding takes the bristle deflection of the contact for motion.
 """
 
 from types import SimpleNamespace

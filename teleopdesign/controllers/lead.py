@@ -1,4 +1,4 @@
-"""Lead compensator: a spring that also damps.
+"""Lead compensator: a spring with damping.
 
 output = g (s + z)/(s + p) input,   written  g (input + w),  dw/dt = -p w + (z - p) input
 """

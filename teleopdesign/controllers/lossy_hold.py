@@ -1,10 +1,10 @@
-"""Lossy hold: samples that are lost leave the last one that arrived.
+"""Lossy hold: where a sample is lost, the output is the last sample that arrived.
 
     output = input at a sample that arrives, else the output before;   of the first: 0
 
-A share of the samples is lost, by a sequence that looks random and is the same in each run: x' =
-4 x (1 - x) with x between 0 and 1, lost where x < sin^2(pi share/2). Behind a delay it makes delays
-that jitter. In continuous time nothing is lost.
+A share of the samples is lost, by a sequence that looks random and is the same in each run: x' = 4
+x (1 - x) with x between 0 and 1. A sample is lost where x < sin^2(pi share/2). Behind a delay the
+lossy hold makes delays that jitter. In continuous time nothing is lost.
 """
 
 from sympy import Piecewise, pi, sin
@@ -33,7 +33,7 @@ CONTROLLER = ControlLaw(
         "chance": ControllerState("dimensionless", zero_rate, chance),
     },
     parameters={
-        "share": Parameter("dimensionless", "of the samples that are lost", upper=1.0),
+        "share": Parameter("dimensionless", "share of the samples that are lost", upper=1.0),
         "seed": Parameter("dimensionless", "start of the sequence, 0 to 1", upper=1.0),
     },
     source="zero-order hold of a lossy channel; Ulam, von Neumann (1947) for the sequence",

@@ -3,10 +3,11 @@
     F = sigma z + sigma_1 dz/dt,   dz/dt = v - (sigma / level) abs(v) z
     level = F_C + (F_S - F_C) exp(-(v / v_S)^2)
 
-The laws are those of the effects `coulomb`, `stribeck` and `presliding`: with the parameters of a
-diagnosis it is the estimated friction, viscous friction left to the device. Sampled, the
-travel of the last sample moves the bristle exactly, the level held meanwhile. The spring's share
-stays within F_S; bristle damping adds to it and carries the noise of the differenced position.
+The laws are those of the effects `coulomb`, `stribeck` and `presliding`. With the parameters of a
+diagnosis the force is the estimated friction without viscous friction, which the device keeps. In
+the sampled law the bristle moves exactly by the travel of the last sample, with the level held over
+the sample. The force of the bristle's spring stays within F_S. Bristle damping adds to this force,
+and carries the noise of the differentiated position.
 """
 
 from types import SimpleNamespace

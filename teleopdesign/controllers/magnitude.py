@@ -2,7 +2,7 @@
 
     output = k abs(input)
 
-Two of them limit one signal by another: (abs(f + l) - abs(f - l))/2 is f within -l ... l.
+Two magnitudes limit one signal by another: (abs(f + l) - abs(f - l))/2 is f within -l ... l.
 """
 
 from sympy import Abs

@@ -1,11 +1,12 @@
-"""Model inverse of one axis: the force that a wanted motion takes.
+"""Model inverse of one axis: the force that makes a device follow a desired motion.
 
     F = m a + b v + k x,   x = w(s) input,   w(s) = (2 pi f_c / (s + 2 pi f_c))^2
 
-The inverse of the impedance m s^2 + b s + k with a low-pass of just enough roll-off to be proper,
-so that a linear device answers with w, whatever its dynamics. Friction is no part of the inverse:
-cancel it first. Sampled, x, v and a are means over the coming sample, for the reference held.
-Inverse of any other transfer function: `inverted`.
+The law is the inverse of the impedance m s^2 + b s + k with a low-pass. The low-pass has just
+enough roll-off to make the inverse proper. So a linear device responds with w, whatever its
+dynamics. Friction is no part of the inverse: cancel friction first. In the sampled law x, v and a
+are means over the coming sample, with the reference held. For the inverse of any other transfer
+function see `inverted`.
 """
 
 from types import SimpleNamespace
@@ -67,7 +68,7 @@ CONTROLLER = ControlLaw(
         "inertia": Parameter("inertia", "m: inertia"),
         "damping": Parameter("damping", "b: damping"),
         "stiffness": Parameter("stiffness", "k: stiffness"),
-        "bandwidth": Parameter("frequency", "f_c: of each of the two poles of the low-pass, Hz"),
+        "bandwidth": Parameter("frequency", "f_c: frequency of both poles of the low-pass, Hz"),
     },
     source="Lee, Lawrence, Pao 2004, as used by Bernstein, Lawrence, Pao, World Haptics 2005",
 )

@@ -1,9 +1,10 @@
-"""Nominal inertia: the force that a modelled body takes along the measured motion, low-passed.
+"""Nominal inertia: the force of a modelled body along the measured motion, low-passed.
 
     F = Q (M_n dv/dt + B_n v),   Q = 2 pi f_c/(s + 2 pi f_c)
 
-Less the low-passed command, Q u, it is what else acts on the body: a disturbance observer, whose
-two halves `disturbance_observer` wires. The velocity v is that of the motion it acts along.
+F less the low-passed command Q u is the sum of all other forces on the body. This difference is a
+disturbance observer; `disturbance_observer` connects the two halves. v is the velocity of the
+motion along which the law acts.
 """
 
 from types import SimpleNamespace

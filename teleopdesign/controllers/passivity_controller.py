@@ -3,15 +3,16 @@
     E' = -F v,   output = -alpha v
     E >= 0:  alpha = 0;      E < 0:  alpha v^2 = -r E, alpha at most the largest damping
 
-Input is the measured force of the device ON what holds it, R_M of the haptic interface, whose
-velocity is the motion that the damper acts along: so force and velocity of one port are known to a
-law of one input. E holds what the device itself takes, friction that nobody has modelled included,
-and is kept at most at `budget`: what was put in long ago is no licence. Within E >= 0 it does
-nothing at all.
+The input is the measured force of the device ON the hand or the body that holds the device, R_M of
+the haptic interface. The damper acts along the motion of the same port, so a law of one input knows
+force and velocity of the port. E includes the energy that the device itself takes, also by friction
+that no model has. E is kept at most at `budget`: energy that went in long ago permits no later
+release. While E >= 0, the law does nothing at all.
 
-Sampled, energy is counted by trapezia and that of the coming sample predicted with force and
-velocity of the last; r far above the sampling rate makes a deficit up within one sample, as
-Hannaford and Ryu do. The device's inertia has to be put in first: what it gives back is not excess.
+In the sampled law energy is integrated by trapezia. The energy of the coming sample is predicted
+with force and velocity of the last sample. With r far above the sampling rate a deficit is
+recovered within one sample, as in Hannaford and Ryu. The kinetic energy of the device must first go
+in through the port, so its return is no excess.
 """
 
 from sympy import Max, Min, exp
@@ -56,8 +57,8 @@ def energy_after(now, p):
 
 
 PARAMETERS = {
-    "budget": Parameter("energy", "most energy that is kept for later"),
-    "recovery_rate": Parameter("frequency", "r: rate at which a deficit is made up, 1/s"),
+    "budget": Parameter("energy", "largest energy that is kept for later"),
+    "recovery_rate": Parameter("frequency", "r: rate at which a deficit is recovered, 1/s"),
     "largest_damping": Parameter("damping", "largest alpha"),
 }
 CONTROLLER = ControlLaw(

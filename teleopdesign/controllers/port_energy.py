@@ -1,13 +1,13 @@
-"""Port energy: what has gone through a port in one direction so far.
+"""Port energy: the energy that has gone through a port in one direction so far.
 
     dE/dt = max(s F v, 0),   output = E
 
-Input is the force F on the body that is commanded at the port, v the velocity of the motion it acts
-along; s = 1 counts what the force has supplied to the body, s = -1 what it has taken. Each only
-grows,
-so that a reading which arrives late, or is held where one is lost, is never too large: that is why
-a channel sends this, not the net energy. In a computer the force is held from a sample to the next
-and acts along the travel between them, so that the count is exact, at the sample itself.
+The input is the commanded force F on the body at the port. v is the velocity of the motion along
+which the force acts. s = 1 counts the energy that the force has supplied to the body, s = -1 the
+energy that the force has taken. Each energy only grows. So a reading that arrives late, or is held
+where one is lost, is never too large: for this reason a channel sends this energy, not the net
+energy. In a computer the force is held from one sample to the next and acts along the travel
+between them. So the energy is exact at each sample.
 """
 
 from sympy import Max
@@ -37,7 +37,9 @@ CONTROLLER = ControlLaw(
         "last": ControllerState("force", zero_rate, store_input),
     },
     parameters={
-        "sign": Parameter("dimensionless", "1: given to the body; -1: taken", lower=-1.0, upper=1.0)
+        "sign": Parameter(
+            "dimensionless", "1: supplied to the body; -1: taken", lower=-1.0, upper=1.0
+        )
     },
     source="Ryu, Artigas, Preusche, Mechatronics 20 (2010) 812: energies in and out, apart",
 )

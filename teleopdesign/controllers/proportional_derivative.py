@@ -2,9 +2,9 @@
 
     F = k e + d dw/dt,   dw/dt = 2 pi f_c (e - w)
 
-The derivative is that of the low-passed input, so that the law is proper. Sampled, it is the mean
-over the coming sample: exact for a ramp, where the derivative at the sample itself, the input held,
-is too large by half of 2 pi f_c T.
+The derivative is that of the low-passed input, so the law is proper. In the sampled law the
+derivative is the mean over the coming sample. This mean is exact for a ramp. The derivative at the
+sample itself, with the input held, is too large by half of 2 pi f_c T.
 """
 
 from types import SimpleNamespace

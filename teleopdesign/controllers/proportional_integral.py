@@ -1,9 +1,9 @@
-"""Proportional and integral: a multiple of the input, and what has come in so far.
+"""Proportional and integral: a multiple of the input, and of the integral of the input.
 
     output = k (input + r w),   dw/dt = input
 
-From an error of velocity it makes a damper k and a spring k r; from an error of force, the force
-that leaves no error at rest.
+From an error of velocity the law makes a damper k and a spring k r. From an error of force the law
+makes a force that leaves no error at rest.
 """
 
 from ..effects import Parameter

@@ -1,10 +1,10 @@
-"""Smoothed Coulomb cancellation: adds the friction it expects, rounded off near rest.
+"""Smoothed Coulomb cancellation: adds the expected friction, smoothed near rest.
 
     F = F_C v / (a + abs(v))
 
-Leaves F_C sgn(v) a/(a + abs(v)) of Coulomb friction: the same shape as `velocity_schedule`, which
-is why the two complement each other. Never more than F_C, so it releases no energy where the true
-level is at least F_C.
+The law leaves F_C sgn(v) a/(a + abs(v)) of Coulomb friction. This has the same shape as
+`velocity_schedule`, so the two complement each other. The force never exceeds F_C, so it releases
+no energy where the true level is at least F_C.
 """
 
 from ..effects import Parameter
@@ -20,7 +20,9 @@ CONTROLLER = ControlLaw(
     linear=True,
     parameters={
         "level": Parameter("force", "F_C: level that is cancelled"),
-        "smoothing_velocity": Parameter("velocity", "a: half of the level is reached there"),
+        "smoothing_velocity": Parameter(
+            "velocity", "a: speed at which half of the level is reached"
+        ),
     },
     bound="level",
     smoothing="smoothing_velocity",

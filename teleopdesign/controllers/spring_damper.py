@@ -1,11 +1,12 @@
-"""Spring and damper that a computer or circuit makes: joins two sides of a teleoperator.
+"""Spring and damper by a computer or circuit: joins two sides of a teleoperator.
 
     F = k e + d v
 
-Input is e, and v the velocity of the motion that the block is wired along, de/dt where that motion
-is e itself. With e the difference of two positions this is position-position control; of the
-interface's position, a virtual wall without its side. On a signal that is late or filtered the
-damper still acts along the motion, now; `proportional_derivative` differentiates what it reads.
+The input is e. v is the velocity of the motion along which the block is connected: de/dt where that
+motion is e itself. If e is the difference of two positions, the law is position-position control.
+If e is the position of the interface, the law is a virtual wall that is not one-sided. With an
+input that is late or filtered the damper still acts along the motion without delay;
+`proportional_derivative` differentiates the input itself.
 """
 
 from ..effects import Parameter

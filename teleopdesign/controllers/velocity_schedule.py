@@ -16,7 +16,7 @@ CONTROLLER = ControlLaw(
     linear=True,
     parameters={
         "gain": Parameter("dimensionless", "k: gain at rest"),
-        "scheduling_velocity": Parameter("velocity", "b: the gain is halved there"),
+        "scheduling_velocity": Parameter("velocity", "b: speed at which the gain is halved"),
     },
     source="Bernstein, Lawrence, Pao, World Haptics 2005, section 5 (gain of H)",
 )

@@ -1,9 +1,9 @@
-"""Virtual admittance: the motion that a virtual mass, damper and spring make under the input.
+"""Virtual admittance: the motion of a virtual mass, damper and spring under the input force.
 
     M d^2x/dt^2 + B dx/dt + K x = input,   output = x
 
-Input is a measured force; a position loop makes a device follow the output. In a computer it is
-stepped exactly for a force that is held over each sample.
+The input is a measured force. A position loop makes a device follow the output. In a computer the
+step is exact for a force that is held over each sample.
 """
 
 from ..effects import Parameter

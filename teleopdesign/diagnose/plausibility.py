@@ -72,7 +72,7 @@ def _explain_cancelled(
     if not half > facts.acting:
         return None
     return (
-        f"it varies by +-{facts.text(half, 'force')} along the motion, where no more than "
+        f"this force varies by +-{facts.text(half, 'force')} along the motion, where no more than "
         f"{facts.text(facts.acting, 'force')} act: another effect cancels it, and only the sum of "
         "the two is known"
     )

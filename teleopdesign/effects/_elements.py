@@ -49,8 +49,8 @@ def elements_slip(p: Any, facts: RecordFacts) -> str | None:
     if softest and 2.0 * ways[softest] > facts.travel > max(ways.values()):
         stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
         return (
-            f"its softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
-            f"one way only within the travel of {facts.text(facts.travel, 'position')}: no loop "
-            "is seen, and it stands for a spring"
+            f"the softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
+            f"in one direction only within the travel of {facts.text(facts.travel, 'position')}: "
+            "the record shows no loop, and the effect imitates a spring"
         )
-    return slip_is_seen("its softest element", list(ways.values()), facts)
+    return slip_is_seen("the softest element", list(ways.values()), facts)

@@ -110,17 +110,19 @@ def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str
     """
     if facts.stroke == float("inf"):
         return (
-            f"{subject} gives once where the motion never turns round: no loop is seen, and it "
-            "stands for how the friction of a record begins"
+            f"{subject} deflects once only where the motion never reverses: the record shows no "
+            "loop, and the effect imitates the beginning of friction in a record"
         )
     # a deflection of less than half a step is never read
     if any(0.5 * facts.step < way < facts.travel for way in ways):
         return None
     if max(ways, default=0.0) >= facts.travel:
         travel = facts.text(facts.travel, "position")
-        return f"{subject} never slips within the travel of {travel}: it stands for a spring"
+        return f"{subject} never slips within the travel of {travel}: the effect imitates a spring"
     step = facts.text(facts.step, "position")
-    return f"{subject} gives by less than steps of {step} show: it stands for sgn friction"
+    return (
+        f"{subject} deflects by less than a step of {step} shows: the effect imitates sgn friction"
+    )
 
 
 def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) -> str | None:
@@ -128,8 +130,8 @@ def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) 
     if facts.apart_from_speed(pattern) >= APART:
         return None
     return (
-        "each place was passed at one speed only, so what varies along the travel varies with the "
-        "speed as well: it stands for a friction that depends on the speed"
+        "the motion passed each position at one speed only, so variation along the travel may be "
+        "variation with speed: the effect imitates friction that depends on the speed"
     )
 
 
@@ -144,8 +146,8 @@ def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str 
     if not np.corrcoef(load, levels)[0, 1] >= ALIKE:
         return None
     return (
-        "friction is largest where the torque of gravity is: friction that grows with the load "
-        "(load_dependent_friction) looks much the same. Another load on the link decides"
+        "friction is largest where the torque of gravity is largest: friction that grows with the "
+        "load (load_dependent_friction) looks much the same. A record with another load decides"
     )
 
 
@@ -158,6 +160,6 @@ def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
         return None
     return (
         f"a period of {facts.text(abs(p.period), 'position')} does not repeat within the travel of "
-        f"{facts.text(facts.travel, 'position')}: it stands for something else that varies slowly "
-        "along the travel, such as gravity, a spring or a friction that varies"
+        f"{facts.text(facts.travel, 'position')}: the effect imitates something else that varies "
+        "slowly along the travel, such as gravity, a spring or friction that varies"
     )

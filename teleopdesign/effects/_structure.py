@@ -103,7 +103,7 @@ def rings_like_a_hum(p: Any, facts: RecordFacts) -> str | None:
     if abs(frequency - mains) > BESIDE * mains or not rings:
         return None
     return (
-        f"its tip rings at {frequency:.3g} Hz, beside the {mains:g} Hz of the mains: a hum looks "
+        f"the tip rings at {frequency:.3g} Hz, close to the {mains:g} Hz of the mains: hum looks "
         "much the same. A record at rest with the drive on decides"
     )
 
@@ -115,8 +115,8 @@ def tip_is_part(p: Any, facts: RecordFacts) -> str | None:
         return None
     return (
         f"a tip of {facts.text(p.tip_inertia, 'inertia')} is no part of a body of "
-        f"{facts.text(whole, 'inertia')}: nothing is left for the actuator's side; it stands for "
-        "something else that follows the motion late"
+        f"{facts.text(whole, 'inertia')}: no inertia is left for the actuator side; the "
+        "effect imitates something else that lags behind the motion"
     )
 
 
@@ -131,8 +131,8 @@ def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
         return tip_is_part(p, facts)
     ratio = p.damping / critical
     return (
-        f"a tip with a damping ratio of {ratio:.3g} creeps and does not spring back: it stands for "
-        "what else follows the motion late"
+        f"a tip with a damping ratio of {ratio:.3g} creeps and does not spring back: the effect "
+        "imitates something else that lags behind the motion"
     )
 
 
@@ -141,15 +141,15 @@ def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
     if math.isinf(facts.stroke):
         return (
             f"a gap of {facts.text(p.gap, 'position')} is crossed once at most where the motion "
-            "never turns round: it stands for how the friction of a record begins"
+            "never reverses: the effect imitates the beginning of friction in a record"
         )
     worth = p.stiffness * p.gap / 2
     if worth >= SEEN * facts.force:
         return tip_is_part(p, facts)
     return (
         f"a gap of {facts.text(p.gap, 'position')} changes the force by no more than "
-        f"{facts.text(worth, 'force')}, where {facts.text(facts.force, 'force')} act: it stands "
-        "for a transmission that is no plain spring, or for friction behind it"
+        f"{facts.text(worth, 'force')}, and {facts.text(facts.force, 'force')} act: the effect "
+        "imitates a transmission that is no linear spring, or friction behind the transmission"
     )
 
 

@@ -2,8 +2,8 @@
 
     acting force(t) = command(t - tau)
 
-Computation, buses and drives. Distinguished from `actuator_lag` by commands that hold content above
-1/tau: below that both are a phase in proportion to frequency.
+Causes are computation, buses and drives. Commands with content above 1/tau distinguish a delay from
+`actuator_lag`. Below 1/tau both are a phase in proportion to frequency.
 """
 
 from ._effect import Effect, FitSearch, Parameter, delayed

@@ -1,9 +1,10 @@
-"""Actuator gain: the force that acts is a constant factor times the command.
+"""Actuator gain: the acting force is a constant factor times the command.
 
     acting force = g command
 
-A torque constant or gear ratio that is not what the data sheet says. Something must set the scale
-of force: an exciting interaction force, or an inertia that is known.
+A torque constant or a gear ratio differs from the data sheet. A record determines the gain only if
+something else sets the scale of force: an interaction force that excites the motion, or a known
+inertia.
 """
 
 from ._effect import Effect, FitSearch, Parameter

@@ -2,8 +2,8 @@
 
     tau dw/dt = command - w,   acting force = w
 
-A current loop, a motor's inductance. Distinguished from `actuation_delay` by commands that hold
-content above 1/tau: a lag also weakens them.
+Causes are a current loop or the inductance of a motor. Commands with content above 1/tau
+distinguish a lag from `actuation_delay`: a lag also weakens these commands.
 """
 
 from ._effect import Effect, FitSearch, Parameter, State

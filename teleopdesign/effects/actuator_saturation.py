@@ -1,10 +1,10 @@
-"""Actuator saturation: the force that acts is limited.
+"""Actuator saturation: the acting force has a largest value.
 
     acting force = command, but no more than F_max either way
 
-Supply voltage, current limits. Nothing is seen of it in records whose command stays below F_max.
-Friction that flattens with speed is mistaken for it. A force that was measured (`measured = true`
-of the channel) has passed all limits.
+Causes are the supply voltage and limits of the current. A record whose command stays below F_max
+shows nothing of a saturation. Friction that flattens with speed looks like a saturation. A measured
+force (`measured = true` of the channel) has already passed all limits.
 """
 
 from sympy import Max, Min

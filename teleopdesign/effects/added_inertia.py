@@ -1,9 +1,10 @@
-"""Added inertia: the body carries more than the model says.
+"""Added inertia: the body has more inertia than the model states.
 
     F = m_+ a
 
-A tool, a gripper, a gear's reflected rotor. Where the model's inertia is free, that takes it up
-and nothing is missing; without an exciting interaction force it equals an actuator gain.
+Causes are a tool, a gripper, or the inertia of a rotor that acts through a gear. Where the inertia
+of the model is free, its estimate already includes the added inertia. Without an interaction force
+that excites the motion, added inertia is the same as an actuator gain.
 """
 
 from ._effect import Effect, Parameter

@@ -1,8 +1,9 @@
-"""Arm: what holds the device is a spring and a damper with a mass behind it.
+"""Arm: the spring and damper of the grip hold the device, with the mass of the arm behind the grip.
 
     F = K_g (x - x_a) + B_g (v - v_a),   m_a dv_a/dt = F - K_a x_a - B_a v_a
 
-Below the resonance of arm and grip the hand feels like the arm, above it like the grip alone.
+Below the resonance of arm and grip the hand feels like the arm. Above the resonance the hand feels
+like the grip alone.
 """
 
 from types import SimpleNamespace
@@ -42,11 +43,11 @@ EFFECT = Effect(
         "arm_velocity": State("velocity", arm_velocity),
     },
     parameters={
-        "inertia": Parameter("inertia", "m_a: of the arm"),
-        "damping": Parameter("damping", "B_a: between arm and trunk"),
-        "stiffness": Parameter("stiffness", "K_a: between arm and trunk"),
-        "grip_damping": Parameter("damping", "B_g: of the grip"),
-        "grip_stiffness": Parameter("stiffness", "K_g: of the grip"),
+        "inertia": Parameter("inertia", "m_a: inertia of the arm"),
+        "damping": Parameter("damping", "B_a: damping between arm and trunk"),
+        "stiffness": Parameter("stiffness", "K_a: stiffness between arm and trunk"),
+        "grip_damping": Parameter("damping", "B_g: damping of the grip"),
+        "grip_stiffness": Parameter("stiffness", "K_g: stiffness of the grip"),
     },
     absent={"grip_stiffness": 0.0, "grip_damping": 0.0},
     source="two masses on springs and dampers",

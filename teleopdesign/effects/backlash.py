@@ -3,11 +3,11 @@
     F = K (d -+ g/2) + C (v - v_t) outside the gap, abs(d) > g/2, else 0;   d = x - x_t
     m_t dv_t/dt = F + interaction force;   the body's inertia counts both sides
 
-Gears and worn joints. Distinguished from `transmission_compliance` by small motion, in which the
-tip does not follow at all.
+Gears and worn joints have backlash. Small motion distinguishes backlash from
+`transmission_compliance`: with backlash the tip does not follow small motion at all.
 
-When the two meet next depends on the last time by more than sensors tell: along a measured motion
-the tip is led back to its course (`_structure.py`).
+The time of the next contact depends on the last contact by more than sensors resolve. So along a
+measured motion a correction leads the computed tip back to its course (`_structure.py`).
 """
 
 from sympy import Piecewise

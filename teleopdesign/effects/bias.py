@@ -1,9 +1,10 @@
-"""Bias: a constant force, whatever the motion.
+"""Bias: a constant force that does not depend on the motion.
 
     F = F_0
 
-Gravity on a vertical axis, a counterweight, an offset of the current sensor or amplifier. With sgn
-friction no record tells it from `coulomb_asymmetry`.
+Causes are gravity on a vertical axis, a counterweight, or an offset of the current sensor or
+amplifier. With friction in proportion to sgn(v) no record distinguishes a bias from
+`coulomb_asymmetry`.
 """
 
 from ._effect import Effect, Parameter
@@ -18,7 +19,9 @@ EFFECT = Effect(
     energy="stores",
     law=law,
     parameters={
-        "force": Parameter("force", "F_0: constant force, subtracted", lower=-float("inf"))
+        "force": Parameter(
+            "force", "F_0: constant force; F_0 > 0 acts towards negative x", lower=-float("inf")
+        )
     },
     absent={"force": 0.0},
     source="equation of motion with a constant force",

@@ -2,8 +2,9 @@
 
     F = A sin(2 pi x / p + phi)
 
-Magnets against iron teeth, ball screws, gear meshing. It does not depend on the direction, as
-`position_dependent_friction` does, nor on the command, as `torque_ripple` does.
+Causes are magnets against iron teeth, ball screws and the meshing of gears. Unlike
+`position_dependent_friction`, cogging does not depend on the direction of motion. Unlike
+`torque_ripple`, cogging does not depend on the command.
 """
 
 from sympy import pi, sin

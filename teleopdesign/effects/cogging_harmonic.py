@@ -2,8 +2,9 @@
 
     F = A_2 sin(2 pi x / p_2 + phi_2), beside `cogging`
 
-Slots and poles of a motor seldom leave one sine: the wave of the poles comes beside that of slots
-and poles together, and each has harmonics. The largest of them is `cogging`, the next is this one.
+The cogging of a motor is seldom one sine. The poles give one wave, slots and poles together give
+another wave, and each wave has harmonics. The largest wave is `cogging`, the next largest is
+`cogging_harmonic`.
 """
 
 from dataclasses import replace

@@ -2,8 +2,9 @@
 
     F = max(K d + D v, 0) while the penetration d = x - x_c > 0
 
-Rubber, tissue, a felt pad. It acts during contact only, and never pulls. A record shows it if the
-contact is entered and left at speed; contact held or pressed slowly shows the stiffness alone.
+Rubber, tissue and felt pads have such damping. The damper acts during contact only, and the contact
+force never pulls. A record shows the damping if contact begins and ends at speed. A contact that is
+held or pressed slowly shows the stiffness alone.
 """
 
 from ._effect import Effect, Parameter

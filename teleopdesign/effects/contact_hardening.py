@@ -2,9 +2,10 @@
 
     F = K d_0 (d / d_0)^n while the penetration d = x - x_c > 0
 
-K is the secant stiffness at the depth d_0, which is chosen, not estimated; at d_0 = 1 m its number
-is that of K in F = K d^n. n = 1.5 for a sphere on a flat (Hertz), more for soft tissue.
-Distinguished from a stiffer linear contact only if the depth varies widely.
+K is the secant stiffness at the penetration d_0. The user chooses d_0; d_0 is not estimated. At d_0
+= 1 m, K has the same number as K in F = K d^n. The exponent is n = 1.5 for a sphere on a flat
+(Hertz), and more for soft tissue. A record distinguishes hardening from a stiffer linear contact
+only if the penetration varies widely.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -28,7 +29,7 @@ EFFECT = Effect(
         ),
         "depth": Parameter(
             "position",
-            "d_0: where K is the secant stiffness",
+            "d_0: penetration at which K is the secant stiffness",
             search=FitSearch(starts=(0.5,), chosen=True),
         ),
     },

@@ -1,11 +1,12 @@
-"""Contact hysteresis: a small friction inside the material, whatever the speed.
+"""Contact hysteresis: a small friction inside the material that does not depend on speed.
 
     F = K d + sigma z,   dz/dt = v - (sigma / level) abs(v) z     while d = x - x_c > 0 and F > 0
                          dz/dt = -z / tau                         otherwise
 
 Rubber and tissue lose energy in slow loading too. The bristle is that of the effect `presliding`.
-While the material pushes it is loaded; where F would pull, contact has been lost and it recovers
-within tau. It stores sigma z^2/2, only gives up what it stored, and so the contact stays passive.
+While the material pushes, the motion loads the bristle. Where F would pull, contact is lost and the
+bristle recovers within tau. The bristle stores sigma z^2/2 and gives up only stored energy, so the
+contact stays passive.
 """
 
 from types import SimpleNamespace
@@ -39,9 +40,9 @@ EFFECT = Effect(
     law=law,
     states={"bristle": State("position", bristle)},
     parameters={
-        "level": Parameter("force", "greatest force of the friction inside"),
-        "stiffness": Parameter("stiffness", "sigma: its stiffness before it slides"),
-        "recovery_time": Parameter("time", "tau: of its recovery where nothing touches"),
+        "level": Parameter("force", "largest force of the friction inside the material"),
+        "stiffness": Parameter("stiffness", "sigma: stiffness of this friction before it slides"),
+        "recovery_time": Parameter("time", "tau: time of recovery without contact"),
     },
     absent={"level": 0.0},
     needs=frozenset({"environment"}),

@@ -1,9 +1,9 @@
-"""Coulomb friction: a constant level against the motion, whatever the speed.
+"""Coulomb friction: a constant force against the motion that does not depend on speed.
 
     level = F_C,   F = F_C sgn(v);   stuck: whatever balances, up to F_C
 
-Holds for dry contacts that slide steadily. Near rest a record shows `presliding` instead where the
-position resolves the deflection of the contact.
+The law holds for dry contacts that slide steadily. Near rest a record shows `presliding` instead,
+where the position resolves the deflection of the contact.
 """
 
 from ._effect import Effect, Parameter

@@ -2,8 +2,8 @@
 
     level = F_C + d sgn(v),   d = (F_C+ - F_C-)/2
 
-Gears and seals do this. With sgn friction no record tells it from a constant force: two levels are
-one level and a `bias`.
+Gears and seals have such friction. With friction in proportion to sgn(v) no record distinguishes
+the asymmetry from a constant force: two levels are the same as one level and a `bias`.
 """
 
 from ._effect import Effect, Parameter
@@ -18,9 +18,9 @@ def plausible(p, facts):
     if abs(p.half_difference) <= level:
         return None
     return (
-        f"half of the difference, {facts.text(abs(p.half_difference), 'force')}, is more than the "
-        f"level of {facts.text(level, 'force')}: one way it would drive the motion; it stands for "
-        "a constant force, such as gravity"
+        f"half of the difference, {facts.text(abs(p.half_difference), 'force')}, exceeds the "
+        f"level of {facts.text(level, 'force')}: in one direction such friction would drive the "
+        "motion; the effect imitates a constant force, such as gravity"
     )
 
 

@@ -2,9 +2,10 @@
 
     F = M a_other
 
-Joints of one arm, two carriages on one beam, a reaction of the frame. The other motion is a further
-channel of the record, `other_position`. Mistaken for `added_inertia` and `spring` where both
-motions run together: a record tells them apart by moving one while the other rests.
+Examples are joints of one arm, two carriages on one beam, and the reaction of a frame. The other
+motion is a further channel of the record, `other_position`. Where both motions run together, the
+coupling looks like `added_inertia` and `spring`. A record distinguishes these if one body moves
+while the other rests.
 """
 
 from ._effect import Effect, FitSearch, Parameter

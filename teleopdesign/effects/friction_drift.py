@@ -2,7 +2,7 @@
 
     level = F_C (1 - d (1 - exp(-t / tau))),   t from the start of each record, which starts cold
 
-Grease and seals. What other effects add stays as it is. Records shorter than tau show a trend only.
+Causes are grease and seals. Only F_C drifts. Records shorter than tau show no more than a trend.
 """
 
 from sympy import exp
@@ -19,13 +19,13 @@ def law(now, p):
 
 def plausible(p, facts):
     if p.fraction >= ALL and p.time_constant <= facts.duration:
-        return "nearly all friction would be lost: it stands for one that falls with something else"
+        return "nearly all friction would be lost: friction falls with another quantity than time"
     if p.time_constant >= (cycle := 2 * facts.stroke) or cycle == float("inf"):
         return None
     return (
         f"a time constant of {p.time_constant:.3g} s is shorter than one cycle of the motion, "
-        f"{cycle:.3g} s: so fast a warm-up is not distinguished from the motion; it "
-        "stands for how the records begin"
+        f"{cycle:.3g} s: the records do not distinguish so fast a warm-up from the "
+        "motion; the effect imitates the beginning of the records"
     )
 
 
@@ -33,7 +33,7 @@ def untold(p, facts):
     if p.time_constant <= facts.duration:
         return None
     return (
-        f"warming up in {p.time_constant:.3g} s outlasts the records, {facts.duration:.3g} s: only "
+        f"a warm-up of {p.time_constant:.3g} s outlasts the records, {facts.duration:.3g} s: only "
         f"the rate d / tau = {p.fraction / p.time_constant:.3g} 1/s of the level's change is known"
     )
 
@@ -47,7 +47,7 @@ EFFECT = Effect(
             "dimensionless", "d: part of the cold level that is lost", lower=-1.0, upper=1.0
         ),
         "time_constant": Parameter(
-            "time", "tau: of warming up", search=FitSearch(starts=(0.2, 1.0), scale="duration")
+            "time", "tau: of the warm-up", search=FitSearch(starts=(0.2, 1.0), scale="duration")
         ),
     },
     absent={"fraction": 0.0},

@@ -2,7 +2,8 @@
 
     level at speed w,   tau dw/dt = abs(v) - w
 
-The lubricant film takes time to build up and to break down. Only where the level depends on speed.
+The lubricant film takes time to build up and to break down. The lag matters only where the level
+depends on speed.
 """
 
 from ._effect import Effect, FitSearch, Parameter, State

@@ -2,9 +2,9 @@
 
     F = A sin(x + phi),   A = m g l;   x + phi = 0 where the centre of mass hangs straight down
 
-A pendulum, a link, an unbalanced drum. On a prismatic axis gravity is a constant: `bias`. Seen over
-a small part of a turn it is a `bias` and a `spring`; where it repeats several times a turn, as
-teeth and magnets do, it is `cogging`.
+Examples are a pendulum, a link and an unbalanced drum. On a prismatic axis gravity is a constant
+force, `bias`. Over a small part of a turn gravity looks like a `bias` and a `spring`. A torque that
+repeats several times a turn, as from teeth and magnets, is `cogging`.
 """
 
 import numpy as np
@@ -22,9 +22,9 @@ def plausible(p, facts):
     if abs(p.amplitude) <= facts.acting:
         return None
     return (
-        f"a torque of {facts.text(abs(p.amplitude), 'force')} where the link lies level is more "
-        f"than all that act, {facts.text(facts.acting, 'force')}: over a travel of "
-        f"{facts.text(facts.travel, 'position')} it stands for a constant force and a spring"
+        f"a torque of {facts.text(abs(p.amplitude), 'force')} with the link horizontal exceeds "
+        f"all acting forces, {facts.text(facts.acting, 'force')}: over a travel of "
+        f"{facts.text(facts.travel, 'position')} the effect imitates a constant force and a spring"
     )
 
 
@@ -34,7 +34,7 @@ def untold(p, facts):
     travel = facts.text(facts.travel, "position")
     return (
         f"over a travel of {travel} a spring and a constant force give this torque within "
-        f"{100 * bend:.2g} % of its variation: hardly distinguished from these"
+        f"{100 * bend:.2g} % of its variation: the records hardly distinguish these"
     )
 
 
@@ -44,7 +44,7 @@ EFFECT = Effect(
     law=law,
     elsewhere={"prismatic": "bias"},
     parameters={
-        "amplitude": Parameter("force", "A: torque where the link lies level", lower=-float("inf")),
+        "amplitude": Parameter("force", "A: torque with the link horizontal", lower=-float("inf")),
         "phase": Parameter(
             "angle", "phi: angle at x = 0", lower=-float("inf"), search=FitSearch(starts=(0.0,))
         ),

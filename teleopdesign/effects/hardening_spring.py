@@ -1,9 +1,9 @@
-"""Hardening spring: a force with the cube of the way from where it is neutral.
+"""Hardening spring: a force in proportion to the cube of the distance from a neutral position.
 
     F = K_3 (x - x_0)^3
 
-Cables and bushings that pull to both ends of their travel; x_0 where neither does. Mistaken for
-`spring` where the travel is always the same.
+Examples are cables and bushings that pull at both ends of their travel. At x_0 they pull in neither
+direction. Where the travel is always the same, the effect looks like `spring`.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -17,8 +17,8 @@ def plausible(p, facts):
     if not len(facts.places) or facts.places.min() <= p.neutral <= facts.places.max():
         return None
     return (
-        f"a neutral place at {facts.text(p.neutral, 'position')} lies beyond all that was "
-        "travelled: it stands for a spring and a constant force"
+        f"a neutral position at {facts.text(p.neutral, 'position')} lies beyond all positions of "
+        "the motion: the effect imitates a spring and a constant force"
     )
 
 
@@ -27,10 +27,10 @@ EFFECT = Effect(
     energy="stores",
     law=law,
     parameters={
-        "stiffness": Parameter("cubic_stiffness", "K_3: force per travel cubed"),
+        "stiffness": Parameter("cubic_stiffness", "K_3: force per cube of the distance"),
         "neutral": Parameter(
             "position",
-            "x_0: where it pulls neither way",
+            "x_0: neutral position, without force",
             lower=-float("inf"),
             optional=True,
             search=FitSearch(starts=(-1.0, 0.0, 1.0)),

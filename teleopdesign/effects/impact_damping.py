@@ -2,10 +2,10 @@
 
     F = K d (1 + v / v_0) while the penetration d = x - x_c > 0
 
-With `contact_hardening` K d_0 (d/d_0)^n takes the place of K d, and the whole is the law of Hunt
-and Crossley, k d^n + c d^n v with c = k / v_0. Unlike a damper beside the spring it starts from
-zero force at the touch. For slow impacts the speed of return over that of impact is 1 - alpha v,
-alpha = 2/(3 v_0).
+With `contact_hardening` the term K d_0 (d/d_0)^n replaces K d. The sum is then the law of Hunt and
+Crossley, k d^n + c d^n v with c = k / v_0. The force starts from zero when contact begins, unlike
+the force of a damper beside the spring. For slow impacts the speed of return over the speed of
+impact is 1 - alpha v, alpha = 2/(3 v_0).
 """
 
 from ._effect import Effect, Parameter, parameter_symbol

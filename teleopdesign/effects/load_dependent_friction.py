@@ -1,15 +1,15 @@
-"""Load-dependent friction: the level grows with what the transmission carries.
+"""Load-dependent friction: the level grows with the force that the transmission carries.
 
     level = F_C + mu abs(u) (1 + d sgn(u v)) (1 + e exp(-(v / v_S)^2)),   u: acting force
 
-Gears, screws and capstans press harder on their contacts the more they transmit. The acting force
-is what they carry as the actuator feels it: gravity, inertia and the hand on the far side included.
-d tells an actuator that drives (d > 0: more friction) from one that is driven back; e is the extra
-at rest of contacts that slide better as speed grows. Distinguished from `coulomb` by commands that
-vary at equal speed, d by loads both with and against the motion. From mu = 1 on no acting force
-moves the body. mu d takes u as an `actuator_gain` does, and e is distinguished from `stribeck` by
-loads alone: so d, e and v_S are estimated where a model states them, and a search leaves them at
-zero.
+Gears, screws and capstans press harder on their contacts, the more force they transmit. This force
+is the acting force, as the actuator feels it: gravity, inertia and the hand on the far side are
+included. d distinguishes an actuator that drives (d > 0: more friction) from one that is driven
+back. e is the extra friction at rest of contacts that slide better as speed grows. Commands that
+vary at equal speed distinguish this effect from `coulomb`, loads with and against the motion
+determine d. From mu = 1 on no acting force moves the body. The product mu d acts like an
+`actuator_gain`, and only loads distinguish e from `stribeck`. So d, e and v_S are estimated where a
+model states them, and a search leaves them at zero.
 """
 
 from sympy import exp, sign
@@ -42,13 +42,13 @@ EFFECT = Effect(
     law=law,
     parameters={
         "coefficient": Parameter(
-            "dimensionless", "mu: level per force carried", search=FitSearch(within=1.0)
+            "dimensionless", "mu: level per transmitted force", search=FitSearch(within=1.0)
         ),
         "driving_difference": of_load(
-            "dimensionless", "d: half of driving minus driven back, over the mean", 0.0, 1.0, -1.0
+            "dimensionless", "d: half of (driving - driven back), over the mean", 0.0, 1.0, -1.0
         ),
-        "extra_at_rest": of_load("dimensionless", "e: extra at rest, over the sliding part", 0.0),
-        "stribeck_velocity": of_load("velocity", "v_S: that extra down to 1/e", 0.1),
+        "extra_at_rest": of_load("dimensionless", "e: extra at rest over sliding level", 0.0),
+        "stribeck_velocity": of_load("velocity", "v_S: speed where that extra is down to 1/e", 0.1),
     },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),

@@ -1,9 +1,10 @@
-"""Maxwell slip: before it slides friction is a hysteresis of two to four springs that slip in turn.
+"""Maxwell slip: before sliding, friction is a hysteresis of two to four springs that slip in turn.
 
     F = sum F_i,   dF_i/dt = K_i v while abs(F_i) < W_i, held there;   W_1 = level - W_2 - W_3 - W_4
 
-The contact grows softer with the way since a reversal; one bristle (`presliding`) has one curve for
-all loops. Element 1 carries what the others leave of the level. Seen where the encoder resolves it.
+The contact becomes softer with the distance since a reversal; one bristle (`presliding`) has one
+curve for all loops. Element 1 carries the part of the level that the other elements leave. A record
+shows the effect where the encoder resolves the deflection.
 """
 
 from sympy import Max

@@ -2,9 +2,9 @@
 
     level = F_C (1 + e sin(2 pi x / p + phi))
 
-Bent rails, eccentric gears, uneven preload; with a period beyond the travel, a slope. It turns
-round with the direction, which tells it from `cogging` and `spring`. What other effects add to the
-level stays as it is.
+Causes are bent rails, eccentric gears and uneven preload. With a period longer than the travel the
+variation is a slope. The force changes sign with the direction of motion, unlike `cogging` and
+`spring`. Levels of other effects do not vary with this one.
 """
 
 from dataclasses import replace
@@ -31,7 +31,7 @@ EFFECT = Effect(
     parameters={
         "amplitude": Parameter(
             "dimensionless",
-            "e: half of its range over the mean",
+            "e: half of the range of the level, over its mean",
             lower=-1.0,
             upper=1.0,
             search=FitSearch(starts=(0.05,)),

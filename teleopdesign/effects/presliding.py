@@ -2,10 +2,10 @@
 
     F = sigma z + sigma_1 dz/dt,   dz/dt = v - (sigma / level) abs(v) z
 
-The contact gives by level/sigma before it slides. Without bristle damping sigma_1 this is Dahl's
-law; with it, and `stribeck` and `viscous` beside it, LuGre. Seen only in motion of a few bristle
-lengths that the encoder resolves; in larger motion it is mistaken for `actuation_delay`, for both
-round the corners of the friction loop.
+The contact deflects by level/sigma before it slides. Without bristle damping sigma_1 the law is
+that of Dahl. With sigma_1, and with `stribeck` and `viscous` beside it, the law is LuGre. Only
+motion of a few bristle lengths shows presliding, where the encoder resolves it. In larger motion
+presliding looks like `actuation_delay`: both round the corners of the friction loop.
 """
 
 from ._effect import Effect, FitSearch, Parameter, State

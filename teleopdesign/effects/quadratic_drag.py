@@ -1,9 +1,9 @@
-"""Quadratic drag: a force with the square of velocity, against it.
+"""Quadratic drag: a force against the motion in proportion to the square of velocity.
 
     F = D v abs(v)
 
-Turbulent air or oil, fans, orifices. Felt only at high speed; mistaken for `viscous` where the
-speed varies little.
+Causes are turbulent air or oil, fans and orifices. The force matters at high speed only. Where the
+speed varies little, the force looks like `viscous`.
 """
 
 from ._effect import Effect, Parameter

@@ -2,11 +2,11 @@
 
     F = D abs(v)^n sgn(v),   0 < n < 1;   below v_0 = 1e-5 m/s (rad/s) a straight line
 
-Lubricated gears and pre-stressed bearings: friction of the film flattens as speed grows, as that of
-industrial robots does. From n = 1 on it is `viscous`, at n = 0 `coulomb`; a record tells it from
-the two together by speeds over more than a decade. Of seals and contacts that stick, friction of
-the film is what comes beside `coulomb`: a power alone stands for both. Mistaken for
-`actuator_saturation`.
+Lubricated gears, pre-stressed bearings and industrial robots have such friction: the friction of
+the lubricant film flattens as speed grows. From n = 1 on the law is `viscous`, at n = 0 `coulomb`.
+Speeds over more than a decade distinguish it from these two together. In seals and in contacts that
+stick, the friction of the film comes beside `coulomb`: a power law alone represents both. The
+effect looks like `actuator_saturation`.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -25,8 +25,8 @@ def plausible(p, facts):
     if most <= facts.force:
         return None
     return (
-        f"{facts.text(most, 'force')} at the largest speed is more than any force measured, "
-        f"{facts.text(facts.force, 'force')}: it stands for a constant force beside friction"
+        f"{facts.text(most, 'force')} at the largest speed exceeds all measured forces, "
+        f"{facts.text(facts.force, 'force')}: the effect imitates a constant force beside friction"
     )
 
 

@@ -2,9 +2,9 @@
 
     F = K x
 
-Cables, bushings, gravity near the bottom of a pendulum. Counted from the encoder's zero: elsewhere
-a spring comes with a `bias`. On a revolute axis `gravity` does nearly the same where the travel is
-much less than half a turn to either side.
+Causes are cables, bushings, and gravity near the bottom of a pendulum. x counts from the zero of
+the encoder: a spring with its rest position elsewhere comes with a `bias`. On a revolute axis
+`gravity` is nearly the same where the travel is much less than half a turn to either side.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ def untold(p, facts):
     travel = facts.text(facts.travel, "position")
     return (
         f"over a travel of {travel} the gravity of a link that hangs down at 0 gives this torque "
-        f"within {100 * bend:.2g} % of its variation: hardly distinguished from `gravity`"
+        f"within {100 * bend:.2g} % of its variation: the records hardly distinguish `gravity`"
     )
 
 
@@ -32,7 +32,7 @@ EFFECT = Effect(
     energy="stores",
     law=law,
     linear=True,
-    parameters={"stiffness": Parameter("stiffness", "K: force per travel")},
+    parameters={"stiffness": Parameter("stiffness", "K: force per displacement")},
     absent={"stiffness": 0.0},
     commoner="gravity",
     untold=untold,

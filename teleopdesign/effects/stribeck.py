@@ -2,9 +2,10 @@
 
     level = F_C + (F_S - F_C) exp(-(v / v_S)^2)
 
-Holds for lubricated contacts in steady sliding. A record tells it from `presliding` only if it
-crosses v_S slowly, both ways, and travels many bristle lengths between reversals. What is extra at
-rest is known where a speed far below v_S was seen, or a force of that size.
+The law holds for lubricated contacts in steady sliding. A record distinguishes it from `presliding`
+only if the speed crosses v_S slowly in both directions, and the travel between reversals is many
+bristle lengths. The extra level at rest is known if the record has speeds far below v_S, or a force
+of that size.
 """
 
 from types import SimpleNamespace
@@ -25,10 +26,10 @@ def untold(p, facts):
     slowest = facts.slowest
     there = float(law(SimpleNamespace(velocity=slowest), p))
     return (
-        f"friction of {facts.text(at_rest, 'force')} at rest is more than any force measured, "
+        f"friction of {facts.text(at_rest, 'force')} at rest exceeds all measured forces, "
         f"{facts.text(facts.force, 'force')}: the level at rest and v_S are not determined; "
-        f"what is known is the fall from {facts.text(there, 'force')} extra at the slowest "
-        f"motion, {facts.text(slowest, 'velocity')}"
+        f"only the fall from {facts.text(there, 'force')} extra at the slowest motion, "
+        f"{facts.text(slowest, 'velocity')}, is known"
     )
 
 
@@ -39,7 +40,9 @@ EFFECT = Effect(
     parameters={
         "extra_static_level": Parameter("force", "F_S - F_C: extra friction at rest"),
         "stribeck_velocity": Parameter(
-            "velocity", "v_S: extra level down to 1/e", search=FitSearch(starts=(0.02, 0.1, 0.5))
+            "velocity",
+            "v_S: speed where the extra level is down to 1/e",
+            search=FitSearch(starts=(0.02, 0.1, 0.5)),
         ),
     },
     absent={"extra_static_level": 0.0},

@@ -1,10 +1,10 @@
-"""Tip friction: dry friction beyond the compliance or the play of a transmission.
+"""Tip friction: dry friction beyond the compliance or the backlash of a transmission.
 
     m_t dv_t/dt = coupling + interaction force - F_t sgn(v_t);   stuck: whatever balances, up to F_t
 
-Gears, whose bearings and seals hold the load's side, and instruments behind cables. At a reversal
-the actuator winds the transmission up by 2 F_t before the tip follows: a hysteresis of the
-stiffness K that is mistaken for `presliding`, and for `backlash` where K is high.
+Examples are gears, whose bearings and seals hold the side of the load, and instruments behind
+cables. At a reversal the actuator winds the transmission up by 2 F_t before the tip follows. This
+hysteresis has the stiffness K. It looks like `presliding`, and like `backlash` where K is high.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -27,10 +27,10 @@ def plausible(p, facts):
     said += facts.text(wound, "position")
     if wound < 0.5 * facts.step:
         step = facts.text(facts.step, "position")
-        return f"{said}, less than steps of {step} show: it stands for friction of the actuator"
+        return f"{said}, below the step of {step}: the effect imitates friction of the actuator"
     if wound > facts.travel:
         travel = facts.text(facts.travel, "position")
-        return f"{said}, and never slides within the travel of {travel}: it stands for a spring"
+        return f"{said}, more than the travel of {travel}: the effect imitates a spring"
     return None
 
 

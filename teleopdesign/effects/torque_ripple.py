@@ -2,8 +2,8 @@
 
     acting force = command (1 + r sin(2 pi x / p + phi))
 
-Commutation and magnets of a motor, eccentric capstans. Nothing acts where nothing is commanded:
-that tells it from `cogging`.
+Causes are commutation and magnets of a motor, and eccentric capstans. Without a command torque
+ripple makes no force, unlike `cogging`.
 """
 
 from sympy import pi, sin

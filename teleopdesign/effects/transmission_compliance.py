@@ -3,12 +3,12 @@
     F = K (x - x_t) + C (v - v_t),   m_t dv_t/dt = F + interaction force
     the body's inertia counts both sides
 
-Cables, belts, harmonic drives. Position and friction are those of the actuator side; the
-interaction force acts on the tip. Below the resonance it looks like `added_inertia`, or like
-nothing at all where the inertia is free.
+Examples are cables, belts and harmonic drives. Position and friction are those of the actuator
+side; the interaction force acts on the tip. Below the resonance the effect looks like
+`added_inertia`, or it is invisible where the inertia is free.
 
-Noise of the readings swings a lightly damped tip, which swings on: along a measured motion the tip
-is led back to its course (`_structure.py`).
+Noise of the readings makes a lightly damped tip oscillate for long. So along a measured motion a
+correction leads the computed tip back to its course (`_structure.py`).
 """
 
 from ._effect import FitSearch, Parameter

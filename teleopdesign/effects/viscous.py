@@ -2,9 +2,10 @@
 
     F = B v
 
-Holds for full-film lubrication, back-EMF of a motor on a voltage amplifier, and eddy currents.
-Mistaken for `actuator_lag` and `actuation_delay` where a spring-like controller moves the body, and
-for Coulomb friction in a sweep at constant velocity amplitude.
+The law holds for full-film lubrication, for the back-EMF of a motor on a voltage amplifier, and for
+eddy currents. Where a spring-like controller moves the body, viscous friction looks like
+`actuator_lag` and `actuation_delay`. In a sweep at constant velocity amplitude it looks like
+Coulomb friction.
 """
 
 from ._effect import Effect, Parameter

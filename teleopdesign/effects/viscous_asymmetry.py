@@ -2,8 +2,9 @@
 
     F = (B + d sgn(v)) v,   d = (B+ - B-)/2
 
-Check valves, lip seals and tensioned cables do this. Unlike a `bias` it grows with speed. It may
-stand beside `shear_thinning` as well, whose friction then differs by as much.
+Check valves, lip seals and tensioned cables have such friction. Unlike a `bias`, the difference
+grows with speed. The effect may stand beside `shear_thinning` too, whose friction then differs by
+the same amount.
 """
 
 from ._effect import Effect, Parameter
@@ -17,10 +18,10 @@ def plausible(p, facts):
     if abs(p.half_difference) * facts.speed <= facts.film:
         return None
     return (
-        f"half of the difference, {facts.text(abs(p.half_difference), 'damping')}, makes more of "
-        f"a force at {facts.text(facts.speed, 'velocity')} than the friction of speed there, "
-        f"{facts.text(facts.film, 'force')}: one way it would drive the motion; it stands for "
-        "another force that depends on the direction"
+        f"half of the difference, {facts.text(abs(p.half_difference), 'damping')}, gives a "
+        f"larger force at {facts.text(facts.speed, 'velocity')} than all velocity-dependent "
+        f"friction, {facts.text(facts.film, 'force')}: in one direction such friction would drive "
+        "the motion; the effect imitates another force that depends on the direction"
     )
 
 

@@ -2,8 +2,9 @@
 
     F = B v (exp(-b (T - T_0)) - 1) beside the B v of `viscous`,   T_0 = 293.15 K
 
-Gears and bearings with grease: some per cent per kelvin. The temperature is a further channel of
-the record, `temperature`. Without one a slow change of friction is `friction_drift`.
+The damping of gears and bearings with grease falls by some per cent per kelvin. The temperature is
+a further channel of the record, `temperature`. Without this channel a slow change of friction is
+`friction_drift`.
 """
 
 from sympy import exp
@@ -24,8 +25,8 @@ def plausible(p, facts):
     if p.coefficient >= 0.0:
         return None
     return (
-        f"damping that grows by {-p.coefficient:.2g} per kelvin is no lubricant's: it stands for "
-        "friction that grows with temperature, as a preload of parts that expand"
+        f"no lubricant has a damping that grows by {-p.coefficient:.2g} per kelvin: the effect "
+        "imitates friction that grows with temperature, as from a preload of parts that expand"
     )
 
 

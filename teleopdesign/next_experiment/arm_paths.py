@@ -68,14 +68,14 @@ class ArmPaths(ByValue):
         best = sorted(self.errors, key=lambda name: self.errors[name])[:3]
         gained = ", ".join(f"{name} (x {self.errors[name]:.2g})" for name in best)
         text = (
-            f"with paths of {len(self.reference.position)} joints, period {self.period:g} s, as "
-            f"many samples leave standard errors x {self.gain:.2g} on the whole, x "
+            f"paths of {len(self.reference.position)} joints, period {self.period:g} s; standard "
+            f"errors for as many samples as in the records: x {self.gain:.2g} (mean), x "
             f"{max(self.errors.values()):.2g} at most; condition number of the regressor "
             f"{self.condition:.3g}, of the records {self.recorded:.3g}"
         )
         if self.is_useful:
-            return f"{text}; known best: {gained}"
-        return f"none is better than the present records: {text}"
+            return f"{text}; largest gains: {gained}"
+        return f"no path is better than the present records: {text}"
 
 
 def propose_paths(
@@ -111,8 +111,8 @@ def propose_paths(
             best, least = drawn, error
     if best is None:
         raise ExperimentError(
-            f"{experiment.folder.name}: no path of all joints within the limits needs less force "
-            "than they allow: state larger ones with --limit"
+            f"{experiment.folder.name}: all paths within the limits of the joints need more force "
+            "than the limits allow: state larger limits with --limit"
         )
     step = experiment.records[0].sample_time
     time = np.linspace(0.0, duration, round(duration / step) + 1)

@@ -93,8 +93,8 @@ def _sums_of_sines(s: Setting) -> Iterator[PathPart]:
             size = float(np.abs(path).max())
             if size > SEEN * s.step:
                 text = (
-                    f"move in a sum of sines from {s.show(low, 'frequency')} to "
-                    f"{s.show(high, 'frequency')}, up to {s.show(size, 'position')}"
+                    f"follow a sum of sines from {s.show(low, 'frequency')} to "
+                    f"{s.show(high, 'frequency')}, up to {s.show(size, 'position')} from the middle"
                 )
                 yield PathPart(text, path)
 
@@ -118,7 +118,9 @@ def _runs(s: Setting) -> Iterator[PathPart]:
 
 
 def _describe_back_and_forth(s: Setting, reach: float, speed: float) -> str:
-    return f"run back and forth over {s.show(2 * reach, 'position')} at {s.show(speed, 'velocity')}"
+    return (
+        f"move back and forth over {s.show(2 * reach, 'position')} at {s.show(speed, 'velocity')}"
+    )
 
 
 def _sweeps(s: Setting) -> Iterator[PathPart]:
@@ -129,8 +131,7 @@ def _sweeps(s: Setting) -> Iterator[PathPart]:
             far = end * s.limits.high
             legs: list[Move | Hold] = [Move(-far, brisk), Hold(0.3), Move(far, speed), Hold(0.3)]
             text = (
-                f"creep {way}, one way, over {s.show(whole, 'position')} at "
-                f"{s.show(speed, 'velocity')}"
+                f"move slowly {way} over {s.show(whole, 'position')} at {s.show(speed, 'velocity')}"
             )
             yield _part(s, text, [*legs, Move(0.0, brisk)])
 
@@ -144,7 +145,7 @@ def _two_speeds(s: Setting) -> Iterator[PathPart]:
         for speed in (fast, slow):
             legs += [Move(reach, speed), Move(-reach, speed), Move(0.0, speed)]
         text = (
-            f"run the same path of {s.show(2 * reach, 'position')} at {s.show(fast, 'velocity')} "
+            f"move along one path of {s.show(2 * reach, 'position')} at {s.show(fast, 'velocity')} "
             f"and at {s.show(slow, 'velocity')}"
         )
         yield _part(s, text, legs)
@@ -162,8 +163,8 @@ def _starts_after_rest(s: Setting) -> Iterator[PathPart]:
             legs += [Move(0.5 * reach, speed), Hold(rest), Move(reach, speed), Hold(rest)]
             legs += [Move(0.0, speed), Hold(rest)]
         text = (
-            f"start anew after rests of 0.05, 0.2 and 0.8 s, on the same way and back, in moves of "
-            f"{s.show(0.5 * reach, 'position')} at {s.show(speed, 'velocity')}"
+            f"start after rests of 0.05, 0.2 and 0.8 s, in the same direction and back, in moves "
+            f"of {s.show(0.5 * reach, 'position')} at {s.show(speed, 'velocity')}"
         )
         yield _part(s, text, legs)
 
@@ -176,7 +177,7 @@ def _steps(s: Setting) -> Iterator[PathPart]:
         legs: list[Move | Hold] = []
         for to in (0.6, -0.4, 1.0, -1.0, 0.3, -0.6, 0.0):
             legs += [Move(to * size, s.limits.speed), Hold(0.3)]
-        yield _part(s, f"step between places up to {s.show(2 * size, 'position')} apart", legs)
+        yield _part(s, f"step between positions up to {s.show(2 * size, 'position')} apart", legs)
 
 
 def _places(s: Setting) -> Iterator[PathPart]:
@@ -191,8 +192,8 @@ def _places(s: Setting) -> Iterator[PathPart]:
             legs += [Move(at, brisk), Move(at + small, speed), Move(at - small, speed)]
             legs += [Move(at, speed)]
         text = (
-            f"run over {s.show(2 * small, 'position')} at {s.show(speed, 'velocity')} at either "
-            "end of the stroke and in its middle"
+            f"move over {s.show(2 * small, 'position')} at {s.show(speed, 'velocity')} at both "
+            "ends of the stroke and in its middle"
         )
         yield _part(s, text, [*legs, Move(0.0, brisk)])
 
@@ -207,8 +208,8 @@ def _grow_amplitude(s: Setting) -> Iterator[PathPart]:
         y = with_window(grown * np.sin(2 * np.pi * 1.5 * t), ramp=0.3, sample_time=s.sample_time)
         y *= min(1.0, largest_factor(y, s.limits, sample_time=s.sample_time))
         text = (
-            f"swing at 1.5 Hz with an amplitude that grows from {s.show(smallest, 'position')} to "
-            f"{s.show(float(np.abs(y).max()), 'position')}"
+            f"oscillate at 1.5 Hz with an amplitude that grows from {s.show(smallest, 'position')} "
+            f"to {s.show(float(np.abs(y).max()), 'position')}"
         )
         yield PathPart(text, y)
 
@@ -220,7 +221,6 @@ def _repeat_path(s: Setting) -> Iterator[PathPart]:
     reach = _reach(s, speed, 0.5 * ABOUT)
     times = max(1, round(s.repeated * speed / (4 * reach)))
     legs: list[Move | Hold] = [Move(reach, speed), Move(-reach, speed)] * times
-    text = (
-        f"{_describe_back_and_forth(s, reach, speed)} for {s.show(s.repeated, 'time')}, from cold"
-    )
+    there = _describe_back_and_forth(s, reach, speed)
+    text = f"{there} for {s.show(s.repeated, 'time')}, from a cold start"
     yield _part(s, text, [*legs, Move(0.0, speed)])

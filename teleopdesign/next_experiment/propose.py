@@ -50,7 +50,7 @@ def propose(
     raises ModelError: limits of a body that the experiment has not
     """
     say = progress or (lambda _: None)
-    say("finding what is left open")
+    say("searching for effects that the records leave open")
     rivals = rivals_of(diagnosis)
     kept = _merge_limits(diagnosis, limits or {})
     bench = _bench(diagnosis, kept)
@@ -58,7 +58,7 @@ def propose(
         return _finish_proposal(diagnosis, rivals, kept, bench)
     setting = _make_setting(diagnosis, rivals, bench)
     parts = family(setting)
-    say(f"trying {len(parts)} motions")
+    say(f"simulating {len(parts)} motions")
     candidates = try_parts(
         parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed
     )
@@ -73,7 +73,7 @@ def propose(
     }
     predictions = []
     for i, rival in enumerate(rivals):
-        say(f"predicting what follows if {rival} is right")
+        say(f"predicting records with {rival} as the true effect")
         predictions.append(predict(i, rivals, plan, bench, present, seed=seed + 1))
     proposal = Proposal(
         diagnosis=diagnosis,
@@ -88,7 +88,7 @@ def propose(
         bench=bench,
         plan=plan,
     )
-    say("trying other set-ups")
+    say("simulating changes of the set-up")
     return sentence_of(replace(proposal, remedies=_remedies(proposal, candidates, setting, seed)))
 
 

@@ -40,7 +40,7 @@ EVERY = 3
 class Remedy:
     """A change of the set-up, and the separation of a pair with this change (noise floors).
 
-    change: in words that end "... if";  separation: along the best part, in the worse order
+    change: a clause, what is changed;  separation: along the best part, in the worse order
     """
 
     change: str
@@ -122,7 +122,7 @@ def setups(
         )
         sensor = bench.sensors.get(interaction, Sensor(noise=SENSOR_NOISE * force))
         yield ChangedSetUp(
-            f"a hand pushes the {place} with {force:.2g} {unit_of('force', axis)} (rms) and that "
+            f"a hand pushes the {place} with {force:.2g} {unit_of('force', axis)} (rms) and the "
             "force is measured",
             replace(bench, push={place: force}, sensors={**bench.sensors, interaction: sensor}),
             setting,
@@ -138,7 +138,7 @@ def _finer(
     step = None if channel.resolution is None else channel.resolution / FINER
     channels = {**bench.experiment.channels, name: replace(channel, resolution=step)}
     return ChangedSetUp(
-        f"the position of the {place} is read {FINER:g} times finer",
+        f"the position sensor of the {place} is {FINER:g} times finer",
         replace(
             bench,
             experiment=replace(bench.experiment, channels=channels),
@@ -162,8 +162,8 @@ def _remedies_by_knowledge(pair: tuple[Rival, Rival], along: Sums, back: Sums) -
             _with_known(pair[0], pair[1], along, names),
             _with_known(pair[1], pair[0], back, names),
         )
-        what = names[0] if len(names) == 1 else "every parameter that both have"
-        listed.append(Remedy(f"{what} is known from elsewhere", min(both)))
+        what = names[0] if len(names) == 1 else "every parameter that both models have"
+        listed.append(Remedy(f"{what} is known from another source", min(both)))
     return listed
 
 

@@ -32,7 +32,7 @@ def _sentences(proposal: Proposal) -> list[str]:
     if not proposal.rivals:
         return [_explain_nothing_open(proposal)]
     if proposal.reference is None:
-        return ["No motion that was tried keeps within the limits: none is proposed."]
+        return ["All candidate motions exceed the limits, so no motion is proposed."]
     said = []
     pairs = list_pairs_once(proposal)
     decided = [p for p in pairs if proposal.decides(p)]
@@ -46,8 +46,9 @@ def _sentences(proposal: Proposal) -> list[str]:
     said += [_describe_rest(proposal, p) for p in left_open]
     if proposal.diagnosis.more_is_missing:
         said.append(
-            f"None of these models explains the present records: {proposal.diagnosis.left:.1f} "
-            "noise floors are left, and the true effect may be none of them."
+            "None of these models explains the present records: an error of "
+            f"{proposal.diagnosis.left:.1f} noise floors remains, so the true effect may be none "
+            "of them."
         )
     return said
 
@@ -55,9 +56,10 @@ def _sentences(proposal: Proposal) -> list[str]:
 def _explain_nothing_open(proposal: Proposal) -> str:
     if proposal.diagnosis.verdict == "undecided":
         return (
-            "No effect tried helps, so there are no rivals to tell apart and no motion is proposed."
+            "No candidate effect lowers the error: there are no rivals to distinguish, and no "
+            "motion is proposed."
         )
-    return "The present records decide: no rival is left to tell apart."
+    return "The present records decide: no rival is left to distinguish."
 
 
 def list_pairs_once(proposal: Proposal) -> list[tuple[int, int]]:
@@ -75,12 +77,12 @@ def _describe_motion(proposal: Proposal) -> str:
     reference = proposal.reference
     assert reference is not None
     all_bodies = " and the ".join(reference.position)
-    times = {1: "", 2: ", the whole twice over"}.get(
-        reference.repeats, f", the whole {reference.repeats} times over"
+    times = {1: "", 2: ", and all of this twice"}.get(
+        reference.repeats, f", and all of this {reference.repeats} times"
     )
     return (
-        f"Let the {all_bodies} follow the reference ({reference.duration:.1f} s), no hand on it "
-        f"and nothing in its way, twice: one record to fit, one to check. It will "
+        f"Let the {all_bodies} follow the reference ({reference.duration:.1f} s) twice, with no "
+        f"hand and no contact: one record to fit, one to check. The {all_bodies} will "
         f"{', then '.join(reference.parts)}{times}."
     )
 
@@ -88,10 +90,10 @@ def _describe_motion(proposal: Proposal) -> str:
 def _describe_count(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
     both = [s for p in decided for s in select_pair(proposal, p)]
     return (
-        f"That tells {len(decided)} of {len(list_pairs_once(proposal))} pairs of "
-        "rivals: the wrong one "
-        f"of each then leaves {min(s.predicted for s in both):.1f} to "
-        f"{max(s.predicted for s in both):.1f} noise floors more than sensors do (now "
+        f"This motion distinguishes {len(decided)} of {len(list_pairs_once(proposal))} pairs of "
+        "rivals: the wrong effect "
+        f"of each pair then leaves {min(s.predicted for s in both):.1f} to "
+        f"{max(s.predicted for s in both):.1f} noise floors beyond sensor noise (now "
         f"{min(s.present for s in both):.2f} to {max(s.present for s in both):.2f})."
     )
 
@@ -100,8 +102,8 @@ def _describe_gain(proposal: Proposal, pair: tuple[int, int]) -> str:
     first, second = select_pair(proposal, pair)
     return (
         f"If {first.truth} is right, {first.other} then leaves {first.predicted:.1f} noise floors "
-        f"more than sensors do (now {first.present:.2f}); if {second.truth} is right, "
-        f"{second.other} leaves {second.predicted:.1f} (now {second.present:.2f})."
+        f"beyond sensor noise (now {first.present:.2f}). If {second.truth} is right, "
+        f"{second.other} then leaves {second.predicted:.1f} (now {second.present:.2f})."
     )
 
 
@@ -109,9 +111,9 @@ def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     a, b = (proposal.rivals[i] for i in pair)
     most = min(s.predicted for s in select_pair(proposal, pair))
     said = (
-        f"No motion tried within the limits separates {a} from {b}: {most:.2f} noise floors, "
-        f"{min(s.present for s in select_pair(proposal, pair)):.2f} on the present records, "
-        "where 1 is clear."
+        f"No candidate motion within the limits distinguishes {a} from {b}: the separation is "
+        f"{most:.2f} noise floors, and {min(s.present for s in select_pair(proposal, pair)):.2f} "
+        "on the present records, where 1 is clear."
     )
     remedies = proposal.remedies.get(pair, ())
     if not remedies:
@@ -129,14 +131,14 @@ def _remedies_said(remedies: Sequence[Remedy]) -> str:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])
         more = len(helping) - MOST_SAID
         others = f"; or in {more} other ways (`Proposal.remedies`)" if more > 0 else ""
-        return f"In simulation, it would be identified if {listed}{others}."
+        return f"In simulation, the true one would be identified if {listed}{others}."
     changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)
     if all(r.separation < SAME for r in remedies):
         return (
-            f"Nor would it help if {changes}. Along all of them the two need the same force: which "
-            "it is, only knowledge of the device can say."
+            f"None of these changes helps: {changes}. With each of them both effects need the same "
+            "force, and only knowledge of the device can say which effect is there."
         )
-    return f"It would not be enough if {changes}."
+    return f"None of these changes is sufficient: {changes}."
 
 
 def proposal_text(proposal: Proposal) -> str:

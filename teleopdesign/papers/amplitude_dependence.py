@@ -75,8 +75,8 @@ def degrees_lost() -> Numbers:
     numbers=degrees_lost,
 )
 def phase_per_decade() -> Correction:
-    """Mass with Coulomb friction loses at most 54.9 deg of phase per decade of amplitude, so the
-    90 deg that were seen need something else, a wider range, or loose words.
+    """A mass with Coulomb friction loses at most 54.9 deg of phase per decade of amplitude. So the
+    observed 90 deg need another effect, a wider range, or an inexact statement.
     """
     more, q = sp.symbols("more q", positive=True)  # r = 1 + more;  r = q^2
     steep = sp.diff(LOSS, y)
@@ -156,8 +156,8 @@ def remaining_impedance(
     printed="a dip near 2 mm, without its cause",
 )
 def minimum_over_amplitude() -> Numbers:
-    """Why compensated impedance has a minimum over amplitude: the schedule of H lets it rise
-    again; for cancellation alone it takes over-compensation, and the rise is tiny.
+    """Why the compensated impedance has a minimum over amplitude: with the schedule of H it rises
+    again. With cancellation alone it rises only under over-compensation, and the rise is tiny.
     """
     grid = np.geomspace(1e-4, 1.0, 1500)
     exact = remaining_impedance(grid, share=1.0, smoothing=0.005, frequency=5.0)
@@ -208,7 +208,7 @@ def minimum_over_amplitude() -> Numbers:
     printed="bandwidth of H: 2 Hz with digits lost, 20 Hz (0.8 sure)",
 )
 def bandwidth_of_force_feedback() -> Numbers:
-    """Which bandwidth of H fits the measured slope and phase."""
+    """The bandwidth of H that fits the measured slope and phase."""
     hybrid = four_cases(world_haptics_2005())["hybrid"]
     bare = hybrid.with_values({"C.smoothed_coulomb.level": 0.0})
     level, mass = read_open_number("coulomb_level"), read_open_number("mass")

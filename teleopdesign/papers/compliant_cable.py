@@ -42,7 +42,7 @@ def coupling(x: tuple[sp.Expr, sp.Expr], v: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
     formula="f_D <= f_1 is enough, whatever k, f_2, masses and environment",
 )
 def motor_side() -> ProofSteps:
-    """Compensation within the friction of the measured contact keeps the two-body joint passive
+    """Compensation of at most the friction of the measured contact keeps the two-body joint passive
     for any environment.
     """
     x1, x2, force = sp.symbols("x_1 x_2 f_dahl", real=True)
@@ -98,8 +98,8 @@ def rising_gain() -> list[ProofStep]:
     "f_D (1 - tanh(u)/u) <= f_1, u = sigma_D A/f_D",
 )
 def clamped_link() -> ProofSteps:
-    """What is necessary where the environment may clamp the link; for a limited stroke, of plain
-    cycles: see P56.
+    """Necessary condition where the environment may clamp the link. For a limited stroke the
+    condition is that of plain cycles, see P56.
     """
     released = CLAMPED.subs(A, u * f_D / sigma)
     return proof(
@@ -121,8 +121,9 @@ def clamped_link() -> ProofSteps:
     "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
 )
 def free_link() -> ProofSteps:
-    """Free link held by its own friction only, plain quasi-static cycles of the motor of any
-    amplitude: the cable's stiffness limits the compensator's. Other motions: see P56.
+    """Free link held by its own friction only, with plain quasi-static cycles of the motor of any
+    amplitude: the stiffness of the cable limits the stiffness of the compensator. For other motions
+    see P56.
     """
     spare, more, soft, over = sp.symbols("spare more soft over", nonnegative=True)
     bound = k * sp.sqrt(3 * f_1 * f_D) / f_2
@@ -176,9 +177,9 @@ def free_link() -> ProofSteps:
     "sigma_D large enough; a clamped link breaks it at any sigma_D",
 )
 def relieving_the_far_contact() -> ProofSteps:
-    """Over-compensating the motor's contact to relieve the far one leaves plain slow cycles without
-    gain only with a soft compensator, and only against environments that do not clamp the link.
-    Other motions may give out all the same, see P56.
+    """Over-compensation of the motor's contact relieves the far contact. Plain slow cycles then
+    release no energy only if the compensator is soft and the environment does not clamp the link.
+    Other motions may still release energy, see P56.
     """
     excess = sp.Symbol("excess", positive=True)
     soft = k * sp.sqrt(3 * f_1 * f_D) / f_2
@@ -212,7 +213,7 @@ journal_version = claim(
     paper=MAHVASH,
     place="later version: IEEE Trans. Robotics 23 (2007) 1240",
     words="Passivity conditions for a feedforward Dahl compensator with a compliant "
-    "transmission; their exact "
-    "inequalities could not be read, and P53 to P57 are not theirs.",
+    "transmission. The exact inequalities of that paper could not be read, and P53 to P57 are not "
+    "those of that paper.",
     see=(53, 54, 55),
 )

@@ -29,8 +29,8 @@ crossed = sp.Symbol("k_12_k_21", nonnegative=True)
     numbers=closed_paths,
 )
 def coupling_stiffness() -> ProofSteps:
-    """When a multi-axis coupling is an ideal spring, and which coordinates of orientation may be
-    used.
+    """Condition for a multi-axis coupling to be an ideal spring, and the permitted coordinates of
+    orientation.
     """
     p = sp.Matrix(2, 2, sp.symbols("p_11 p_12 p_21 p_22", real=True))
     angle = sp.Symbol("angle", real=True)

@@ -29,7 +29,7 @@ def step_upwards(step: sp.Expr) -> sp.Expr:
     printed="sigma (1 - (f/f_c) sgn v)^alpha, right only for abs(f) <= f_c or odd alpha",
 )
 def general_exponent() -> ProofSteps:
-    """The Dahl model with any exponent, also outside of its level."""
+    """The Dahl model with any exponent, also for forces outside of its level."""
     base = sp.Symbol("base", positive=True)  # 1 - (f/f_c) sgn v, positive inside
     alpha = sp.Symbol("alpha", positive=True)
     printed, safe = base**alpha, sp.Abs(base) ** alpha * sp.sign(base)
@@ -122,7 +122,7 @@ def pole_of_forward_euler() -> Correction:
     printed='"unstable at high velocity": stability ends at q = 2, the bound already at q = 1',
 )
 def bound_of_forward_euler() -> ProofSteps:
-    """The bound that passivity rests on fails at half the speed at which the step diverges."""
+    """The bound that passivity needs fails at half the speed at which the step diverges."""
     step = step_upwards(FORWARD)
     slow = sp.Symbol("slow", nonnegative=True)  # 1 - q
     signs = {**LEVELS, slow: 1 - q}

@@ -59,7 +59,7 @@ def sampled_compensator() -> Numbers:
     numbers=sampled_compensator,
 )
 def exact_step() -> ProofSteps:
-    """The exact step: for any speed profile that does not turn within the sample; it keeps abs(f)
+    """The exact step, for any speed profile without a reversal within the sample. It keeps abs(f)
     <= f_c for every sequence of positions and never diverges.
     """
     steps: list[ProofStep] = []
@@ -106,8 +106,8 @@ def exact_step() -> ProofSteps:
     how="refuted",
 )
 def sign_of_the_travel() -> Correction:
-    """Forward by d1, then back by more within one sample: with the old velocity's sign the force
-    moves the wrong way; with the sign of the travel the error is bounded.
+    """Motion forward by d1, then back by more within one sample. With the sign of the old velocity
+    the force changes in the wrong direction; with the sign of the travel the error is bounded.
     """
     back, small, t1, acc, early = sp.symbols("back small t_1 a early", positive=True)
 

@@ -30,8 +30,8 @@ ENERGY = 2 * sp.integrate(RISING, (x, -A, A))  # the falling half is the point m
     formula="rising: f_c (1 - exp(-x/lambda)/cosh u), falling: its point mirror; peak f_c tanh u",
 )
 def steady_loop() -> ProofSteps:
-    """Steady loop of amplitude A; any start converges to it, wherever its centre, so Dahl friction
-    forgets offsets and drifts under small biased oscillation.
+    """Steady loop of amplitude A. Any start converges to this loop, wherever its centre is. So Dahl
+    friction forgets offsets and drifts under small biased oscillation.
     """
     shape = f_c * (1 - sp.exp(-sigma * x / f_c) / sp.cosh(sigma * A / f_c))
     end = dahl_step(f, 2 * A, 1, f_c, sigma)
@@ -59,8 +59,8 @@ def steady_loop() -> ProofSteps:
     formula="W(A) = 4 f_c A (1 - tanh(u)/u)",
 )
 def energy_per_cycle() -> ProofSteps:
-    """Energy that a steady cycle dissipates: as the cube of the amplitude when small, 4 f_c (A -
-    lambda) when large.
+    """Energy that a steady cycle dissipates: proportional to the cube of a small amplitude, 4 f_c
+    (A - lambda) for a large amplitude.
     """
     scaled = ENERGY.subs(SCALED) * sigma / f_c**2  # in units of f_c lambda
     form = 4 * f_c * A * (1 - f_c / (sigma * A) * sp.tanh(sigma * A / f_c))
@@ -99,8 +99,8 @@ def power() -> ProofSteps:
     "sigma_1 = sigma_2 = 0 too",
 )
 def relatives() -> ProofSteps:
-    """Hayward-Armstrong friction with constant alpha, and LuGre with constant level and no
-    damping, are Dahl; alpha = 0 near rest removes the drift.
+    """Hayward-Armstrong friction with constant alpha, and LuGre with constant level and no damping,
+    are Dahl friction. alpha = 0 near rest removes the drift.
     """
     alpha, damping, extra, scale = sp.symbols("alpha sigma_1 F_SC v_S", positive=True)
     velocity = sp.Symbol("v", real=True)

@@ -35,8 +35,8 @@ LATE_FRICTION = work_over_cycle(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - 
     assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
 )
 def late_friction() -> ProofSteps:
-    """A late friction compensator gives out less: it under-compensates and pushes against the
-    motion after a reversal, which is felt, but dissipates.
+    """A late friction compensator releases less energy: it under-compensates and pushes against the
+    motion after a reversal. A user feels this push, but it dissipates.
     """
     k = sp.Symbol("k", integer=True, positive=True)
     shift, c = sp.Symbol("shift", real=True), sp.Symbol("c", positive=True)
@@ -99,8 +99,8 @@ def late_friction() -> ProofSteps:
     printed="motion-based cancellation suffers from delay, seen as limit cycles at reversal",
 )
 def late_inertia() -> ProofSteps:
-    """Cancelling inertia with any delay gives out energy; a late friction compensator within the
-    level of ideal Coulomb friction does not: limit cycles have another source.
+    """Cancellation of inertia with any delay releases energy. A late friction compensator within
+    the level of ideal Coulomb friction releases none, so limit cycles have another source.
     """
     work = work_over_cycle(mass * -A * omega**2 * sp.sin(angle - late))
     less = sp.Symbol("less", nonnegative=True)
@@ -136,7 +136,9 @@ def least_damping() -> Numbers:
     numbers=least_damping,
 )
 def late_stiffness() -> ProofSteps:
-    """Damping that a late Dahl compensator needs in small motion, where it is a negative spring."""
+    """Damping that a late Dahl compensator needs in small motion, where the compensator is a
+    negative spring.
+    """
     s = sp.Symbol("s")
     sigma_p, sigma_D, B, x, v = sp.symbols("sigma_p sigma_D B x v", positive=True)
     z = B + (sigma_p - sigma_D * sp.exp(-s * tau)) / s  # force per velocity

@@ -163,8 +163,8 @@ def dahl_friction() -> ProofSteps:
     printed="16 dB/decade and f^-0.8, with digits lost",
 )
 def slope_over_frequency() -> ProofSteps:
-    """Coulomb friction on a sweep of falling amplitude; at constant velocity amplitude it cannot
-    be told from a damper.
+    """Coulomb friction on a sweep of falling amplitude. At constant velocity amplitude it is
+    indistinguishable from a damper.
     """
     freq, p, c, omega, B = sp.symbols("freq p c omega B", positive=True)
     size = first_harmonic(coulomb(v, F_C)) / (c * freq**-p)

@@ -22,8 +22,8 @@ SLOPE = sp.diff(UP, v)
     printed="digits of a are lost: 5, 15, 50 or 150 mm/s; no result here depends on it",
 )
 def smoothed_friction() -> ProofSteps:
-    """Smoothed Coulomb friction is odd, increasing, below F_C and steepest at 0 with slope F_C/a;
-    what it leaves of Coulomb friction has the shape of the schedule of H.
+    """Smoothed Coulomb friction is odd, increasing, below F_C and steepest at 0 with slope F_C/a.
+    The Coulomb friction that remains after its cancellation has the shape of the schedule of H.
     """
     left = coulomb(v, F_C) - UP
     return proof(
@@ -48,8 +48,8 @@ def smoothed_friction() -> ProofSteps:
     printed="digits of k and b are lost (5, 15, 50; 8, 80, 18, 180, 800 mm/s)",
 )
 def residual_friction_of_the_hybrid() -> ProofSteps:
-    """Friction that the hybrid leaves in quasi-static motion, and when slow motion feels more of
-    it.
+    """Friction that remains with the hybrid in quasi-static motion, and when slow motion has more
+    of it.
     """
     r = (coulomb(v, F_C) - UP) / (1 + schedule(v, k, b))
     falls = b * (1 + k) - a * k
@@ -87,7 +87,9 @@ def residual_friction_of_the_hybrid() -> ProofSteps:
     printed="does not say whether the schedule acts before the low-pass or after it",
 )
 def place_of_the_schedule() -> ProofSteps:
-    """Schedule before or after the filter: the same at constant speed, not when speed changes."""
+    """A schedule before the filter and one after it are the same at constant speed, but not when
+    speed changes.
+    """
     orders = [
         scheduled_force_feedback(gain=1, scheduling_velocity=1, bandwidth=1, schedule=order)
         for order in ("before", "after")
@@ -125,8 +127,8 @@ def place_of_the_schedule() -> ProofSteps:
     printed="digits of g, z and p are lost; K is not recovered",
 )
 def position_loop_against_friction() -> ProofSteps:
-    """A position loop that is too soft at zero frequency leaves the rod stuck under a slow
-    reference; for a lead the condition at zero frequency is the strictest.
+    """With a position loop that is too soft at zero frequency the rod stays stuck under a slow
+    reference. For a lead the condition at zero frequency is the strictest.
     """
     g, z, d, w, part = sp.symbols("g z d omega part", positive=True)
     p = z + d  # a lead: the pole lies beyond the zero

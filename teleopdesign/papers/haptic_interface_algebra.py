@@ -105,7 +105,7 @@ def force_feedback() -> ProofSteps:
     printed="inverses and minus sign are missing in the available text",
 )
 def hybrid() -> ProofSteps:
-    """Desired force to force on the hand, with both: as if the mechanism were Zhat_M."""
+    """Desired force to force on the hand, with both: the device acts like a mechanism Zhat_M."""
     form = ((Z_M - C) * Z_H**-1 + GAMMA) ** -1 * GAMMA
     return proof(
         BlocksEqual("the wiring with C and H", T["T_H"], form),
@@ -139,7 +139,7 @@ def apparent_impedance() -> ProofSteps:
     formula="L = (Zhat_M + Z_H + K)^-1 (K L_D + R_V);  Zhat_M = (R_D - R_M)/L",
 )
 def position_loop() -> ProofSteps:
-    """In the position loop a load enters the loop, but not the impedance that is measured in it."""
+    """In the position loop a load changes the loop, but not the impedance measured in the loop."""
     closed = (ZHAT_M + Z_H + K) ** -1
     return proof(
         BlocksEqual("response to the reference", T["L/L_D"], closed * K),
@@ -156,7 +156,7 @@ def position_loop() -> ProofSteps:
     formula="R_D = 0: R_M = -Zhat_M L,  L = (Zhat_M + Z_H)^-1 R_V",
 )
 def free_space() -> ProofSteps:
-    """What a hand feels in free space is the apparent impedance: it is the transparency error."""
+    """In free space a hand feels the apparent impedance, which is the transparency error."""
     felt = transfer(FORCE, "R_M", ("L",), given="L")["L"]
     moved = transfer(FORCE, "L", ("R_V",))["R_V"]
     return proof(
@@ -208,7 +208,7 @@ def limits() -> ProofSteps:
     printed="less than unity if Gamma has the sign of X: the case of real values",
 )
 def size_of_force_feedback() -> ProofSteps:
-    """One degree of freedom: when the force on the hand is no larger than the desired one."""
+    """One degree of freedom: condition for a force on the hand no larger than the desired force."""
     re, im = sp.symbols("re im", real=True)
     gamma, ratio = sp.symbols("gamma ratio")
     y = sp.Symbol("y", positive=True)
@@ -238,7 +238,7 @@ def size_of_force_feedback() -> ProofSteps:
     formula="FF: 1 + H (I + Z_M Z_H^-1)^-1;  MBC: 1 - C (Z_H + Z_M)^-1",
 )
 def loops() -> ProofSteps:
-    """Loops that must stay stable: force feedback, and motion-based cancellation, positive
+    """Loops that must stay stable: force feedback, and motion-based cancellation, a positive
     feedback.
     """
     m, m_h, h, s = sp.symbols("m m_H h s", positive=True)

@@ -85,8 +85,8 @@ def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
     printed="the proof of the paper supposes ideal Coulomb friction at the measured coordinate",
 )
 def matched_bristles() -> ProofSteps:
-    """Dahl friction compensated by a Dahl compensator on the same position: exactly when the pair
-    is passive.
+    """Dahl friction with a Dahl compensator on the same position: necessary and sufficient
+    condition for a passive pair.
     """
     signs = {LOWER: LEVELS, SOFTER: RATIOS}
     size = sp.Symbol("size", nonnegative=True)  # abs(p - d)
@@ -137,8 +137,8 @@ def matched_bristles() -> ProofSteps:
     formula="sufficient: f_D <= F_min and sigma_D^2/f_D <= sigma_p^2/F_max",
 )
 def varying_level() -> ProofSteps:
-    """The plant's level may vary in any way between F_min and F_max (speed, position, load,
-    drift): compensate the lowest level that can occur.
+    """The friction level of the plant may vary in any way between F_min and F_max (speed, position,
+    load, drift): compensate the lowest level that can occur.
     """
     level, least, most = sp.symbols("F F_min F_max", positive=True)
     up, under = sp.symbols("up under", nonnegative=True)
@@ -166,8 +166,8 @@ def varying_level() -> ProofSteps:
     assumes="that the condition is also necessary is theirs and is not shown here",
 )
 def bristle_damping() -> ProofSteps:
-    """LuGre friction: what bristle damping adds, and when it is passive by itself with the energy
-    of its bristle stored.
+    """LuGre friction: the effect of bristle damping, and the condition for passivity by itself with
+    the energy of the bristle as storage.
     """
     s0, s1, s2, extra, scale, level, FS = sp.symbols(
         "sigma_0 sigma_1 sigma_2 F_SC v_S g F_S", positive=True
@@ -214,8 +214,8 @@ def bristle_damping() -> ProofSteps:
     formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
 )
 def stiff_compensator() -> ProofSteps:
-    """A compensator stiffer than the plant gives out energy in small motion even far below its
-    level; a lower sigma_D cures it, a lower f_D makes it worse.
+    """A compensator stiffer than the plant releases energy in small motion, even with a level far
+    below that of the plant. A lower sigma_D stops the release, a lower f_D increases it.
     """
     released = small_cycles(fD, sD) - small_cycles(fC, sP)
     stiffer, share = sp.symbols("stiffer share", positive=True)

@@ -67,9 +67,9 @@ def least_damping(block: sp.Expr) -> sp.Expr:
     "for blocks whose pole at z = 1, if any, a spring of the body covers",
 )
 def held_blocks() -> ProofSteps:
-    """Damping with which no steady oscillation at any frequency takes energy out of a sampled
-    block with zero-order hold: a Dahl compensator near rest, a negative spring beside a stiffer
-    one, needs none, but delay of its computer does.
+    """Damping with which no steady oscillation at any frequency takes energy out of a sampled block
+    with zero-order hold. A Dahl compensator near rest, a negative spring beside a stiffer spring,
+    needs no damping; a delay of its computer needs damping.
     """
     jump = UNIT - 1
     h, g = sp.symbols("h_re h_im", real=True)
@@ -216,8 +216,9 @@ def controlled_port() -> Numbers:
     numbers=controlled_port,
 )
 def observer() -> ProofSteps:
-    """At a sample with v != 0 a damper makes up a deficit of the sampled energy exactly; friction
-    counted below its level leaves the budget on the safe side, counted above it does not.
+    """At a sample with v != 0 a damper recovers a deficit of the sampled energy exactly. With
+    friction counted below its level the budget is on the safe side, with friction counted above its
+    level it is not.
     """
     energy, v = sp.symbols("E v", real=True, nonzero=True)
     deficit, w, counted = sp.symbols("deficit w f_counted", positive=True)

@@ -44,9 +44,9 @@ def pair_power(force: sp.Expr, velocity: sp.Expr) -> sp.Expr:
     "resisting force",
 )
 def saturated_compensator() -> ProofSteps:
-    """Ideal Coulomb friction with any compensator that stays within its level is passive at every
-    instant, with no stored energy; added to a passive teleoperator, joint by joint, it keeps it
-    passive.
+    """Ideal Coulomb friction with any compensator that stays within the friction level is passive
+    at every instant, with no stored energy. Such pairs, added to the joints of a passive
+    teleoperator, keep the teleoperator passive.
     """
     steps: list[ProofStep] = []
     for way in (1, -1):
@@ -81,9 +81,9 @@ def saturated_compensator() -> ProofSteps:
     "q = 3/2",
 )
 def only_saturation_counts() -> ProofSteps:
-    """From a force within its level, eq (9) stays within it whatever positions come next: late,
-    held, rounded or noisy ones. So do smoothed Coulomb friction and a force of the wrong sign, and
-    P37 covers them all. A step of forward Euler with q = 3/2 leaves the level, and gives out.
+    """From a force within its level, eq (9) stays within the level for any next positions: late,
+    held, rounded or noisy. So do smoothed Coulomb friction and a force of the wrong sign, and P37
+    covers all of them. A step of forward Euler with q = 3/2 leaves the level and releases energy.
     """
     above, below, rest = sp.symbols("above below rest", nonnegative=True)
     q = sp.Symbol("q", positive=True)
@@ -133,7 +133,7 @@ def only_saturation_counts() -> ProofSteps:
     "motions iff f_D <= f_C",
 )
 def unlimited_motion() -> ProofSteps:
-    """The bound is tight where motion is unlimited."""
+    """The bound is tight where the travel is unlimited."""
     s = sp.Symbol("s", positive=True)
     energy = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
     scale = f_D / sigma
@@ -204,8 +204,9 @@ def swing(ratio: float, bristle: float) -> float:
     numbers=needed_amplitude,
 )
 def limited_motion() -> ProofSteps:
-    """For plain cycles of limited amplitude the bound is not tight: a soft compensator hides
-    over-compensation until the motion is large. Steps at the reversals find it earlier, see P56.
+    """For plain cycles of limited amplitude the bound is not tight: with a soft compensator
+    over-compensation shows only in large motion. Steps at the reversals show over-compensation
+    earlier, see P56.
     """
     cycle = ENERGY.subs({LEVEL: f_D, STIFFNESS: sigma, AMPLITUDE: u * f_D / sigma})
     path = 4 * (u * f_D / sigma)
@@ -235,7 +236,7 @@ onset = claim(
     41,
     paper=MAHVASH,
     place="experiment",
-    words="Instability set in when f_D exceeded the identified Coulomb level of the prismatic "
+    words="Instability began when f_D exceeded the identified Coulomb level of the prismatic "
     "joint.",
     see=(39, 40),
 )
@@ -248,8 +249,8 @@ onset = claim(
     formula="f_D > f_C: speed tends to v* = (f_D - f_C)/B",
 )
 def damped_excess() -> ProofSteps:
-    """Viscous damping bounds what over-compensation can do: not passive, but self-motion stops
-    growing at v*.
+    """Viscous damping limits the effect of over-compensation: the device is not passive, but
+    self-motion stops growing at v*.
     """
     top = (f_C - f_D) / -B
     net = f_D - coulomb(w, f_C) - viscous(w, B)  # at w > 0, compensator at its level

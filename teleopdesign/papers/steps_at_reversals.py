@@ -113,8 +113,8 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
     numbers=stepping_motor,
 )
 def steps_at_reversals() -> Correction:
-    """The conditions of P55 are exact for plain cycles only: a step back and forth at the
-    reversals lets the bristle forget the last stroke, at the cost of little friction.
+    """The conditions of P55 are exact for plain cycles only. With a step back and forth at the
+    reversals the bristle forgets the last stroke, and little energy is lost to friction.
     """
     net = dithered_cycle()
     limit = 1 - sp.tanh(u) / u  # f_1 at the limit of P55

@@ -50,7 +50,9 @@ def free_space_force() -> Numbers:
     numbers=free_space_force,
 )
 def free_space() -> ProofSteps:
-    """What the user feels in slow free motion, both sides sliding, and how far the slave lags."""
+    """The force that the user feels in slow free motion with both sides sliding, and the lag of the
+    slave.
+    """
     f_Cm, f_Cs, f_Dm, f_Ds = sp.symbols("f_Cm f_Cs f_Dm f_Ds", positive=True)
     user = sp.Symbol("F_u", real=True)
     steps: list[ProofStep] = []
@@ -101,8 +103,8 @@ def contact_force() -> Numbers:
     numbers=contact_force,
 )
 def soft_contact() -> ProofSteps:
-    """What the user feels of a contact of stiffness k_e: the coupling spring in series is itself a
-    transparency error.
+    """The stiffness that the user feels in a contact of stiffness k_e: the coupling spring in
+    series is itself a transparency error.
     """
     k_e, f_Cs, f_Ds = sp.symbols("k_e f_Cs f_Ds", positive=True)
     felt = []
@@ -126,8 +128,8 @@ def soft_contact() -> ProofSteps:
     printed='"transparency plot", without a number to it',
 )
 def transparency_figures() -> Numbers:
-    """Force against displacement at the user's hand, laid over the environment's own: three
-    numbers that say how close they are.
+    """Force against displacement at the user's hand, compared with that of the environment: three
+    numbers state how close the two curves are.
     """
     ratio = ENVIRONMENT / STIFFNESS
     figures = []
@@ -171,10 +173,9 @@ bench = claim(
     65,
     paper=MAHVASH,
     place="experiment",
-    words="Force sensor at the slave's tip only to check; user force from the master's motor "
-    "current, so without the "
-    "master's friction and inertia; all forces over f_c, which comes from the force-velocity "
-    "curve of smooth motion; "
-    "sigma_D is the largest that does not oscillate.",
+    words="The force sensor at the slave's tip is for checks only. The user force comes from the "
+    "motor current of the master, so it lacks the master's friction and inertia. All forces are "
+    "divided by f_c, from the force-velocity curve of smooth motion. sigma_D is the largest value "
+    "without oscillation.",
     see=(43, 46, 62),
 )

@@ -44,10 +44,10 @@ class AvailableStorage(ByValue):
     storage: J, an axis for each force with a state, compensator first, from -level to level
     gain: energy released per travel in steady state, N; 0 where it is finite
     travel: m, of one move;  moves: how many were made
-    growth: what the storage still gained over the second half of the moves, J, where it gained most
-    coarse: largest storage on a grid of half the points, J: by about as much as it differs, that
-        of the grid may be off, to either side; the error falls as the points grow
-    round_trip: most energy per travel, N, that a round trip between two points gives out for ever
+    growth: largest increase of the storage over the second half of the moves, J
+    coarse: largest storage on a grid of half the points, J. Its difference from the largest
+        storage is about the error of the grid, to either side; more points lower this error
+    round_trip: most energy per travel, N, that a round trip between two points releases forever
     stroke: of that round trip, m
     """
 
@@ -65,8 +65,8 @@ class AvailableStorage(ByValue):
     def is_finite(self) -> bool:
         """Whether the storage is finite, within the tolerance of the grid: it has stopped to grow.
 
-        What still grows is less than the most that some motion takes out, and no round trip gives
-        out anything for ever.
+        The present growth is below the most energy that some motion takes out, and no round trip
+        releases energy forever.
         """
         still = _STILL_GROWING * float(self.storage.max()) + self.tolerance * self.travel
         return self.gain <= self.tolerance and self.growth <= still and not self.round_trip

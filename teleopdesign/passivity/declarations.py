@@ -1,9 +1,10 @@
 """Declarations of energy and bounds in a user's files, checked before a claim uses them.
 
-Effects and laws of the catalogue are held to their declarations by tests. What another file
-declares counts here only where the law itself shows it: a force of no states that is against the
-velocity for all values of its parameters, a force of the position alone, a law whose size is
-bounded by intervals. What nothing has checked is left open, and named.
+Tests check the declarations of the effects and laws in the catalogue. A declaration in another file
+counts only where the law itself shows it. This holds for a force without states that opposes the
+velocity for all values of its parameters, for a force that depends on position alone, and for a law
+whose size intervals bound. A declaration that nothing has checked leaves the claim open, and the
+claim names it.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Claims about every port of a diagram.
 
-They are exact where it is linear, by theorem where only friction and its cancellation are not, and
-else rest on a search for motions that release energy.
+The claims are exact where the diagram is linear. Where only friction and its cancellation are
+nonlinear, they follow from a theorem. All other claims rest on a search for motions that release
+energy.
 
-Controllers act in continuous time in what is proved; the search takes them as `computer` says.
+Proofs hold for controllers in continuous time; the search uses the sampling that `computer` states.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from .theorems.wave_channel import wave_claim
 @check_types
 @dataclass(frozen=True)
 class Search:
-    """How motions are sought; SI.
+    """Settings of the search for motions; SI.
 
     stroke, speed: largest, m or rad;  tries: how many motions;  computer: see `simulate`
     """
@@ -122,8 +123,8 @@ def composed_claim(
 ) -> TopicClaim | None:
     """The sum of parts on the same motions: linear rest, and friction with what cancels it.
 
-    Friction acts on a motion that the ports determine, beside their forces, so that energies add.
-    None where parts of another kind are there, or not each of them is proved.
+    Friction acts on a motion that the ports determine, in parallel with the forces of the ports, so
+    energies add. None where the diagram has other parts, or not every part is proved.
     """
     rest, proofs = diagram, []
     for pair in pairs:

@@ -33,7 +33,7 @@ class FrictionPair:
 
     @property
     def question(self) -> Question:
-        """What theorems are asked: values are exact, so that estimates are no question apart."""
+        """Question for the theorems: values are exact, so estimates need no separate question."""
         return Question(self.device, self.stage, estimates=False)
 
     @property
@@ -57,9 +57,9 @@ class FrictionPair:
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     """One for each body with friction whose cancellation, if any, is a law with a known bound.
 
-    A cancellation takes the body's motion, and its force acts on this body just as it is, and
-    on nothing else, through whichever sums. A level that reaches down to nothing leaves nothing to
-    cancel.
+    A cancellation takes the motion of the body. Its force acts unchanged on this body, and on
+    nothing else, through any sums. A friction level whose interval includes zero leaves no friction
+    to cancel.
     """
     pairs = []
     for part in diagram.blocks:

@@ -162,7 +162,7 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
 def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
     """Effects that may supply energy, or that no theorem on friction covers.
 
-    Those of a user that declare not to, where nothing has checked that, are among them.
+    Effects of a user that declare to supply no energy are included, if nothing has checked this.
     errors: standard errors of the parameters to either side
     """
     body = without_absent(body, surely=True)
@@ -175,11 +175,11 @@ def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) 
 def extend_to_device(
     claim: Claim, *, over: str, left: Sequence[str], declared: Sequence[str] = ()
 ) -> Claim:
-    """A claim about friction as one about its device: over which reach, and with all its effects.
+    """A claim about friction, extended to its device: reach, and all effects of the device.
 
     over: `FrictionInterval.over`;  left: effects that it leaves open
     declared: of these, which declare that they take energy, where nothing has checked that
-    What holds for friction alone is not known of a device with an effect that may supply energy.
+    What holds for friction alone stays open for a device with an effect that may supply energy.
     """
     if over != ANY_MOTION:
         claim = replace(claim, statement=f"{claim.statement} (levels over {over})")

@@ -1,7 +1,7 @@
 """Claims on linear diagrams at their ports: exact, or with dead times by waves and over frequency.
 
-What is refuted is so for all values nearby, too. What is proved, or has evidence, has no mode
-inside that grows by itself, though no port shows it from rest.
+A refuted claim is refuted for all nearby values, too. A diagram with a proof or with evidence has
+no internal mode that grows by itself, also none that no port shows from rest.
 """
 
 from __future__ import annotations

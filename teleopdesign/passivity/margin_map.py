@@ -1,9 +1,10 @@
 """Margins of a teleoperator's two-port over two of its values: numbers on the axis, no proof.
 
-At each pair of values the impedance matrix is computed at each frequency, delays exact, from the
-matrix that is derived once. Below zero some pair of passive terminations makes the teleoperator
-unstable, or a motion takes energy out. Above zero nothing is proved: frequencies between and beyond
-those of the grid, poles and residues are not looked at. `diagram_claims` judges a single point.
+The impedance matrix is derived once, and computed at each pair of values and each frequency, with
+exact delays. Where the margin is below zero, some pair of passive terminations makes the
+teleoperator unstable, or a motion takes energy out. A margin above zero proves nothing: frequencies
+between and beyond those of the grid, poles and residues are not checked. `diagram_claims` judges a
+single point.
 """
 
 from __future__ import annotations

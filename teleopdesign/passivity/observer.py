@@ -3,9 +3,9 @@
     E[n] = E[n-1] + f[n] (x[n+1] - x[n])          force held between samples: exact
     E[n] = E[n-1] + (f[n] + f[n+1])/2 (x[n+1] - x[n])    force sampled
 
-with the force ON the device along its motion. A device that began at rest has released energy
-where E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, who put a damper into each
-sample where it would: `passivity_controlled`.
+with the force ON the device along its motion. A device that began at rest has released energy where
+E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, add a damper to each sample in
+which E would fall below 0: `passivity_controlled`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Friction that depends on the path, not on the speed, integrated exactly along turning points.
 
-Each element resists: `leg` takes its force and a travel of one sign, and returns the force at the
-end and the work that the travel puts in. No time step, no approximation but rounding.
+Each element resists motion: `leg` takes the force of the element and a travel of one sign, and
+returns the force at the end and the work that the travel puts in. There is no time step, and
+rounding is the only error.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ class ZWidth(ByValue):
 
     wall_damping: B, N s/m, (n,);  stiffness: largest K >= 0, N/m, (n,); NaN where none is passive
     damping: b of the device, N s/m;  inertia: kg;  sample_time: s
-    verified: whether the exact test agrees just inside and just outside each limit
+    verified: whether the exact test confirms each limit, just inside and just outside
     """
 
     wall_damping: np.ndarray
@@ -81,7 +81,7 @@ def z_width(
 
     damping: b of the device, N s/m;  sample_time: T, s;  inertia: kg, for `ZWidth.width` alone
     delay: d, whole samples of computing time;  law: another H(z), linear in WALL_STIFFNESS and
-    WALL_DAMPING;  wall_damping: B to look at, default 0 to b
+    WALL_DAMPING;  wall_damping: values of B, default 0 to b
     """
     b, late = exact(damping), exact(sample_time)
     if b <= 0 or late <= 0:

@@ -1,4 +1,4 @@
-"""What is simulated at a point: a diagram with everything that `simulate` takes.
+"""The simulation at a point: a diagram with all arguments of `simulate`.
 
 A parameter is named as in `Diagram.values` ("C.dahl.level"), or is one of the simulation:
 

@@ -4,9 +4,9 @@
     measure("rms", signal="R_M")                  with its options
     lambda simulation: float(abs(simulation["E"]).max())
 
-A function takes what the point gave: the simulation where there is a duration, else the diagram, or
-what the model's function returned. It returns a number, a text, a mapping of names to such, or a
-labelled array.
+A function takes the result of the point: the simulation where there is a duration, else the diagram
+or the value that the model's function returned. The function returns a number, a text, a mapping of
+names to numbers or texts, or a labelled array.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """How simulated signals change with parameters: differences of simulations side by side.
 
-A slope is taken over five sizes of difference, each an eighth of the one before, and is read where
-two neighbours agree best. Too large a difference errs by curvature. Too small a one errs by
-rounding, and where an encoder rounds or motion sticks and slips, by jumps: there no two sizes
-agree, and their difference stands beside each slope.
+A slope is computed with five sizes of difference, each an eighth of the one before. The slope is
+read where two neighbouring sizes agree best. A difference that is too large has an error from
+curvature. A difference that is too small has an error from rounding. Where an encoder rounds, or
+motion sticks and slips, it has an error from jumps. There no two sizes agree, so the disagreement
+of the two sizes is given with each slope.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class SignalSlopes:
     """Signals and their slopes in parameters.
 
     time: (rows,), s;  signals: (signals, rows);  slopes: (parameters, signals, rows), SI
-    apart: (parameters, signals) rms by which the slopes of two sizes of difference are apart, over
+    apart: (parameters, signals) rms difference of the slopes of two sizes of difference, over
         the rms of the slope; 0 where the signal does not follow, inf where no two could be formed
     sizes: (parameters, signals) of the difference that is read, SI
     """

@@ -1,4 +1,4 @@
-"""One point of a study: the result of the model there, and what the measures make of that."""
+"""One point of a study: the result of the model at this point, and the measures of this result."""
 
 from __future__ import annotations
 
@@ -44,9 +44,10 @@ def evaluate(task: StudyTask, index: int) -> PointOutcome:
 
 
 def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointOutcome:
-    """What the measures make of a point.
+    """Measures of a point.
 
-    Whatever a model or a measure raises is the reason of a failure: one point never ends a study.
+    Any exception of a model or a measure becomes the reason of a failure: one point never ends a
+    study.
     """
     try:
         point = made()

@@ -1,8 +1,8 @@
 """Fingerprint of a study: one number, equal for equal model, axes and measures.
 
-Numbers and texts count by value. A function counts by its source, with what it uses of the same
-module and of what it encloses: a constant changed above it makes another study. Functions of
-installed packages count by their name; the versions stand beside.
+Numbers and texts count by value. A function counts by its source, together with all names of the
+same module, or of the enclosing function, that it uses: a changed constant above the function makes
+another study. Functions of installed packages count by name; the versions are stored separately.
 """
 
 from __future__ import annotations

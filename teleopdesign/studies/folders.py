@@ -1,7 +1,8 @@
 """Many recordings diagnosed: an answer file for each, kept from run to run.
 
-Each folder is a point whose number comes from its content, the search and the versions: a folder
-that is as it was is not diagnosed again, one that has changed or failed is.
+Each folder is a point of a study. The number of the point comes from the content of the folder, the
+search and the versions. So an unchanged folder is not diagnosed again; a folder that has changed or
+failed is.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ class FolderSearch:
 
 @dataclass(frozen=True, eq=False)
 class DiagnosedFolder(ByValue):
-    """What became of a folder.
+    """Result of the diagnosis of a folder.
 
     answer: its file;  verdict, missing: as the diagnosis says; "" where it failed
     before, after: check error of the model as stated and with what was added; NaN where it failed
@@ -79,7 +80,7 @@ def diagnose_folders(
     """Diagnose the experiment of every folder; each answer is written to the output folder.
 
     workers: processes; None: as many as the machine has cores, where that is faster
-    Finished folders are kept in the output folder: the same call goes on from there.
+    Finished folders are kept in the output folder: the same call continues from there.
     raises ExperimentError: two folders that are one, an output that cannot be written
     """
     chosen = FolderSearch() if search is None else search

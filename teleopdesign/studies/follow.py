@@ -87,7 +87,7 @@ class Target:
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """Where a search ended.
+    """Result of a search.
 
     values, errors: (p,) SI; errors NaN at ends of intervals, where not `is_determined`, and all of
         them where the slopes of one parameter are more than MOST_APART apart

@@ -1,7 +1,7 @@
-"""A first look at an HDF5 file in a separate process, which a damaged file may block or end.
+"""A trial reading of an HDF5 file in a separate process, which a damaged file may block or end.
 
-Damage can lead the HDF5 library, which is written in C, into a loop without end or into memory that
-is not there. Nothing in Python stops it; another process can be ended.
+In a damaged file the HDF5 library, which is written in C, may run into an endless loop or access
+invalid memory. Nothing in Python can stop the library, but a separate process can be ended.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ except Exception:
 
 
 def read_on_trial(path: str | Path, *, largest: float) -> None:
-    """Read an HDF5 file once in a process that is ended where it does not come to an end.
+    """Read an HDF5 file once in a separate process, which is ended if the reading does not end.
 
     largest: bytes of all data; of a file with more of it no data are read
     raises ExperimentError: the HDF5 library ends the process, or goes on without end

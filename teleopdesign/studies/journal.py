@@ -4,9 +4,9 @@
     9b00e1d7 {"form": "5c1...", "values": {...}}
     0c44e6f2 {"point": 17, "form": "5c1...", "values": [0.0123]}
 
-Each line is written at once and begins with its checksum (CRC-32): of a process that is killed, or
-of a disk that is full, at most the last line is broken, and it is cut off when the study goes on.
-Numbers are written with every digit that they have.
+Each line is written at once and begins with its checksum (CRC-32). If a process is killed, or a
+disk is full, at most the last line is broken. A broken line is removed when the study continues.
+Numbers are written with all their digits.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ class Journal:
         except OSError as error:
             raise ExperimentError(
                 f"{self.path}: cannot be written: {error.strerror}; {len(self.outcomes)} of "
-                f"{self.points} points are kept: the same study goes on from there"
+                f"{self.points} points are kept: the same study continues from there"
             ) from error
 
     def forget_failures(self) -> None:

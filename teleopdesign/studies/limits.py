@@ -52,9 +52,9 @@ class TuningLimit(ByValue):
         return {**CLAIMS, **LOOP_MARGINS}.get(self.name, "")
 
     def excess(self, value: float) -> float:
-        """How far a value is within the bound, in the unit of both; < 0: beyond it.
+        """Distance of a value from the bound, in the unit of both; < 0: beyond the bound.
 
-        -inf where the value is NaN: what could not be computed keeps no limit.
+        -inf where the value is NaN: a value that could not be computed violates every limit.
         """
         excess = self.bound - value if self.from_above else value - self.bound
         return float(excess) if not np.isnan(excess) else -np.inf

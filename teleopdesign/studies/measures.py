@@ -97,9 +97,9 @@ def _limit_cycle_amplitude(point: Point, *, signal: str, last: float) -> Amount:
 
 
 def _growth(point: Point, *, signal: str) -> Amount:
-    """growth of a swing: range in the last third of the simulation over the middle third, less 1
+    """growth of a motion: range in the last third of the simulation over the middle third, less 1
 
-    -1 where the swing has died out, infinite where signals grow beyond all bounds
+    -1 where the motion has died out, infinite where signals grow beyond all bounds
     """
     from .onset import growth_of
 
@@ -110,9 +110,9 @@ def _growth(point: Point, *, signal: str) -> Amount:
 def _onset(
     point: Point, *, parameter: str, low: float, high: float, signal: str, steps: int
 ) -> Amount:
-    """least value of a parameter, between low and high (> 0), at which a swing grows
+    """least value of a parameter, between low and high (> 0), at which a motion grows
 
-    by bisection of the logarithm; NaN where the swing grows at low already, or not at high
+    by bisection of the logarithm; NaN where the motion grows at low already, or not at high
     """
     from .onset import find_onset, growth
 

@@ -18,7 +18,7 @@ DIED_OUT = 1e-3
 def growth(simulated: Callable[[], Simulation], signal: str) -> float:
     """Range of the signal in the last third of the simulation over the middle third, less 1.
 
-    -1 where the swing has died out;  infinite where signals grow beyond all bounds
+    -1 where the oscillation has died out;  infinite where signals grow beyond all bounds
     """
     return growth_of(lambda: np.asarray(simulated()[signal].values))
 

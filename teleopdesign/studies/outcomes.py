@@ -20,7 +20,7 @@ _NOWHERE, _APART = 0, -1
 
 @dataclass(frozen=True)
 class PointOutcome:
-    """What became of a point.
+    """Result of a point.
 
     form: what its values are: (name, kind, unit, text, dimension ...) of each;  values: in that
     order;  reason: why it failed, "" where it did not

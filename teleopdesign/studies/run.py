@@ -101,7 +101,7 @@ def _check_places(workers: int | None, scheduler: str) -> None:
     if workers is not None and workers < 1:
         raise ModelError(f"study: workers: found {workers}, expected 1 or more")
     if scheduler and workers is not None:
-        raise ModelError("study: workers and scheduler: a cluster brings its own workers")
+        raise ModelError("study: workers and scheduler: a cluster has its own workers")
 
 
 def _task(

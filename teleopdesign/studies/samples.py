@@ -46,7 +46,7 @@ class Samples(ByValue):
 
 
 def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
-    """Points that fill ranges evenly: one in each of `samples` equal slices of every range.
+    """Points that fill ranges evenly: one point in each of `samples` equal slices of every range.
 
     ranges: parameter -> (low, high), (low, high, step) or a distribution of `scipy.stats`
     raises ModelError: no range, a range without width, no whole number of points above 0

@@ -41,9 +41,9 @@ def sensitivities(
     scales: parameter -> a change that matters (SI); default its value. Needed where that is 0
     duration ... step: how the diagram is simulated, see `study`
     returns: each signal over `parameter` and `time`, in its unit per SI unit of the parameter; from
-        central differences of five sizes. SIGNAL_apart over `parameter`: by how much the slopes of
-        two sizes that agree best are apart, as a part of the slope; far below 1 the derivative
-        is right, near 1 or more there is none (stick and slip, encoder steps). SIGNAL_size: the
+        central differences of five sizes. SIGNAL_apart over `parameter`: difference of the slopes
+        of the two sizes that agree best, over the slope; far below 1 the derivative is right, near
+        1 or more there is no derivative (stick and slip, encoder steps). SIGNAL_size: the
         difference that is read, SI
     raises ModelError: no such parameter or signal, a parameter in whole steps, a value of 0 without
         a scale, no simulation at the values

@@ -1,8 +1,8 @@
 """Which parameter a measure depends on most: Sobol indices, estimated by SALib.
 
-The first index is the share of the measure's variance that a parameter causes alone; the total
-index adds what it causes together with others. The sum of first indices is 1 where parameters act
-independently of each other.
+The first index is the share of the measure's variance that a parameter causes alone. The total
+index adds the variance that the parameter causes together with other parameters. The sum of the
+first indices is 1 where the parameters act independently of each other.
 """
 
 from __future__ import annotations

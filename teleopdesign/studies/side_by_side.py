@@ -1,8 +1,8 @@
 """Points of a study simulated side by side: many lanes of one compiled loop.
 
-This is for measures of the package that say which signals they need; a user's function gets a
-whole simulation, one point at a time. Points are put into blocks by their numbers alone, so that
-the same ones are side by side wherever and whenever they are computed.
+Only measures of the package that state their signals are computed in this way. A user's function
+gets a whole simulation, one point at a time. The number of a point alone decides its block, so the
+same points are side by side on every machine and in every run.
 """
 
 from __future__ import annotations

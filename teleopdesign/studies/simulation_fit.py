@@ -7,9 +7,10 @@
         inputs={"R_V": force},
     )
 
-Bounded least squares (scipy) from the best of many points, slopes by differences of simulations
-side by side. It compares whole motions: where these are unstable or chaotic, or a record is long
-and nothing holds the device, take `td.fit`, which compares forces along the measured motion.
+The method is bounded least squares (scipy) from the best of many points. Slopes are differences of
+simulations side by side. The fit compares whole motions. For unstable or chaotic motions, or for a
+long record of a device that nothing holds, use `td.fit`: it compares forces along the measured
+motion.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Trade-off of two measures: the points that no other point improves in both.
 
-The second objective is bounded at levels between the best of either (epsilon-constraint), and the
-first is searched at each, as in `tune`; every point that was evaluated on the way counts.
+The second objective is bounded at several levels between the best values of the two objectives
+(epsilon-constraint). At each level the first objective is minimised, as in `tune`. All evaluated
+points count for the front.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _ENDS = 0.25
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront(ByValue):
-    """The best trade-offs between two measures that are to be small.
+    """The best trade-offs between two measures, where smaller is better.
 
     points: each with its limits checked once more, by increasing first objective
     objectives: (k, 2) of the points;  before: (2,), with the diagram's values, NaN where none

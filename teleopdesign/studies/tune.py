@@ -9,9 +9,10 @@
         motion={"L": td.sine(amplitude=0.01, frequency=1.0)},
     )
 
-Differential evolution, as measures of simulations are neither smooth nor convex, then a simplex
-from the best point. Points that miss a claim or a margin are not simulated. What comes out is the
-best of the points that were evaluated; its limits are checked once more, by the strictest method.
+The search is differential evolution, because measures of simulations are neither smooth nor convex,
+then a simplex from the best point. Points that violate a claim or a margin are not simulated. The
+result is the best of the evaluated points. Its limits are checked once more, by the strictest
+method.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ _POLISH = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Tuned(ByValue):
-    """The best point that a search came to.
+    """The best point of a search.
 
     diagram: with `values`;  objective: the measure there, of `before` with the diagram's values
         (NaN where it is not measured there);  limits: checked once more at `values`
@@ -125,7 +126,7 @@ def tune(
     evaluations: points that are evaluated in one round; a round more where a limit over intervals
         fails at a point of these that the search had not looked at
     seed: the same one has the same answer, whatever `workers` (processes) is
-    returns: the best point evaluated, never "the optimum": nothing is said of other points
+    returns: the best evaluated point, never "the optimum": other points may be better
     raises ModelError: an unknown parameter or measure, an interval that is none
     """
     if isinstance(objective, list | tuple):

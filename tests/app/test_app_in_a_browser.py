@@ -73,7 +73,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
         page.get_by_role("cell", name="mA", exact=True).wait_for()
         fill_in(page, "time unit", "ms")
         fill_in(page, "torque constant", "0.05 N*m/A")
-        page.get_by_text("stands for the motor's constant").wait_for(state="detached")
+        page.get_by_text("placeholder for the motor's constant").wait_for(state="detached")
         page.get_by_text("No name says the unit of").wait_for(state="detached")
         page.wait_for_timeout(3000)  # the log is drawn anew
         picture(page, folder, "units", full_page=True)

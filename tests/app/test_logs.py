@@ -53,7 +53,7 @@ def test_what_a_table_of_markdown_would_take_for_marks_is_shown_as_it_is(tmp_pat
     text = unescape(re.sub("<[^>]*>", " ", html))
     for name in head.split(",")[1:]:
         assert name in text, name
-    assert "1 N*m/A stands for" in text
+    assert "1 N*m/A is a placeholder for" in text
     assert "<em>" not in html and "arithmatex" not in html
 
 

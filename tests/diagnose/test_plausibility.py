@@ -50,19 +50,19 @@ SAID = {
     "friction_drift": (
         {"fraction": 0.5, "time_constant": 5.0},
         {"fraction": 0.5, "time_constant": 0.2},
-        "how the records begin",
+        "the beginning of the records",
     ),
     "viscous_asymmetry": ({"half_difference": -0.1}, {"half_difference": 0.3}, "another force"),
     "coulomb_asymmetry": ({"half_difference": -0.1}, {"half_difference": -0.6}, "a constant force"),
     "transmission_compliance": (
         {"tip_inertia": 0.05, "stiffness": 10.0, "damping": 0.1},
         {"tip_inertia": 0.2, "stiffness": 10.0, "damping": 0.1},
-        "late",
+        "lags behind",
     ),
     "backlash": (
         {"tip_inertia": 0.05, "stiffness": 10.0, "gap": 0.1},
         {"tip_inertia": 0.2, "stiffness": 10.0, "gap": 0.1},
-        "late",
+        "lags behind",
     ),
     "maxwell_slip": (
         {**ELEMENTS, "stiffness_1": 50.0, "stiffness_2": 9.0},
@@ -105,7 +105,7 @@ def test_a_gap_is_not_told_where_the_motion_never_turns_round():
     gap = SimpleNamespace(tip_inertia=0.05, stiffness=10.0, damping=0.1, gap=0.3)
     assert EFFECTS["backlash"].plausible(gap, FACTS) is None
     said = EFFECTS["backlash"].plausible(gap, replace(FACTS, stroke=float("inf")))
-    assert "crossed once at most where the motion never turns round" in said
+    assert "crossed once at most where the motion never reverses" in said
 
 
 @pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.plausible))
@@ -140,12 +140,12 @@ UNTOLD = {
     "position_dependent_friction": (
         {"amplitude": 0.5, "period": 1.0, "phase": 0.0},
         {"amplitude": 0.5, "period": 2.0, "phase": -0.2 * np.pi},
-        "Another load",
+        "another load",
     ),
     "transmission_compliance": (
         {"tip_inertia": 0.02, "stiffness": 1000.0, "damping": 0.5},
         {"tip_inertia": 0.02, "stiffness": 2850.0, "damping": 0.5},
-        "its tip rings at 60.1 Hz, beside the 60 Hz of the mains",
+        "the tip rings at 60.1 Hz, close to the 60 Hz of the mains",
     ),
 }
 
@@ -204,7 +204,7 @@ def test_a_gap_that_changes_next_to_no_force_is_none():
     said = EFFECTS["backlash"].plausible(
         SimpleNamespace(tip_inertia=0.05, stiffness=10.0, gap=1e-4), FACTS
     )
-    assert "no plain spring" in said
+    assert "no linear spring" in said
 
 
 def test_tip_friction_that_never_lets_the_tip_go_is_a_spring():

@@ -43,13 +43,13 @@ DESERVED = [
     ("torque_ripple", "period", 1.3, 1.4, {}, "does not repeat"),
     ("cogging_harmonic", "period", 1.3, 1.4, {}, "does not repeat"),
     # half of the gain is left one radian away, then none
-    ("position_dependent_gain", "fall", LESS * 0.25, 0.25, AT_THE_END, "its opposite beyond"),
-    ("position_dependent_gain", "centre", 1.0, MORE, {"fall": 0.1}, "falls one way only"),
+    ("position_dependent_gain", "fall", LESS * 0.25, 0.25, AT_THE_END, "negative beyond"),
+    ("position_dependent_gain", "centre", 1.0, MORE, {"fall": 0.1}, "to one side only"),
     # a bristle gives by level / stiffness: 0.005 rad are half a step, 2 rad the travel
     ("presliding", "stiffness", 199.0, 200.0, {}, "sgn friction"),
-    ("presliding", "stiffness", 0.501, 0.5, {}, "for a spring"),
-    ("tip_friction", "level", 0.25, LESS * 0.25, {}, "less than steps of 0.01 rad"),
-    ("tip_friction", "level", 100.0, MORE * 100.0, {}, "never slides"),
+    ("presliding", "stiffness", 0.501, 0.5, {}, "imitates a spring"),
+    ("tip_friction", "level", 0.25, LESS * 0.25, {}, "below the step of 0.01 rad"),
+    ("tip_friction", "level", 100.0, MORE * 100.0, {}, "more than the travel"),
     ("coulomb_asymmetry", "half_difference", 1.0, MORE, {}, "constant force"),
     ("coulomb_asymmetry", "half_difference", -1.0, -MORE, {}, "constant force"),
     ("viscous_asymmetry", "half_difference", 0.5, MORE * 0.5, {}, "at 4 rad/s"),
@@ -73,7 +73,7 @@ DESERVED = [
     ("transmission_compliance", "tip_inertia", LESS * 0.5, 0.5, SWINGS, "no part"),
     # critical: 2 sqrt(400 N m/rad 0.25 kg m^2)
     ("transmission_compliance", "damping", LESS * 20.0, 20.0, HEAVY, "damping ratio of 1 creeps"),
-    ("backlash", "gap", 0.01, LESS * 0.01, GAP, "no plain spring"),
+    ("backlash", "gap", 0.01, LESS * 0.01, GAP, "no linear spring"),
     ("backlash", "tip_inertia", 0.49, 0.5, GAP, "no part"),
 ]
 #: the same of what the records cannot tell
@@ -98,7 +98,7 @@ def test_an_effect_keeps_its_name_up_to_the_limit_and_loses_it_beyond(
 
 
 def test_where_the_motion_never_turns_round_no_loop_and_no_cycle_is_there():
-    assert "never turns round" in said("presliding", "plausible", {"stiffness": 10.0}, stroke=inf)
+    assert "never reverses" in said("presliding", "plausible", {"stiffness": 10.0}, stroke=inf)
     assert (
         said("friction_drift", "plausible", {"fraction": 0.5, "time_constant": 0.1}, stroke=inf)
         is None

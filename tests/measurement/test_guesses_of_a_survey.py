@@ -186,7 +186,7 @@ def test_a_column_in_units_of_something_else_is_no_position(name):
 
 def test_a_coordinate_beside_another_is_no_force():
     columns = {"t": T, "X1": 100 * np.cos(Q), "Y1": np.random.default_rng(1).standard_normal(ROWS)}
-    with pytest.raises(ExperimentError, match="found no force: .*--force COLUMN takes one of Y1"):
+    with pytest.raises(ExperimentError, match="found no force: .*--force COLUMN selects one of Y1"):
         look(columns)
 
 

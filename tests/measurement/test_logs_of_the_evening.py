@@ -141,7 +141,7 @@ def test_a_velocity_in_units_says_that_a_guessed_time_is_wrong():
     table = {"Frame": np.arange(ROWS), "Angle [deg]": 40 * Q, "Current [A]": U}
     speed = np.gradient(40 * Q, T)
     why = look({**table, "Velocity [deg/s]": speed}).guesses["channels.time.unit"]
-    assert "asks for steps of 0.005 s: --sample-rate 200" in why
+    assert "requires steps of 0.005 s: --sample-rate 200" in why
     why = look({**table, "Velocity [deg/s]": 5 * speed}).guesses["channels.time.unit"]
     assert "--sample-rate" not in why
 

@@ -47,7 +47,7 @@ def test_the_constant_of_a_motor_is_read_off_the_balance_with_the_hands_force(jo
     survey = look(in_amperes(joint, sign=sign))
     force = survey.channels["actuator_force"]
     assert force["torque_constant"]["value"] == pytest.approx(CONSTANT, rel=0.03)
-    assert "balances with 'hand (Nm)'" in survey_text(survey, "log")
+    assert "balances 'hand (Nm)'" in survey_text(survey, "log")
     assert survey.channels["interaction_force"].get("sign", 1) == sign
 
 
@@ -62,7 +62,7 @@ def test_a_stated_constant_stands(joint):
 def test_without_a_hand_a_constant_stays_open(joint):
     survey = look({n: v for n, v in in_amperes(joint).items() if "hand" not in n})
     assert survey.channels["actuator_force"]["torque_constant"]["value"] == 1.0
-    assert "fill it in" in survey.guesses["channels.actuator_force.torque_constant"]
+    assert "state the true constant" in survey.guesses["channels.actuator_force.torque_constant"]
 
 
 @pytest.mark.parametrize("name", ["tcp_torque", "tipforce", "Endkraft", "tau2"])
@@ -108,7 +108,7 @@ def test_a_stated_gear_stands(joint):
 def test_forces_of_two_scales_are_told_where_no_name_says_which_side(joint):
     survey = look(of_the_motor(joint, q="angle (deg)"))
     assert "gear_ratio" not in survey.channels["position"]
-    (note,) = [n for n in survey.notes if "only times" in n]
+    (note,) = [n for n in survey.notes if "only with a factor of" in n]
     assert "--unit" in note and "--gear-ratio" in note
 
 

@@ -28,7 +28,7 @@ COLUMNS, VELOCITY, HAND = swing()
 #: name -> (values, a part of the reason why the column is in no channel)
 OTHERS = {
     "speed": (VELOCITY, "--unit 'speed=UNIT'"),
-    "x_desired": (COLUMNS["x"] + 1e-3, "wanted"),
+    "x_desired": (COLUMNS["x"] + 1e-3, "a desired value"),
     "temp (K)": (300 + RNG.standard_normal(ROWS), "in K"),
     "state": (np.ones(ROWS), "does not change"),
     "counter": (np.arange(ROWS), "only rises"),
@@ -96,7 +96,7 @@ def test_a_force_that_balances_with_the_command_is_the_hands_whatever_its_name(s
     entry = survey.channels["interaction_force"]
     assert entry["column"] == name
     assert entry.get("sign", 1) == sign
-    assert "takes away" in survey.guesses["channels.interaction_force.column"]
+    assert "less of the command" in survey.guesses["channels.interaction_force.column"]
     assert "other" in survey.unused
 
 
@@ -123,7 +123,7 @@ def test_no_other_column_is_taken_for_the_hands_force(other):
 def test_columns_that_may_be_the_position_as_well_make_it_a_guess():
     two = {"t": T, "q_0": COLUMNS["x"], "q_1": np.roll(COLUMNS["x"], 400), "u": COLUMNS["u"]}
     said = look(two).guesses["channels.position.column"]
-    assert "'q_0' is taken for the position" in said and "'q_1' may be it as well" in said
+    assert "'q_0' is read as the position" in said and "'q_1' may be the position as well" in said
 
 
 def test_a_log_is_used_whole_however_much_of_it_is_looked_at():
@@ -155,8 +155,8 @@ def test_a_wanted_current_that_did_not_act_leaves_its_place_to_the_measured_one(
     survey = look(currents(feedback=1.0))
     assert survey.channels["actuator_force"]["column"] == "actual_current"
     assert survey.channels["actuator_force"]["measured"] is True  # no lag or limit is sought in it
-    assert "'target_current', which was wanted" in survey.guesses["channels.actuator_force.column"]
-    assert survey.unused["target_current"] == "what was wanted, not what was measured"
+    assert "the command 'target_current'" in survey.guesses["channels.actuator_force.column"]
+    assert survey.unused["target_current"] == "a desired value, not a measured one"
 
 
 @pytest.mark.parametrize("noise", [0.02, 0.3])

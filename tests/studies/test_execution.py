@@ -332,7 +332,7 @@ def test_a_cluster_that_does_not_answer_is_one_line():
 
 
 def test_workers_and_a_cluster_are_one_or_the_other():
-    with pytest.raises(ModelError, match="a cluster brings its own workers"):
+    with pytest.raises(ModelError, match="a cluster has its own workers"):
         td.study(models.product, AXES, measures=models.value, scheduler="tcp://a:1", workers=2)
     with pytest.raises(ModelError, match="expected 1 or more"):
         td.study(models.product, AXES, measures=models.value, workers=0)

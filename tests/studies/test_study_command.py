@@ -172,7 +172,7 @@ def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, s
         (["s.toml", "--out", "s.csv"], "expected .nc"),
         (["s.toml", "--out", "none/s.nc"], "there is no folder 'none'"),
         (["s.toml", "--figure", "s.gif"], "expected .pdf or .svg or .png"),
-        (["s.toml", "--workers", "2", "--scheduler", "tcp://a:1"], "a cluster brings its own"),
+        (["s.toml", "--workers", "2", "--scheduler", "tcp://a:1"], "a cluster has its own workers"),
         (["no_study.py"], "sets no STUDY"),
         (["not_python.py"], "line 1: "),
         (["wrong.py"], "unknown 'axis'.*did you mean \"axes\""),

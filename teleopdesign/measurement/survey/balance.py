@@ -73,8 +73,8 @@ def hand_by_balance(
         return None
     left, name = best
     survey.guesses["channels.interaction_force.column"] = (
-        f"{name!r} is taken for the hand's force: added to {force!r}, it takes away "
-        f"{1 - (left / alone.left) ** 2:.0%} of what the motion does not explain"
+        f"{name!r} is read as the force of the hand: with it, the motion leaves "
+        f"{1 - (left / alone.left) ** 2:.0%} less of the command {force!r} unexplained"
     )
     return name
 
@@ -120,8 +120,8 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
         _guess_gear(survey, said[0], f"the log says {said[1]!r}")
     elif said is not None:
         survey.notes.append(
-            f"the log says {said[1]!r}: where position and force are the motor's, "
-            f"--gear-ratio {said[0]:g}"
+            f"the log says {said[1]!r}: if position and force are those of the motor, "
+            f"use --gear-ratio {said[0]:g}"
         )
     if "interaction_force" not in survey.channels:
         return
@@ -136,11 +136,11 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
         if is_motors and said is None and scale > 1:
             whole = float(round(scale))
             ratio = whole if abs(scale - whole) < 2 * error else float(f"{scale:.3g}")
-            _guess_gear(survey, ratio, f"{force!r} balances with {hand!r} times {factor}")
+            _guess_gear(survey, ratio, f"{force!r} balances {hand!r} with a factor of {factor}")
         else:
             survey.notes.append(
-                f"{force!r} balances with {hand!r} only times {factor}: one of them is in another "
-                "unit (--unit), or a gear lies between them (--gear-ratio)"
+                f"{force!r} balances {hand!r} only with a factor of {factor}: one of the two has "
+                "another unit (--unit), or a gear lies between (--gear-ratio)"
             )
 
 
@@ -179,8 +179,8 @@ def _guess_constant(survey: Survey, ratio: float, error: float) -> None:
     constant["value"] = float(f"{value:.4g}")
     doubt = "channels.interaction_force.unit" in survey.guesses
     survey.guesses["channels.actuator_force.torque_constant"] = (
-        f"{with_standard_error(value, error)} {constant['unit']}: then {force['column']!r} "
-        f"balances with {hand['column']!r}" + (f", if that is in {hand['unit']}" if doubt else "")
+        f"{with_standard_error(value, error)} {constant['unit']}: with it, {force['column']!r} "
+        f"balances {hand['column']!r}" + (f", if the latter is in {hand['unit']}" if doubt else "")
     )
 
 
@@ -190,5 +190,5 @@ def _guess_gear(survey: Survey, ratio: float, why: str) -> None:
         if key in survey.channels:
             survey.channels[key]["gear_ratio"] = ratio
     survey.guesses["channels.position.gear_ratio"] = (
-        f"{ratio:g}: position and force are the motor's by their names; {why}"
+        f"{ratio:g}: by their names, position and force are those of the motor; {why}"
     )

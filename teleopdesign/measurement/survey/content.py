@@ -123,4 +123,4 @@ def reasons(unread: Mapping[str, str], most: int = 3) -> str:
 def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:
     """Why a column is a guess that others sound like as well."""
     named = ", ".join(map(repr, others[:3])) + (", ..." if len(others) > 3 else "")
-    return f"{column!r} is taken for {what}: {named} may be it as well"
+    return f"{column!r} is read as {what}: {named} may be {what} as well"

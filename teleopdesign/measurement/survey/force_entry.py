@@ -38,8 +38,8 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         if constant is None:
             constant = (PLACEHOLDER, f"{unit_of('force', axis)}/{base}")
             why = (
-                f"{constant[0]:g} {constant[1]} stands for the motor's constant: fill it in, "
-                "forces and parameters follow in proportion"
+                f"{constant[0]:g} {constant[1]} is a placeholder for the motor's constant: "
+                "state the true constant, forces and parameters scale in proportion"
             )
             if (stated := torque_constant_in(survey.remarks)) and measures(
                 stated[1].rpartition("/")[0], "force", axis
@@ -51,14 +51,14 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         return entry
     if unit is None or not measures(unit, "force", axis):
         unit = unit_of("force", axis)
-        why = f"the name {name!r} says no unit"
+        why = f"the name {name!r} states no unit"
         if PER_CENT.search(name):
-            why = f"{name!r} counts parts of a rated force: `scale` is one part in {unit}"
+            why = f"{name!r} is in parts of a rated force: `scale` is one part in {unit}"
         survey.guesses[f"channels.{key}.unit"] = f"{unit}: {why}"
     if choices.torque_constant is not None and key == "actuator_force":
         survey.guesses["channels.actuator_force.column"] = (
-            f"{name!r} is no current in {unit}: the motor's constant is not used; --force COLUMN "
-            "takes a current"
+            f"{name!r} is in {unit}, no current: the motor's constant is not used; "
+            "--force COLUMN selects a current"
         )
     return {**entry, "unit": unit}
 

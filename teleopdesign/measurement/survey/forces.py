@@ -116,19 +116,19 @@ def _find_driving_force(
     if (acted := current_that_acted(force, free, scores)) is not None:
         wanted, (force, apart) = force, acted
         why = (
-            f"{force!r} is taken for the actuator's force: {wanted!r}, which was wanted, leaves "
-            f"{apart:.0%} of it open, and more than noise"
+            f"{force!r} is read as the actuator's force: the command {wanted!r} leaves "
+            f"{apart:.0%} of it unexplained, more than noise"
         )
     elif likeness(force, "actuator_force") < SURE_NAME:
         share = physics[force].explained
         named = likeness(force, "actuator_force") > 0 or is_unit_of(free[force].unit, "force")
         if share < CHANCE and not named:
             raise ExperimentError(
-                f"{file}: found no force: no column is one by its name or unit, and the motion "
-                f"explains {max(share, 0.0):.0%} of {force!r}; --force COLUMN takes one of "
-                f"{join_names(free)}"
+                f"{file}: found no force: no column has the name or unit of a force, and the "
+                f"motion explains {max(share, 0.0):.0%} of {force!r}; --force COLUMN selects "
+                f"one of {join_names(free)}"
             )
-        why = f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
+        why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
@@ -185,7 +185,7 @@ def _choose_signs(
         if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
             survey.channels["interaction_force"]["sign"] = -1
             survey.guesses["channels.interaction_force.sign"] = (
-                f"-1: {hand!r} then balances with {force!r}, which leaves "
+                f"-1: {hand!r} then balances {force!r} and leaves "
                 f"{1 - by_sign[-1.0].explained:.0%} of the force instead of "
                 f"{1 - by_sign[1.0].explained:.0%}"
             )
@@ -197,7 +197,7 @@ def _choose_signs(
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1
         survey.guesses["channels.position.sign"] = (
-            "-1: as logged, friction would drive the motion, or inertia be negative"
+            "-1: with the sign of the log, friction would drive the motion, or inertia be negative"
         )
         with_hand = FirstGuess(
             -with_hand.inertia,
@@ -209,4 +209,6 @@ def _choose_signs(
     survey.first = with_hand
     ratio = float(survey.channels["position"].get("gear_ratio", 1.0))
     if ratio != 1.0:
-        survey.notes.append(f"forces and positions are those behind the gear of {ratio:g}")
+        survey.notes.append(
+            f"forces and positions are those on the output side of the gear of {ratio:g}"
+        )

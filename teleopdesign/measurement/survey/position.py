@@ -89,8 +89,8 @@ def find_position(
         best = max(scores, key=lambda n: scores[n])
     else:
         raise ExperimentError(
-            f"{file}: found no position: no column that moves and is no force or velocity by "
-            f"unit or name, among {join_names(survey.columns) or 'none'}"
+            f"{file}: found no position: no column changes without being a force or "
+            f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
             f"{reasons(survey.unread)}"
         )
     if choices.position is None and likeness(best, "position") < SURE_NAME:
@@ -99,7 +99,7 @@ def find_position(
         )
         why = "by its name and unit" if named else "it is the first that moves and may be one"
         why = "its derivative is there too" if best in derivative else why
-        survey.guesses["channels.position.column"] = f"{best!r} is taken for the position: {why}"
+        survey.guesses["channels.position.column"] = f"{best!r} is read as the position: {why}"
     elif choices.position is None and (others := as_likely(scores, best)):
         survey.guesses["channels.position.column"] = explain_ambiguity(best, others, "the position")
     velocity = derivative.get(best, (None, 0.0))[0]
@@ -252,7 +252,7 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
     if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME_TIME:
         return
     survey.guesses["channels.time.unit"] = (
-        f"{why}; but {velocity!r} in {said} asks for steps of {h / slower:.3g} s: "
+        f"{why}; but {velocity!r} in {said} requires steps of {h / slower:.3g} s: "
         f"--sample-rate {float(f'{slower / h:.3g}'):g}"
     )
 
@@ -297,4 +297,4 @@ def _position_unit(
         unit = "deg" if reach > 50 else "rad"
     else:
         unit = "mm" if reach > 3 else "m"
-    return unit, f"{unit}, from its range of {reach:.3g}: its name says no unit"
+    return unit, f"{unit}, from its range of {reach:.3g}: its name states no unit"

@@ -60,11 +60,11 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
         return f"in {unit}: no position, velocity or force"
     if is_another_quantity(name) and not kinds:
         return (
-            "by its name no position, velocity or force; a pressure that acts on the body is one: "
+            "by its name no position, velocity or force; for a pressure that acts on the body: "
             f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
         )
     if is_wanted(name) and "force" not in kinds:
-        return "what was wanted, not what was measured"
+        return "a desired value, not a measured one"
     x = survey.columns[position].values
     jump = wrap_of(x)
     _, agree = derivative_factor(unwrap_column(x, jump), column.values, sample_time_of(survey))
@@ -86,7 +86,7 @@ def _explain_no_force(name: str, survey: Survey) -> str:
     """By how much the motion explains it, beside the column that was taken."""
     force = survey.channels["actuator_force"]["column"]
     share, best = (survey.explained.get(n) for n in (name, force))
-    beside = "" if best is None else f", of {force!r} {max(best, 0.0):.0%}"
+    beside = "" if best is None else f", and {max(best, 0.0):.0%} of {force!r}"
     said = "" if share is None else f": the motion explains {max(share, 0.0):.0%} of it{beside}"
     second = likeness(name, "actuator_force") >= SURE_NAME
-    return f"a force beside {force!r}{said}" if second else f"no force by its name{said}"
+    return f"a second force beside {force!r}{said}" if second else f"not a force by its name{said}"

@@ -1,7 +1,7 @@
 """Certificates: what a proof rests on, in a form that a small program verifies.
 
-`checker` knows nothing of this package; it reads the JSON that is written here, and
-states in other words what that proves. A title is for people; it proves nothing.
+`checker` does not use this package. It reads the JSON file that is written here, and states in its
+own words what the file proves. A title is for readers only and proves nothing.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def storage_certificate(
     proofs: Mapping[str, Mapping[str, Sequence[Term]]],
     example: Mapping[str, sp.Expr | int],
 ) -> Certificate:
-    """That supply >= dV/dt with V >= 0 wherever what is assumed holds.
+    """That supply >= dV/dt with V >= 0 wherever the assumptions hold.
 
     rates: state -> rate of change;  constants: names that do not change; other names are signals
     positive, nonnegative: name -> expression that is assumed to be > 0, >= 0

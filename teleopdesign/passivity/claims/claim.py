@@ -1,8 +1,8 @@
 """A claim and its verdict: proved, refuted, evidence, or unknown.
 
-A proof is exact and carries a certificate that `checker` verifies without the package.
-A refutation is a motion that releases energy, kept so that anyone can replay it. Evidence says
-what was computed or searched, and with what margin; it is never called a proof.
+A proof is exact and has a certificate, which `checker` verifies without the package. A refutation
+is a motion that releases energy; the motion is stored, so anyone can replay it. Evidence states
+what was computed or searched, and the margin. Evidence is never called a proof.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Proof(ByValue):
     """An exact proof.
 
     method: in words;  certificates: what it rests on, each verified by `checker`
-    margin: how far the statement is from failing, in `unit`, NaN where none was computed
+    margin: distance of the statement from failing, in `unit`, NaN where none was computed
     equality: where the inequality holds with equality, "" where nowhere or not computed
     """
 
@@ -69,7 +69,7 @@ class Proof(ByValue):
 class Refutation(ByValue):
     """A motion that releases `record.energy` > 0 J; `record.replay()` computes it anew.
 
-    replayed: what that replay released, J; a claim whose motion does not replay is not refuted
+    replayed: energy that the replay released, J; without a valid replay a claim is not refuted
     """
 
     method: str

@@ -1,8 +1,8 @@
-"""The inequalities of a storage certificate put to z3, without the identities that show them.
+"""The inequalities of a storage certificate tested by z3, without the identities that show them.
 
-z3 decides polynomial inequalities over the reals (extra `proof`). Asked for values that meet all
-that a certificate assumes and break what it claims, it finds none, finds some, or stops. What
-a certificate means is read by the checker, whose rules for it hold here too.
+z3 decides polynomial inequalities over the reals (extra `proof`). It searches for values that meet
+all assumptions of a certificate and violate its claim. The search finds none, finds some, or stops.
+The checker reads the meaning of the certificate, so its rules hold here too.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Signs of polynomials over a box, by Bernstein coefficients in exact arithmetic.
 
 Over [0, 1]^n a polynomial lies between the least and the greatest of its Bernstein coefficients,
-and at corners it is the coefficient there. Where the sign is not plain, the box is halved (de
-Casteljau) and both halves are asked. The first variable runs over [0, inf]: x = c t/(1 - t), and
-the polynomial is multiplied by (1 - t)^d > 0. Coefficients are integers: each polynomial is
-multiplied by what its fractions share, which is positive. Nothing is rounded.
+and at corners it is the coefficient there. Where these bounds leave the sign open, the box is
+halved (de Casteljau) and both halves are tested. The first variable runs over [0, inf]: x = c t/(1
+- t), and the polynomial is multiplied by (1 - t)^d > 0. Coefficients are integers: each polynomial
+is multiplied by the common denominator of its fractions, which is positive. Nothing is rounded.
 
 Cargo, Shisha, J. Res. NBS 70B (1966) 79; Garloff, Interval Computations 2 (1993) 164.
 """

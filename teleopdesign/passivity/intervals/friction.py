@@ -3,8 +3,9 @@
 A Dahl or bounded cancellation (f_D, sigma_D) of Coulomb or Dahl friction (f_C, sigma_p) is passive
 if f_D <= f_C and sigma_D^2 f_C <= sigma_p^2 f_D (`theorems/dahl_compensation.py`). Written as
 f_C - f_D >= 0 and sigma_p^2 f_D - sigma_D^2 f_C >= 0, each side is monotone in each of the four
-positive values by itself, so that its least value over a box is at a vertex. What is linear beside
-it is judged over its values. Any other friction is judged at vertices and in the middle alone.
+positive values by itself, so its least value over a box is at a vertex. The linear part of the
+diagram is judged over the whole box. Any other friction is judged only at the vertices and in the
+middle.
 """
 
 from __future__ import annotations

@@ -2,12 +2,13 @@
 
 About the middle m of a part, with half widths r, a monomial moves by at most (abs(m) + r)^a -
 abs(m)^a, and e^(-j w tau) by at most the change of w tau. So f(jw) is not zero in a part where
-abs(f) in its middle is more than the sum of these. Parts that do not show it are halved, along the
-variable that moves f most.
+abs(f) in its middle is more than the sum of these. A part that does not satisfy this is halved,
+along the variable that changes f most.
 
-Parts are kept by their ends, so that two halves leave nothing between them. Each is tested in plain
-floats; what looks shown is shown in floats that are rounded outward (`outward`), coefficients and
-ends of intervals included. So no rounding is left out, and no library's sine or exponential counts.
+Parts are stored by their ends, so no gap remains between two halves. Each part is first tested in
+plain floats. A part that passes is tested again in floats that are rounded outward (`outward`),
+including coefficients and ends of intervals. So all rounding is covered, and no sine or exponential
+of a library is trusted.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Arrays of intervals of floats, every result rounded outward: no real value lies outside of them.
 
 A sum, a difference, a product and a square root of floats are rounded to the nearest float (IEEE
-754), so that the neighbours of what comes out enclose what is true. Where a number is too large
-for a float an end is infinite or NaN, and no comparison with NaN holds: nothing is shown then.
-Sine and cosine are sums of their series, for a quarter turn off a multiple of it: no library's.
+754). So the two neighbours of a result enclose the true value. Where a number is too large for a
+float, an end is infinite or NaN. No comparison with NaN holds, so nothing is shown then. Sine and
+cosine are sums of their series, for the angle less its nearest multiple of a quarter turn; no
+library computes them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """The impedance that a hand feels at a haptic interface, from its diagram, in exact numbers.
 
-With R_D = 0 the hand's force on the device is Zhat_M L, so force over velocity is Zhat_M/s; of a
-device with a compliant transmission the motion is the tip's. Blocks are linear forms: what has none
-(Coulomb friction among them) is left out, and named. What a zero cancels is not in it either: that
-no mode grows inside, which the hand does not feel from rest, is asked by `diagram_claims`.
+With R_D = 0 the hand's force on the device is Zhat_M L, so force over velocity is Zhat_M/s. For a
+device with a compliant transmission the motion is that of the tip. Blocks are linear forms. An
+effect without a linear form, such as Coulomb friction, is left out and named. A mode that a zero
+cancels is not in the impedance either, and the hand does not feel it from rest; `diagram_claims`
+checks that no such mode grows.
 """
 
 from __future__ import annotations

@@ -1,16 +1,18 @@
 """Growing modes of a diagram, hidden modes included.
 
-An impedance is what ports do from rest. A pole of a controller that a zero of the next one cancels
-is not in it: from rest it never moves, but the least disturbance grows without end, and may come
-out at a port. So what is passive by its impedance is so of the device only where no mode of all its
-equations grows: none with Re s > 0, and none on the axis that another one of the same s drives.
+An impedance describes the ports from rest. A pole of a controller that a zero of the next
+controller cancels is not in the impedance. From rest this mode never moves, but the smallest
+disturbance of it grows without end, and may appear at a port. So a device with a passive impedance
+is passive only where no mode of all its equations grows: none with Re s > 0, and none on the axis
+that another mode of the same s drives.
 
-The second is a matter of ranks. P(s) w = 0 are all equations (`in_full`), r(s) a factor of det P
-with roots on the axis, m how often det P has it, n the nullity of P at its roots. The elementary
-divisors of P there are n powers of r, whose exponents sum up to m. What the ports show is contained
-in them: k divisors, whose exponents sum up to m - h. Where n = k + h each mode that no port shows
-is a separate divisor, of exponent 1, and stays as large as it is. Otherwise one may grow as a
-power of time. What the ports show, a free mass among it, is judged by the impedance.
+Ranks decide the second condition. P(s) w = 0 are all equations (`in_full`), r(s) is a factor of det
+P with roots on the axis, m the multiplicity of r in det P, n the nullity of P at the roots of r.
+The elementary divisors of P there are n powers of r, whose exponents sum up to m. They contain
+those that the ports show: k divisors, whose exponents sum up to m - h. Where n = k + h each mode
+that no port shows is a separate divisor, of exponent 1, and keeps its size. Otherwise such a mode
+may grow as a power of time. The impedance judges all modes that the ports show, a free mass
+included.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Impedances as exact rational functions of s.
 
-A float is taken for the shortest decimal number that prints like it: 0.1 is 1/10. What is judged is
-then exactly what was written down, and cases on the boundary stay on the boundary. Pi is taken to
-the sixteen digits of a float.
+A float is read as the shortest decimal number that prints like it: 0.1 is 1/10. So the judged value
+is exactly the written value, and cases on the boundary stay on the boundary. Pi has the sixteen
+digits of a float.
 """
 
 from __future__ import annotations

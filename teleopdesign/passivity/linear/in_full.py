@@ -1,8 +1,8 @@
 """All equations of a linear diagram as polynomials in s, without cancellation.
 
-A law brings the equations of its states, an effect its numerator and denominator, so that a
-mode is there as often as there are states for it. A transfer function shows less: what one block
-cancels of another one is not in it.
+A control law contributes the equations of its states, an effect its numerator and denominator. So
+each mode appears as often as there are states for it. A transfer function shows less: it lacks the
+modes of one block that another block cancels.
 """
 
 from __future__ import annotations

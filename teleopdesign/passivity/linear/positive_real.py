@@ -2,7 +2,7 @@
 
 Z = p/q (coprime, real) is positive real iff p + q has all its zeros in the open left half plane and
 Re p(j w) conj q(j w) >= 0 for every w: then (Z - 1)/(Z + 1) is bounded real. This covers improper
-impedances such as m s + b, and poles on the imaginary axis, without a word about them.
+impedances such as m s + b, and poles on the imaginary axis, without a separate condition.
 """
 
 from __future__ import annotations

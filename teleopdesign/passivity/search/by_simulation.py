@@ -1,8 +1,8 @@
 """Search a diagram for a motion over which a port releases energy, from rest back to rest.
 
-The motion of the port is prescribed, what that takes of force is simulated with the compiled
-kernel, and the energy released is -integral of force times velocity. A motion that releases
-energy refutes passivity; a search without result proves nothing.
+The motion of the port is prescribed, and the compiled kernel simulates the force for this motion.
+The released energy is the integral of force times velocity with a minus sign. A motion that
+releases energy refutes passivity; a search without result proves nothing.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     @under(damping=NOT_NEGATIVE, sample_time=POSITIVE, controller=FREE)
     def sampled_passivity(controller, *, damping, sample_time): ...
 
-A number outside is refused in one line: outside of its hypotheses a theorem says nothing.
+A number outside of the hypotheses is refused in one line, because the theorem does not hold for it.
 """
 
 from __future__ import annotations

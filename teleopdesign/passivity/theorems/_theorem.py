@@ -1,7 +1,8 @@
 """A theorem: which questions about a device it answers, and its claims.
 
-A file of this folder states its mathematics as functions of numbers, each with its hypotheses, and
-a `THEOREM`: what of it is asked about every device and diagram. Another file is another theorem.
+A file of this folder states its mathematics as functions of numbers, each with its hypotheses. Its
+`THEOREM` says which questions about a device or a diagram the theorem answers. Each file is one
+theorem.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Any compensator whose force is bounded by the level of ideal friction is passive with it.
 
-The force of friction at any speed is at least f_C against the motion, that of the compensator at
-most f_D along it, so f_D <= f_C is enough; beyond it a Dahl compensator of that level releases
-energy. Of a device the level counts, and the level together with its viscous damping.
+At any speed friction opposes the motion with at least f_C, and the compensator helps with at most
+f_D. So f_D <= f_C is sufficient. Above this bound a Dahl compensator of level f_D releases energy.
+For a device the theorem is applied to its friction level, and to the level together with its
+viscous damping.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
     m_1 x_1'' = u + f_dahl(x_1) - f_1 sgn x_1' - k (x_1 - x_2) - c (x_1' - x_2')     motor
     m_2 x_2'' = k (x_1 - x_2) + c (x_1' - x_2') - f_2 sgn x_2' + f_env               link
 
-Two questions with two answers: passive beside any environment (also one that clamps the link), and
-no energy out of slow free motion, where friction f_2 alone holds the link.
+There are two questions with two answers: passivity with any environment (also one that clamps the
+link), and no energy out of slow free motion, where friction f_2 alone holds the link.
 """
 
 from __future__ import annotations

@@ -3,9 +3,9 @@
     y = sigma_0 z,   z' = v - abs(v) y/g,   F = y + s1 z' + s2 v
     g = F_C + (F_S - F_C) e^-(v/v_S)^2
 
-s2 >= s1 (F_S/F_C - 1) is sufficient by V = y^2/(2 sigma_0). It is necessary: slow motion loads the
-bristle to F_S, and a jump to high speed then lets it recoil, against the motion's damping.
-Barabanov and Ortega, IEEE TAC 45 (2000) 830.
+s2 >= s1 (F_S/F_C - 1) is sufficient, with the storage V = y^2/(2 sigma_0). The condition is also
+necessary: slow motion loads the bristle to F_S, and after a jump to high speed the bristle recoils,
+against the damping of the motion. Barabanov and Ortega, IEEE TAC 45 (2000) 830.
 """
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
 """A Dahl compensator in a computer, beside friction that deflects before it slides.
 
-In continuous time the pair has a wedge of passive parameters (`dahl_compensation`). In a computer
-it has none. Dahl friction relaxes under a motion to and fro: over n small strokes of length L about
-one place its force falls by e^(-n L/lambda), and that costs next to no work. A hand that trembles
-once a sample and drifts by a share r of its path meets the mean force r f_C, whatever the level;
-the compensator sees the drift alone, and helps with f_D. So
+In continuous time the pair is passive for a wedge of parameters (`dahl_compensation`). In a
+computer it is passive for none. Dahl friction relaxes under small motion back and forth: over n
+small strokes of length L about one position its force falls by e^(-n L/lambda), at almost no work.
+Let a hand tremble once per sample and drift by a share r of its path. The mean friction is then r
+f_C. The compensator sees only the drift, and helps with f_D. So
 
     energy released per sample  ->  r L (f_D - r f_C) - B L^2/T,    r < f_D/f_C, L small,
 
-is positive for every f_D, sigma_D, damping B and sample period T. It is little: no law within f_D
-releases more power than f_D^2/(4 B), and trembling in step with the clock is no likely motion. A
-contact whose small loops close on themselves, as those of many real ones do, does not relax so.
+is positive for every f_D, sigma_D, damping B and sample period T. The energy is small: no law
+within f_D releases more power than f_D^2/(4 B), and a tremor in step with the clock is an unlikely
+motion. Many real contacts do not relax in this way, because their small loops close on themselves.
 """
 
 from __future__ import annotations

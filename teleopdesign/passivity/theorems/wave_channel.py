@@ -36,11 +36,11 @@ from ._theorem import Theorem
 
 @require_hypotheses(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
 def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) -> Claim:
-    """Does a channel of waves release no more than came in, at both ends together?
+    """Does a channel of waves release no more energy than came in, at both ends together?
 
     wave_impedance: b, N s/m;  scale: f, of waves as they arrive
     delay_growth: d, most that a delay grows in a second, s/s; delays are continuous, of any length
-    returns: proved where f^2 <= 1 - d, else unknown: no motion is sought
+    returns: proved where f^2 <= 1 - d, else unknown: no refuting motion is searched
     """
     b, f, d = map(exact, (wave_impedance, scale, delay_growth))
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
@@ -110,8 +110,8 @@ def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance:
 def wave_claim(diagram: Diagram) -> Claim:
     """`wave_teleoperator` of a diagram wired by `wave_variables`, controllers in continuous time.
 
-    Hand and environment are no part of what is judged. Coulomb friction may be there beside the
-    impedances: its force is against the velocity, so that it takes energy.
+    Hand and environment are not judged. Coulomb friction may act in addition to the impedances: its
+    force opposes the velocity, so it dissipates energy.
     raises ModelError: another wiring, a block without values, two wave impedances that differ, a
         slave's controller that is not linear
     """

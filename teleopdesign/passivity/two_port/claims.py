@@ -1,7 +1,8 @@
 """Passivity and absolute stability of a two-port, as claims: exact where it is rational.
 
 With dead times the margins are computed over frequency, and poles, residues and both ends of the
-axis are looked at: what fails is refuted or left unknown, else there is evidence and no more.
+axis are checked. A claim that fails a check is refuted or left unknown. A claim that passes has
+evidence, and no proof.
 """
 
 from __future__ import annotations
@@ -82,9 +83,9 @@ def passive(system: TwoPort) -> Claim:
 def absolutely_stable(system: TwoPort) -> Claim:
     """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
-    What is claimed, and why it follows, stands in `checker/absolute_stability.py`. A refutation is
-    a motion that grows by itself between the two passive terminations that the method names; with
-    dead times it is a wave with which port 1 releases energy, port 2 held as the method says.
+    `checker/absolute_stability.py` has the statement and its proof. A refutation is a motion that
+    grows by itself between the two passive terminations that the method names. With dead times it
+    is a wave with which port 1 releases energy, with port 2 terminated as the method says.
     """
     statement = f"the two-port {_write_matrix(system)} is absolutely stable"
     return Claim(
@@ -153,8 +154,8 @@ def _describe_sweep() -> str:
 def _find_lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
     """Frequencies (Hz) at which to look for a wave, and the smallest margin, refined around it.
 
-    The lowest one, and some of those with a negative margin: where energy comes out at a rate worth
-    the name need not be where the margin is smallest.
+    The lowest one, and some of those with a negative margin. The fastest release of energy need not
+    be where the margin is smallest.
     """
     f = np.unique(np.concatenate([np.geomspace(1e-4, 1e4, 4001), resonances(system)]))
     values = margin(system.over(f))
@@ -169,10 +170,10 @@ def _find_lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
 
 
 def _find_active_points(system: TwoPort) -> tuple[list[float], list[float]]:
-    """Where Z + Z* is not positive: frequencies (Hz) of the axis, and rates (1/s), wherever.
+    """Where Z + Z* is not positive: frequencies (Hz) on the axis, and rates (1/s) off the axis.
 
-    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, leads
-    to out energy only next to its pole, below or above every frequency of a grid.
+    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, lets
+    energy out only next to its pole, below or above every frequency of a grid.
     """
     entries = [[system.entry(i, j) for j in (1, 2)] for i in (1, 2)]
     below = reduce(sp.lcm, [e.q for row in entries for e in row])

@@ -1,8 +1,9 @@
 """Two-ports with dead times: poles, residues and ends of the axis, which no sweep shows.
 
 An entry is a sum of r_k(s) e^(-s T_k), r_k rational. Its poles are those of the r_k; at s = 0 and
-at both ends of the axis all is decided in rational arithmetic, at other poles numerically. What is
-returned are obstacles: reasons for which a margin over frequency is no evidence. None is no proof.
+at both ends of the axis the decision is in rational arithmetic, at other poles numerical. The
+functions return obstacles: reasons for which a margin over frequency is no evidence. No obstacle is
+no proof.
 """
 
 from __future__ import annotations

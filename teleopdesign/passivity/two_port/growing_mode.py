@@ -154,7 +154,7 @@ def sort_by_power(p: sp.Poly) -> Polynomial:
 
 
 def growing_mode(impedance: sp.ImmutableMatrix) -> GrowingMode | None:
-    """Passive terminations between which the two-port grows, confirmed exactly; None: no such one.
+    """Passive terminations with a growing motion of the two-port, confirmed exactly; None: none.
 
     impedance: rational in s
     """
@@ -219,7 +219,7 @@ def _mode_at(
 
 
 def _mode_in_one_direction(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """The growing mode of z12 or z21 that the other one does not see: it moves one port alone."""
+    """The growing mode of z12 or z21 alone: it moves one port only."""
     for k, velocity in ((1, (1 + 0j, 0j)), (2, (0j, 1 + 0j))):
         for size in (1, 100, Fraction(1, 100)):
             held = Termination(Fraction(size))

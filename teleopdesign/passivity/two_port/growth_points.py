@@ -18,7 +18,7 @@ _CLOSER = tuple(range(1, 34, 2))
 
 
 def points_of_growth(z: Entries) -> np.ndarray:
-    """Points s of the right half plane, imaginary part >= 0, at which growth is looked for, (n,).
+    """Points s of the right half plane, imaginary part >= 0, for the search of growth, (n,).
 
     Beside the axis where an inequality fails, beside poles, and on a grid over all of it.
     """

@@ -1,7 +1,7 @@
 """Passivity of one port with dead times: a wave that refutes it, or evidence over frequency.
 
-Z(s) is a sum of rational functions, each late. The test is that of a two-port with Z at either
-port, which nothing joins: both are passive, or neither is.
+Z(s) is a sum of rational functions, each with a dead time. The test is that of a two-port with Z at
+both ports and no connection between the ports: both ports are passive, or neither is.
 """
 
 from __future__ import annotations

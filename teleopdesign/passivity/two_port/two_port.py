@@ -113,8 +113,8 @@ def teleoperator_two_port(
 class FrequencyMargins(ByValue):
     """Margins on the axis over frequency (Hz), (n,) each; numerical.
 
-    Needed, not enough: poles in the right half plane and residues at poles on the axis do not show.
-    `passive` and `absolutely_stable` settle the whole.
+    Nonnegative margins are necessary, not sufficient: they do not show poles in the right half
+    plane and residues at poles on the axis. `passive` and `absolutely_stable` check all conditions.
 
     passive: smallest eigenvalue of the Hermitian part (N s/m): < 0 where a motion takes energy out
     llewellyn: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless; -inf where
@@ -140,7 +140,7 @@ def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> Frequ
 
     frequency: (n,), Hz;  returns: passive margin (n,), N s/m, >= 0 where passive, and Llewellyn's
         parameter minus 1 (n,), >= 0 where absolutely stable; NaN at a pole of the two-port
-    Numerical: says nothing between its points, nor of poles off the axis.
+    Numerical: without information between the points, and on poles off the axis.
     """
     f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
     z = system.over(f)

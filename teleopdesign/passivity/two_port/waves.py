@@ -1,7 +1,7 @@
 """Growing waves that take energy out of a two-port: motions that refute a claim about it.
 
-Looked for beside frequencies and rates where a margin is negative, beside poles, and in the open
-right half plane; between passive terminations of port 2 where stability is claimed.
+The search starts near frequencies and rates with a negative margin, near poles, and in the open
+right half plane. Where stability is claimed, port 2 has a passive termination.
 """
 
 from __future__ import annotations
