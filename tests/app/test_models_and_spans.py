@@ -58,7 +58,7 @@ def test_a_command_takes_the_spans_too(folder, monkeypatch, capsys):
     records = td.load_experiment("swing_experiment").records
     assert [round(r.duration) for r in records] == [6, 4]
     assert main(["new", "swing.csv.gz", "--yes", "--fit-span", "5", "11"]) == 2
-    assert "--fit-span: found it alone, expected --check-span" in capsys.readouterr().err
+    assert "--fit-span: found alone, expected --check-span" in capsys.readouterr().err
     assert main(["new", "swing.csv.gz", "swing.csv.gz", "--yes", *spans, "--output", "b"]) == 2
     assert "found 2 logs, expected one that is cut" in capsys.readouterr().err
 

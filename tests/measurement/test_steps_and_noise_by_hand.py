@@ -47,7 +47,7 @@ def test_a_channel_off_its_stated_steps_names_the_one_that_lies_on_them():
         assert ("but velocity is: are the two columns swapped?" in found.sentence) == is_swapped
         assert found.concern == ("warning" if is_swapped else "note")
         assert found.numbers == {"stated": 1e-3, "seen": 3.7e-4}
-    assert "but finer" in found.sentence
+    assert "but in finer" in found.sentence
     (coarse,) = check_steps(channel(random.normal(size=3000), step=2e-3, resolution=1e-3), [])
     assert coarse.concern == "warning" and "but of 0.002" in coarse.sentence
 

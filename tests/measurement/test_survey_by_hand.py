@@ -62,7 +62,7 @@ def test_a_velocity_in_units_of_another_axis_says_no_unit_of_the_position(axis):
 def test_a_doubtful_position_says_what_speaks_for_it(name, why):
     survey = look({"t": T, name: Q, "tau": U})
     said = survey.guesses["channels.position.column"]
-    assert said == f"{name!r} is taken for the position: {why}"
+    assert said == f"{name!r} is read as the position: {why}"
     beside = look({"t": T, name: Q, "b": np.gradient(Q, T), "tau": U})
     assert "its derivative is there too" in beside.guesses["channels.position.column"]
 
@@ -73,7 +73,7 @@ def test_one_of_two_forces_alike_is_a_guess_and_one_alone_is_none():
     assert key not in look(alone).guesses
     noise = 0.05 * np.random.default_rng(0).normal(size=len(T))
     both = look(alone | {"torque_b [Nm]": U + noise})
-    assert "'torque_b [Nm]' may be it as well" in both.guesses[key]
+    assert "'torque_b [Nm]' may be the actuator's force as well" in both.guesses[key]
 
 
 @pytest.mark.parametrize("unit", ["K", "rad/s", "rad", "Hz"])
@@ -126,9 +126,11 @@ def test_a_column_left_out_says_what_the_motion_explains_of_it_and_of_what_was_t
     noise = np.random.default_rng(0).normal(size=len(T))
     log = {"t [s]": T, "q [rad]": Q, "torque_a [Nm]": U, "torque_b [Nm]": U + noise, "c": noise}
     unused = look(log).unused
-    of_force = r": the motion explains (\d+)% of it, of 'torque_a \[Nm\]' (9\d|100)%"
-    second = re.fullmatch("a force beside 'torque_a \\[Nm\\]'" + of_force, unused["torque_b [Nm]"])
-    nothing = re.fullmatch("no force by its name" + of_force, unused["c"])
+    of_force = r": the motion explains (\d+)% of it, and (9\d|100)% of 'torque_a \[Nm\]'"
+    second = re.fullmatch(
+        "a second force beside 'torque_a \\[Nm\\]'" + of_force, unused["torque_b [Nm]"]
+    )
+    nothing = re.fullmatch("not a force by its name" + of_force, unused["c"])
     assert second and nothing and int(nothing[1]) < int(second[1]) < 100
 
 
