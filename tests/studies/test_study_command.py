@@ -231,7 +231,7 @@ def test_ctrl_c_ends_in_one_line_and_the_same_command_goes_on(folder):
     assert process.returncode == 130
     *progress, last = said.splitlines()  # a line each ten seconds, where it takes so long
     assert all(" of 600 points" in line for line in progress), said
-    assert "kept in s.nc.part, the same command goes on" in last
+    assert "kept in s.nc.part, the same command continues" in last
     (folder / "go_on").touch()
     kept = part.read_bytes().count(b'"point":')
     assert kept >= 50
