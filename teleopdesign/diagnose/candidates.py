@@ -15,6 +15,7 @@ from ..effects import (
     CONTACT_ROLES,
     SIGNALS,
     Effect,
+    are_alike,
     delayed,
     depends_on_position,
     depends_on_time,
@@ -91,6 +92,16 @@ def candidates(
             if _is_distinguishable(effect, motions_here, separate_zeros):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
+
+
+def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
+    """Effects that the model lacks, at the same place, of which one is the commoner (`Effect`)."""
+    body, at = model.body(candidate.at), candidate.at
+    return [
+        Candidate(e, at)
+        for e in model.known.values()
+        if are_alike(candidate.effect, e) and not body.has(e.name) and body.axis not in e.elsewhere
+    ]
 
 
 def bodies_with_measured_force(experiment: Experiment) -> set[str]:

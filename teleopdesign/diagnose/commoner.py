@@ -10,9 +10,8 @@ which travel the two are hardly distinguished (`untold`).
 
 from __future__ import annotations
 
-from ..effects import Effect
 from .adequacy import is_adequate
-from .candidates import Candidate
+from .candidates import Candidate, list_look_alikes
 from .decision import is_supported
 from .evidence import whole_score
 from .ladder_state import LadderSearch, LadderState
@@ -33,27 +32,23 @@ def compare_look_alikes(search: LadderSearch, state: LadderState) -> LadderState
     noise = is_adequate(state.fit, state.floor, criteria=search.criteria)
     for rung in state.rungs[1:]:
         assert rung.added is not None
-        for other in _list_look_alikes(rung.added, state, simpler=noise):
+        for other in _list_rivals(rung.added, state, simpler=noise):
             moved = _exchange_for(search, state, rung, other)
             if moved is not None and moved.effects not in state.visited:
                 return moved
     return None
 
 
-def _list_look_alikes(added: Candidate, state: LadderState, *, simpler: bool) -> list[Candidate]:
-    """What may stand for an effect: what is simpler, or else what is more common."""
-    model = state.fit.model
-
-    def fits(other: Effect) -> bool:
-        if simpler:
-            fewer = simplicity(Candidate(other, added.at)) < simplicity(added)
-            return other.commoner == added.effect.name and fewer
-        return added.effect.commoner == other.name
-
-    others = [Candidate(e, added.at) for e in model.known.values() if fits(e)]
-    return [
-        c for c in others if c.key not in state.gone and not model.body(c.at).has(c.effect.name)
-    ]
+def _list_rivals(added: Candidate, state: LadderState, *, simpler: bool) -> list[Candidate]:
+    """Look-alikes that may stand for an effect: the simpler ones, or else the more common ones."""
+    alike = [c for c in list_look_alikes(added, state.fit.model) if c.key not in state.gone]
+    if simpler:
+        return [
+            c
+            for c in alike
+            if c.effect.commoner == added.effect.name and simplicity(c) < simplicity(added)
+        ]
+    return [c for c in alike if added.effect.commoner == c.effect.name]
 
 
 def _exchange_for(
@@ -73,7 +68,7 @@ def _exchange_for(
     ranking: Ranking = search.rank(without, step=state.step, among=(other, added))
     best = next((r for r in ranking.ranked if r.candidate.key == other.key), None)
     if (
-        best is None  # its law does not hold on this axis
+        best is None  # no candidate on these motions
         or best.instead_of is not None
         or not is_supported(without, best, state.floor, criteria=criteria)
         or whole_score(best.fit, state.fit) >= criteria.close

@@ -101,8 +101,8 @@ class Criteria:
     missed: float = 0.5
     #: weight of an effect beside a commoner one that explains as much. Of public recordings of
     #: revolute axes whose torque follows the place over less than a turn gravity is documented on
-    #: six, a cable's pull on one: (1 + 1)/(6 + 1). Higher: undecided more often; lower: a spring is
-    #: called gravity more surely
+    #: eight, a spring or a cable's pull on two: (2 + 1)/(8 + 1). Higher: undecided more often;
+    #: lower: a spring is called gravity more surely
     rarer: float = 0.3
     #: part of what is left that a black box may learn where what is left is said not to repeat. A
     #: tenth: its own errors add as much. Lower: a slow log's scatter is called missing physics;
@@ -112,7 +112,7 @@ class Criteria:
     #: nine recordings of real machines. Lower: said of chance; higher: of other machines only
     differ: float = 3.0
     #: times that the error must fall with the bandwidth where readings are said to ask for forces
-    #: that nothing shows: from the whole of it to a quarter it fell by 0.5 to 2.4 times on 21
+    #: that nothing shows: from the whole of it to a quarter it fell by 0.1 to 2.6 times on 22
     #: recordings of real machines, by 4.5 on one with a filtered potentiometer. Lower: said of
     #: friction that jumps; higher: not said of what reading spoils in part
     falls: float = 3.0

@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..by_value import ByValue
-from ..effects import are_alike
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import floors_left, is_adequate
-from .candidates import Candidate
+from .candidates import Candidate, list_look_alikes
 from .decision import verdict
 from .fit import Fit
 from .ladder_text import ladder_html, ladder_text, sentence
@@ -152,12 +151,8 @@ class Diagnosis(ByValue):
         """
         if self.prepared.is_of_an_arm:  # its links have gravity
             return ()
-        pairs = []
-        for one in dict.fromkeys(u.candidate for u in self.untold):
-            for other in self.model.known.values():
-                if are_alike(one.effect, other) and not self.model.body(one.at).has(other.name):
-                    pairs.append((one, Candidate(other, one.at)))
-        return tuple(pairs)
+        doubted = dict.fromkeys(one.candidate for one in self.untold)
+        return tuple((one, other) for one in doubted for other in list_look_alikes(one, self.model))
 
     @property
     def more_is_missing(self) -> bool:

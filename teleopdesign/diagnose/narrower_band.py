@@ -9,6 +9,7 @@ same.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ..errors import ExperimentError
@@ -63,4 +64,4 @@ def narrower_band(
 
 def _error(fit: Fit) -> float:
     """Error on the check records, or on the fit records where there are no others."""
-    return fit.check_error if fit.check_error == fit.check_error else fit.fit_error
+    return fit.fit_error if math.isnan(fit.check_error) else fit.check_error

@@ -10,9 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..effects import are_alike
 from ..errors import ModelError
-from .candidates import Candidate
+from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
 from .diagnosis import Untold
 from .evidence import whole_score
@@ -55,11 +54,7 @@ def alike_on_records(
     if prepared.is_of_an_arm:  # gravity is in its links
         return ""
     body = fit.model.body(candidate.at)
-    for other in fit.model.known.values():
-        if not are_alike(candidate.effect, other) or body.has(other.name):
-            continue
-        if body.axis in other.elsewhere:
-            continue
+    for other in (c.effect for c in list_look_alikes(candidate, fit.model)):
         more = len(candidate.effect.parameters) > len(other.parameters) and not body.has("bias")
         names = (other.name, *(["bias"] if more and "bias" in fit.model.known else []))
         try:

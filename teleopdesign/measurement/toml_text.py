@@ -6,8 +6,7 @@ import json
 import re
 from collections.abc import Mapping
 
-#: control characters that a comment may not hold: all but the tab
-_CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
+from ..errors import printable
 
 
 def string_text(text: str) -> str:
@@ -22,11 +21,7 @@ def key_text(name: str) -> str:
 
 def comment_text(text: str) -> str:
     """A comment of TOML on one line; control characters, which TOML forbids there, as escapes."""
-    return f"# {_CONTROL.sub(lambda one: _escape(one[0]), text)}".rstrip()
-
-
-def _escape(character: str) -> str:
-    return f"\\x{ord(character):02x}"
+    return f"# {printable(text, keep=chr(9))}".rstrip()
 
 
 def inline_text(entries: Mapping[str, str]) -> str:

@@ -149,7 +149,8 @@ def test_the_rarer_one_has_its_share_of_the_probability(use):
 
 def look_alikes(untold, *there, arm=False):
     """The pairs of a diagnosis that accepted these effects, of which it cannot tell `untold`."""
-    model = SimpleNamespace(known=EFFECTS, body=lambda at: SimpleNamespace(has=there.__contains__))
+    body = SimpleNamespace(has=there.__contains__, axis="revolute")
+    model = SimpleNamespace(known=EFFECTS, body=lambda at: body)
     prepared = SimpleNamespace(is_of_an_arm=arm)
     said = tuple(Untold(candidate(n), "over a travel of 1 rad") for n in untold)
     return Diagnosis.look_alikes.fget(SimpleNamespace(model=model, untold=said, prepared=prepared))

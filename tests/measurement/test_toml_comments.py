@@ -14,4 +14,4 @@ def test_no_text_in_a_comment_adds_to_a_file_or_makes_it_unreadable(text):
 
 
 def test_a_control_character_is_shown_and_a_tab_stays():
-    assert comment_text("in \x1fPA\tor\nmore") == "# in \\x1fPA\tor\\x0amore"
+    assert comment_text("in \x1fPA\tor\nmore") == "# in \\x1fPA\tor\\nmore"
