@@ -2,9 +2,9 @@
 
 Steps that the filter of a firmware has smoothed, or steps coarser than stated, look like a motion.
 Their second derivative is an acceleration that no force explains. Example: a trolley with a
-filtered potentiometer, where a model with the documented mass and friction leaves 80 % up to
-9.4 Hz, and 18 % up to 2.3 Hz. An effect at high frequencies only, such as a resonance, looks the
-same.
+filtered potentiometer, where the model leaves 80 % up to 9.4 Hz, and 18 % up to 2.3 Hz, there with
+mass and friction near the documented ones. An effect at high frequencies only, such as a resonance,
+looks the same.
 """
 
 from __future__ import annotations
