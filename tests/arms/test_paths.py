@@ -61,7 +61,7 @@ def test_the_same_records_give_the_same_paths(poor):
 def test_a_force_limit_below_gravity_is_one_line(poor):
     diagnosis, _ = poor
     limits = shown_limits(diagnosis.prepared.joints["joint2"])["joint2"]
-    with pytest.raises(ExperimentError, match="no path of all joints within the limits") as caught:
+    with pytest.raises(ExperimentError, match="more force than the limits allow") as caught:
         propose_paths(diagnosis, limits={"joint2": limits.with_values(force=1e-3)})
     assert "\n" not in str(caught.value)
 
