@@ -194,7 +194,7 @@ def _records_line(diagnosis: Diagnosis) -> str:
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict in words."""
     left = diagnosis.left
-    more = f" The remaining error is {left:.1f} noise floors: more is missing."
+    more = f" The remaining error is {left:.1f} noise floors: more is missing.{_nearest(diagnosis)}"
     if diagnosis.may_be_noise:
         more = (
             f" The remaining error is {left:.1f} noise floors of {100 * diagnosis.floor.value:.3g} "

@@ -11,19 +11,26 @@ from .search_plan import PLAN
 
 
 def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
-    """What `rivals_of` makes rivals of, before anything is fitted anew: one entry an accepted
-    effect that others could replace, and what would be added next where the verdict is undecided.
+    """What `rivals_of` makes rivals of, before anything is fitted anew.
+
+    One entry an accepted effect that others could replace; and what would be added next, where
+    the verdict is undecided or more than noise is left.
     """
     if diagnosis.open is not None:
         return diagnosis.open
     questions = [
         _question_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None
     ]
-    if diagnosis.verdict == "undecided":
+    if diagnosis.verdict == "undecided" or _is_short(diagnosis):
         supported = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
         others = tuple((r.candidate, r.fit) for r in supported[: PLAN.rivals - 1])
         questions.append(OpenQuestion(None, others))
     return tuple(q for q in questions if q.others)
+
+
+def _is_short(diagnosis: Diagnosis) -> bool:
+    """Whether more than noise is surely left."""
+    return diagnosis.more_is_missing and not diagnosis.may_be_noise
 
 
 def _question_of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:

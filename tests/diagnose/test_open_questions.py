@@ -14,8 +14,19 @@ from teleopdesign.diagnose.search_plan import PLAN
 OTHERS = ("viscous", "spring", "bias", "cogging", "gravity", "coulomb", "shear_thinning")
 
 
-def diagnosis(*, rungs=(), last=(), noise=0.1, verdict="effects_missing", stated=None):
+def diagnosis(
+    *,
+    rungs=(),
+    last=(),
+    noise=0.1,
+    verdict="effects_missing",
+    stated=None,
+    short=False,
+    noisy=False,
+):
     return SimpleNamespace(
+        more_is_missing=short,
+        may_be_noise=noisy,
         open=stated,
         rungs=(Rung(None, fit(1.0)), *rungs),
         last=Ranking(fit(1.0), tuple(last)),
@@ -83,6 +94,9 @@ def test_an_undecided_verdict_asks_for_what_gains_and_counts():
     assert (question.added, names(question)) == (None, ["stribeck"])
     assert open_questions(diagnosis(last=last)) == ()
     assert open_questions(diagnosis(last=last, verdict="model_adequate")) == ()
+    (next_one,) = open_questions(diagnosis(last=last, short=True))
+    assert next_one == question, "more is missing beside what is named"
+    assert open_questions(diagnosis(last=last, short=True, noisy=True)) == (), "or only noise"
     assert open_questions(diagnosis(last=(loses,), verdict="undecided")) == ()
 
 
