@@ -4,6 +4,7 @@ from ..arguments import check_arguments
 from ..effects import BLOCK_EFFECTS, with_block_effects
 from .body import Body
 from .body_equation import BodyEquation
+from .carried_force import solve_carried_force
 from .environment import CONTACT
 from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
 from .hand import hand
@@ -30,6 +31,7 @@ __all__ = [
     "hunt_crossley",
     "matrix_impedance",
     "soft_rubber",
+    "solve_carried_force",
     "spring_damper",
     "with_block_effects",
 ]

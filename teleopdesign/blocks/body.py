@@ -28,6 +28,7 @@ from .body_equation import (
     friction_level,
     impedance_of,
 )
+from .carried_force import carried_force
 from .environment import contact_force
 from .value import Value
 
@@ -202,6 +203,10 @@ class Body:
     def tip_level(self) -> sp.Expr:
         """Level of the dry friction that holds the tip of a structure."""
         return sp.Add(*(e.expression() for e in sort_by_action(self.effects, "tip_level")))
+
+    def carried_force(self) -> sp.Expr:
+        """Force that the transmission carries along a measured motion, as the acting force."""
+        return carried_force(self.effects)
 
     def contact(self) -> sp.Expr:
         """Force that a modelled environment takes from the body; 0 where there is none."""

@@ -55,8 +55,10 @@ def force_needed(body: Body, motion: StatedMotion, *, rows: int = 2000) -> tuple
     friction = equation.friction
     other = equation.inertia * SIGNALS["acceleration"] + equation.force
     # a force that grows with the load is met at the load that the motion itself needs
-    carried = other + friction.subs(SIGNALS["acting_force"], other)
-    friction = friction.subs(SIGNALS["acting_force"], carried)
+    carried = body.carried_force().subs(SIGNALS["interaction_force"], 0)
+    friction = friction.subs(SIGNALS["carried_force"], carried)
+    acting = other + friction.subs(SIGNALS["acting_force"], other)
+    friction = friction.subs(SIGNALS["acting_force"], acting)
     return _force_along(other, body, values) + (f := _force_along(friction, body, values)), f
 
 

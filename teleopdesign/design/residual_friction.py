@@ -51,6 +51,7 @@ def residual_friction(
         SIGNALS["position"]: np.full_like(speeds, position),
         SIGNALS["time"]: np.zeros_like(speeds),
         SIGNALS["acting_force"]: np.zeros_like(speeds),
+        SIGNALS["carried_force"]: np.zeros_like(speeds),
     }
     level, _ = law_along(body, body.level(), signals)
     device = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)

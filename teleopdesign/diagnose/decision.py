@@ -119,7 +119,8 @@ def objection(
             "leaves less than the jitter of the clock alone would: it only weakens the error from "
             "the jitter"
         )
-    if gone := list_displaced_parameters(base, ranked.fit, least=criteria.close):
+    displaced = list_displaced_parameters(base, ranked.fit, least=criteria.close)
+    if gone := [n for n in displaced if not _is_taken_over(n, ranked.candidate)]:
         return f"drives to a bound what the model needs without this effect: {', '.join(gone)}"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
@@ -127,6 +128,11 @@ def objection(
     if needed and not _makes_adequate(base, ranked.fit, floor, criteria):
         return f"fits only with {', '.join(needed)} at a bound, where it is another effect"
     return ""
+
+
+def _is_taken_over(name: str, candidate: Candidate) -> bool:
+    """Whether a parameter is of an effect whose force a candidate may take over whole."""
+    return any(name.startswith(f"{candidate.at}.{e}.") for e in candidate.effect.takes_over)
 
 
 def helps_but_is_barred(

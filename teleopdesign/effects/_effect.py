@@ -97,6 +97,7 @@ class Effect:
         role at most, another of that role will do.
     counts_as: effects that it takes the place of for those that need them, where their laws hold
         none of these effects' parameters
+    takes_over: effects that it needs, and that may be zero beside it: all of their force may be its
     always: what holds for any values of its parameters, such as "even in velocity"
     commoner: name of the effect that gives nearly the same force where `untold` says so, and acts
         on far more machines; "" for none
@@ -121,6 +122,7 @@ class Effect:
     linear: bool = False
     needs: frozenset[str] = frozenset()
     counts_as: frozenset[str] = frozenset()
+    takes_over: frozenset[str] = frozenset()
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     commoner: str = ""

@@ -12,12 +12,15 @@ def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
 
 #: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
 #: stage, `acting_force` the output of the last, `level` the friction level, `interaction_force`
-#: the force of hand or environment on the body, `penetration` the depth in a modelled environment
+#: the force of hand or environment on the body, `carried_force` the force that the transmission
+#: hands on to inertia, forces of the place and hand, after damping and friction; `penetration` the
+#: depth in a modelled environment
 SIGNALS = {
     name: sp.Symbol(name, real=True)
     for name in (
         "time position velocity acceleration direction command acting_force interaction_force "
-        "level penetration temperature other_position other_velocity other_acceleration".split()
+        "carried_force level penetration temperature other_position other_velocity "
+        "other_acceleration".split()
     )
 }
 #: signal -> the further channel of a record that it is made from; without the channel it is unknown

@@ -95,6 +95,7 @@ def cycle_values(
         SIGNALS["acceleration"]: -(omega**2) * amplitude * np.sin(phase),
         SIGNALS["direction"]: np.sign(velocity),
         SIGNALS["acting_force"]: np.zeros_like(velocity),
+        SIGNALS["carried_force"]: np.zeros_like(velocity),
     }
 
 

@@ -79,7 +79,7 @@ def residual_along(
     along = measured_along(body, motion, wrt)
     interaction = along.signals[SIGNALS["interaction_force"]]
     acting = acting_along(body, motion, along)
-    along = along.with_signals({SIGNALS["acting_force"]: acting})
+    along = with_loads(body, motion, along, acting)
     inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
     forces = [_force(effect, along) for effect in along.present(body.effects, "force")]
     if motion.carried is not None:
@@ -103,6 +103,20 @@ def residual_along(
         residual = residual - _leading_force(effect, motion, along, residual)
     moving = acting - friction_of_acting_force(level, friction, along)
     return Residual(motion, residual, friction, acting, moving)
+
+
+def with_loads(body: Body, motion: Motion, along: Along, acting: Traced) -> Along:
+    """What is known along a motion, with the acting force and, where a level needs it, the carried.
+
+    acting: acting force at the rows
+    """
+    along = along.with_signals({SIGNALS["acting_force"]: acting})
+    if not body.level().has(SIGNALS["carried_force"]):
+        return along
+    carried = along.evaluate(body.carried_force())
+    if motion.carried is not None:
+        carried = carried + _force_of_links(motion, motion.carried, along)
+    return along.with_signals({SIGNALS["carried_force"]: carried})
 
 
 def _force_of_links(motion: Motion, force: Array, along: Along) -> Traced:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..blocks import Body
+from ..blocks import Body, solve_carried_force
 from ..controllers import parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..effects import SIGNALS
@@ -219,7 +219,7 @@ class _Builder:
         """inertia a + force + friction - acting: the force that the body needs from others."""
         assert isinstance(part.body, Body)
         refuse_unsimulated(part, self.diagram.name)
-        equation = part.body.equation()
+        equation = solve_carried_force(part.body.equation(), part.body.effects)
         position, speed, change = motion_of(self.diagram, part.motion)
         names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}
         hidden = {x: sp.Symbol(f"{part.name}_{x.name}", real=True) for x in equation.rates}

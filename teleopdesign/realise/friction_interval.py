@@ -35,7 +35,9 @@ _QUANTITIES = {
     **dict.fromkeys(("position", "other_position", "penetration"), "position"),
     **dict.fromkeys(("velocity", "other_velocity"), "velocity"),
     **dict.fromkeys(("acceleration", "other_acceleration"), "acceleration"),
-    **dict.fromkeys(("command", "acting_force", "interaction_force", "level"), "force"),
+    **dict.fromkeys(
+        ("command", "acting_force", "carried_force", "interaction_force", "level"), "force"
+    ),
 }
 
 

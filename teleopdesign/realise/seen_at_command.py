@@ -29,7 +29,7 @@ from ..blocks import Body
 from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from .along_motion import Residual, measured_along, residual_along
+from .along_motion import Residual, measured_along, residual_along, with_loads
 from .friction_along import level_along
 from .stages_along import ActuationStage, stages_along
 from .traced import Along, slope
@@ -45,7 +45,7 @@ LEAST = 1e-3
 COMMANDS = tuple(10.0 ** (0.25 * k) for k in range(-6, 13))
 
 _COMMAND, _ACTING = SIGNALS["command"], SIGNALS["acting_force"]
-_INTERACTION = SIGNALS["interaction_force"]
+_CARRIED, _INTERACTION = SIGNALS["carried_force"], SIGNALS["interaction_force"]
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def is_between(body: Body) -> bool:
     """Whether a law stands between the recorded forces and what moves the body."""
     return (
         any(e.role == "actuation" for e in body.effects)
-        or body.level().has(_ACTING, _INTERACTION)
+        or body.level().has(_ACTING, _CARRIED, _INTERACTION)
         or bool(_effects_that_take(body, _ACTING) or _effects_that_take(body, _INTERACTION))
     )
 
@@ -94,7 +94,7 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
     residual, blind = model.residual.value.copy(), np.zeros(len(motion.time), dtype=bool)
     known = measured_along(body, motion)
     stages = stages_along(body, motion, known)
-    known = known.with_signals({_ACTING: known.constant(model.acting.value)})
+    known = with_loads(body, motion, known, known.constant(model.acting.value))
     ways = [_net(body, motion, known, _ACTING)]
     ways += [_trace_stage(stage, motion, known) for stage in reversed(stages)]
     for way in ways:
@@ -203,9 +203,11 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
             continue
         way = _trace_influence(effect, effect.expression(), signal, along, motion)
         gain, over = gain - way.gain, over - way.dynamics
-    if body.level().has(signal):
+    by_load = slope(body.carried_force(), signal)
+    if body.level().has(signal) or (by_load != 0 and body.level().has(_CARRIED)):
         level, with_speeds = level_along(body, along)
-        made_by_it = _evaluate(slope(level, signal), with_speeds, len(gain))
+        by_signal = slope(level, signal) + slope(level, _CARRIED) * by_load
+        made_by_it = _evaluate(by_signal, with_speeds, len(gain))
         gain = gain - along.signals[SIGNALS["direction"]].value * made_by_it
     return _Way(gain, over, 0.0)
 

@@ -208,7 +208,10 @@ _SIGNALS = tuple(SIGNALS.values())
 _KNOWN = frozenset(_SIGNALS)
 #: signals that depend on parameters themselves, or on shifts of their logs
 TRACED = frozenset(
-    {SIGNALS[name] for name in ("command", "acting_force", "interaction_force", "level")}
+    {
+        SIGNALS[name]
+        for name in ("command", "acting_force", "carried_force", "interaction_force", "level")
+    }
 )
 
 

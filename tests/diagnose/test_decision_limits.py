@@ -199,7 +199,7 @@ def test_the_simplest_of_those_that_explain_as_well_is_taken():
     # stribeck has two parameters and needs coulomb, viscous has one and needs nothing
     assert simplicity(ranked(0.3).candidate) == (2, 1, 0)
     assert simplicity(ranked(0.3, "viscous").candidate) == (1, 0, 0)
-    assert simplicity(ranked(0.3, "load_dependent_friction").candidate) == (1, 1, 3)
+    assert simplicity(ranked(0.3, "load_dependent_friction").candidate) == (1, 1, 4)
     best, near, far = ranked(0.3), ranked(0.3 * 1.0001, "viscous"), ranked(0.31, "spring")
     assert select_equals([best, near, far]) == [best, near]
     assert select_equals([]) == []

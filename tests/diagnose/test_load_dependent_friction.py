@@ -66,4 +66,34 @@ def test_a_search_leaves_its_direction_to_the_actuators_gain():
     body = td.Body("revolute", {"inertia": INERTIA}).with_effect(EFFECTS["coulomb"])
     parameters = body.with_effect(EFFECT).parameters
     held = {n for n in EFFECT.parameters if parameters[f"{EFFECT.name}.{n}"].fixed}
-    assert held == {"driving_difference", "extra_at_rest", "stribeck_velocity"}
+    assert held == set(EFFECT.parameters) - {"coefficient"}
+
+
+#: N m s/rad; back-EMF of a motor that is driven by a voltage
+BACK_EMF = 1.2
+
+
+def needed_by_voltage(t, x, v):
+    """Force beside the inertia, where the gear rubs with what its output carries."""
+    load = INERTIA * np.gradient(v, t) + GRAVITY * np.sin(x)
+    return GRAVITY * np.sin(x) + BACK_EMF * v + np.sign(v) * (LEVEL + MU * np.abs(load))
+
+
+@pytest.mark.slow
+def test_a_motor_driven_by_a_voltage_is_told_to_rub_with_the_load_at_its_output(tmp_path):
+    """The acting force contains the back-EMF there, and is the wrong load."""
+    user = "".join(line + "\n" for line in USER.splitlines() if not line.startswith("load"))
+    records = {
+        "fit": [(20.0, swing((1.4, 0.23, 0.3), (0.5, 0.61, 1.0), (0.2, 1.3, 2.0)))],
+        "check": [(15.0, swing((1.2, 0.31, 1.3), (0.6, 0.47, 0.2), (0.15, 1.7, 0.0)))],
+    }
+    write_made(
+        tmp_path / "servo", records, needed_by_voltage, effects=user, step=1e-5, noise=0.005,
+        inertia=INERTIA, rate=200,
+    )  # fmt: skip
+    answer = td.diagnose(load_experiment(tmp_path / "servo"))
+    assert [(c.effect.name, c.at) for c in answer.named] == [(EFFECT.name, "device")]
+    p = answer.model.parameters
+    assert p[f"device.{EFFECT.name}.output_share"].value == 1.0
+    mu = p[f"device.{EFFECT.name}.coefficient"]
+    assert mu.value == pytest.approx(MU, abs=max(4 * mu.stderr, 0.02))

@@ -143,7 +143,7 @@ def test_no_two_effects_share_a_symbol():
 # claims
 
 
-LEVEL_SIGNALS = ("velocity", "direction", "position", "time", "acting_force")
+LEVEL_SIGNALS = ("velocity", "direction", "position", "time", "acting_force", "carried_force")
 
 
 @cache
@@ -168,6 +168,7 @@ def level_at(name, velocity, values):
             0.003,
             1.0,
             -0.7,
+            0.4,
             *(values[n] for n in EFFECTS[name].parameters),
         )
     )

@@ -39,6 +39,7 @@ BOUNDS = {
     "gravity.phase": (-inf, inf),
     "hardening_spring.neutral": (-inf, inf),
     "load_dependent_friction.driving_difference": (-1.0, 1.0),
+    "load_dependent_friction.output_share": (0.0, 1.0),
     "position_dependent_friction.amplitude": (-1.0, 1.0),
     "position_dependent_friction.phase": (-inf, inf),
     "position_dependent_gain.centre": (-inf, inf),
@@ -76,6 +77,7 @@ STARTS = {
     "hardening_spring.neutral": (-1.0, 0.0, 1.0),
     "load_dependent_friction.driving_difference": (0.0,),
     "load_dependent_friction.extra_at_rest": (0.0,),
+    "load_dependent_friction.output_share": (0.0, 1.0),
     "load_dependent_friction.stribeck_velocity": (0.1,),
     "maxwell_slip.level_2": (0.3,),
     "maxwell_slip.level_3": (0.03,),
@@ -129,6 +131,7 @@ CHOSEN = {
     "contact_hardening.depth",
     "load_dependent_friction.driving_difference",
     "load_dependent_friction.extra_at_rest",
+    "load_dependent_friction.output_share",
     "load_dependent_friction.stribeck_velocity",
 }
 #: may be left out, and are zero then
@@ -137,6 +140,7 @@ OPTIONAL = {
     "position_dependent_gain.centre",
     "load_dependent_friction.driving_difference",
     "load_dependent_friction.extra_at_rest",
+    "load_dependent_friction.output_share",
     "load_dependent_friction.stribeck_velocity",
     "presliding.bristle_damping",
     *(f"maxwell_slip.{n}_{i}" for n in ("stiffness", "level") for i in (3, 4)),

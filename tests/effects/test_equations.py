@@ -22,8 +22,12 @@ def sgn(x):
 
 def load_dependent(s, p):
     slow = exp(-(s.velocity**2) / (p.stribeck_velocity**2 + 1e-18))
-    along = 1 + p.driving_difference * sgn(s.acting_force) * s.direction
-    return p.coefficient * abs(s.acting_force) * along * (1 + p.extra_at_rest * slow)
+    shares = {s.acting_force: 1 - p.output_share, s.carried_force: p.output_share}
+    load = sum(
+        share * abs(f) * (1 + p.driving_difference * sgn(f) * s.direction)
+        for f, share in shares.items()
+    )
+    return p.coefficient * load * (1 + p.extra_at_rest * slow)
 
 
 def gap(s, p):

@@ -1,0 +1,82 @@
+"""The force that a transmission carries: what its output hands on to the load.
+
+    carried = inertia a + forces of the place - interaction        along a measured motion
+            = acting force - damping - friction                    by the body's equation
+
+Gears press on their teeth by this force. An actuator that is driven by a voltage loses a part of
+its acting force to the back-EMF before the gears: friction of the gears then follows the carried
+force, not the acting force. Forces that depend on the velocity, and forces with hidden states,
+count as before the transmission; all others count as a part of its load.
+
+Friction that grows with the carried force reduces this force. The second form is solved for it,
+with the friction of a body that slides or is about to:
+
+    level = A + M abs(carried),  y = acting force - damping - A sgn v
+    carried = y / (1 + M sgn(v y))
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from ..effects import SIGNALS, Effect, sort_by_action
+from ..errors import ModelError
+from ..frozen import Frozen
+from .body_equation import BodyEquation, body_symbols
+from .environment import contact_force
+
+_CARRIED, _DIRECTION = SIGNALS["carried_force"], SIGNALS["direction"]
+#: what makes a force one of the actuator's side
+_BEFORE = tuple(SIGNALS[n] for n in ("velocity", "direction", "acting_force", "carried_force"))
+#: least divisor 1 + M sgn(v y). From M = 1 on a load that drives a gear back locks it, which is a
+#: collision. The lock is a brake of up to 100 times the force instead, which steps can resolve
+LOCKED = 0.01
+
+
+def carried_force(effects: tuple[Effect, ...]) -> sp.Expr:
+    """Carried force on signals of a measured motion, positive as the acting force."""
+    forces = sum((e.expression() for e in _of_the_load(effects)), sp.S(0))
+    moved = body_symbols(effects)["inertia"] * SIGNALS["acceleration"]
+    return moved + forces + contact_force(effects) - SIGNALS["interaction_force"]
+
+
+def solve_carried_force(equation: BodyEquation, effects: tuple[Effect, ...]) -> BodyEquation:
+    """The equation with the carried force solved for, on acting force and motion.
+
+    raises ModelError: the friction level is not in proportion to the carried force, beside a part
+        that does not depend on it
+    """
+    if not any(e.has(_CARRIED) for e in (equation.friction, *equation.rates.values())):
+        return equation
+    carried = _solve(equation.level, effects)
+    return replace(
+        equation,
+        level=equation.level.subs(_CARRIED, carried),
+        friction=equation.friction.subs(_CARRIED, carried),
+        rates=Frozen({s: rate.subs(_CARRIED, carried) for s, rate in equation.rates.items()}),
+    )
+
+
+def _of_the_load(effects: tuple[Effect, ...]) -> list[Effect]:
+    """Forces that act behind the transmission."""
+    forces = sort_by_action(effects, "force")
+    return [e for e in forces if not e.states and not e.expression().has(*_BEFORE)]
+
+
+def _solve(level: sp.Expr, effects: tuple[Effect, ...]) -> sp.Expr:
+    """Carried force at which all forces on the body are in balance while it slides."""
+    load = _of_the_load(effects)
+    before = [e.expression() for e in sort_by_action(effects, "force") if e not in load]
+    base = level.subs(_CARRIED, 0)
+    ahead, back = (level.subs(_CARRIED, way) - base for way in (1, -1))
+    for way, slope in ((2, ahead), (-2, back)):
+        if sp.simplify(level.subs(_CARRIED, way) - base - 2 * slope) != 0:
+            raise ModelError(
+                "friction level: not in proportion to now.carried_force: such a law has no "
+                "simulated form"
+            )
+    rest = SIGNALS["acting_force"] - sp.Add(*before) - base * _DIRECTION
+    slope = ahead if ahead == back else sp.Piecewise((ahead, rest > 0), (back, True))
+    return rest / sp.Max(1 + slope * _DIRECTION * sp.sign(rest), sp.Float(LOCKED))
