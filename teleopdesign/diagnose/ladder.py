@@ -14,6 +14,7 @@ from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
 from .moves import add, remove
+from .narrower_band import choose_band, narrower_to_search
 from .noise_floor import noise_floor
 from .pairs import add_pair, replace_by_pair
 from .rung import Rung
@@ -47,8 +48,18 @@ def find_missing(
     if among is not None:
         model = restrict_candidates(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
+    diagnosis = _diagnose(search)
+    if (band := narrower_to_search(diagnosis)) is not None:
+        search.progress(f"once more, up to {band.bandwidth:.3g} Hz")
+        narrower = _diagnose(search.at(band.bandwidth))
+        diagnosis = choose_band(diagnosis, narrower)
+    return with_candidates_named(among, diagnosis)
+
+
+def _diagnose(search: LadderSearch) -> Diagnosis:
+    """The diagnosis of one search, from the user's model to where its ladder ends."""
     state, rungs = climb(search, begin(search), with_last_corrected)
-    return with_candidates_named(among, conclude(search, state, rungs))
+    return conclude(search, state, rungs)
 
 
 def with_candidates_named(among: Collection[str] | None, diagnosis: Diagnosis) -> Diagnosis:

@@ -50,6 +50,11 @@ class LadderSearch:
         """A generator that begins at the seed."""
         return np.random.default_rng(self.seed)
 
+    def at(self, bandwidth: float) -> LadderSearch:
+        """The same search at another bandwidth of the comparison (Hz)."""
+        whole = prepare(self.experiment, bandwidth=bandwidth)
+        return replace(self, whole=whole, prepared=cut_to_windows(whole, self.plan))
+
     def rank(
         self,
         base: Fit,

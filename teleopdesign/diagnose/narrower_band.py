@@ -10,12 +10,13 @@ looks the same.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import ExperimentError
 from ..measurement.bandwidth import LOWEST
 from ..model import Model
 from .criteria import CRITERIA, Criteria
+from .diagnosis import Diagnosis
 from .fit import Fit, estimate
 from .prepare import Prepared, prepare
 
@@ -60,6 +61,35 @@ def narrower_band(
             break
         best = NarrowerBand(part * chosen, there, chosen, here)
     return best
+
+
+def narrower_to_search(
+    diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA
+) -> NarrowerBand | None:
+    """The band in which a search is made once more, where the first one leaves much unexplained.
+
+    None: all is explained, or the user's model leaves no less in a narrower band
+    """
+    if not diagnosis.more_is_missing:
+        return None
+    return narrower_band(diagnosis.before.model, diagnosis.prepared, criteria=criteria)
+
+
+def choose_band(wide: Diagnosis, narrow: Diagnosis, *, criteria: Criteria = CRITERIA) -> Diagnosis:
+    """The diagnosis in the narrower band, if its final model leaves far less there; else the first.
+
+    Where an effect explains the high frequencies, such as a resonance, its error is small in the
+    wide band too.
+    """
+    if not criteria.falls * _error(narrow.after) < _error(wide.after):
+        return wide
+    words = (
+        f"all that is faster than {narrow.prepared.bandwidth:.3g} Hz: up to "
+        f"{wide.prepared.bandwidth:.3g} Hz no model leaves less than "
+        f"{100 * _error(wide.after):.2g} % of the force. Either the position sensor is filtered or "
+        "coarser than stated, or an effect at high frequencies is missing"
+    )
+    return replace(narrow, left_out=(*narrow.left_out, words))
 
 
 def _error(fit: Fit) -> float:

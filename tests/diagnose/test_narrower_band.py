@@ -1,15 +1,17 @@
 """Where a position that is filtered, or coarser than stated, asks for forces that nothing shows."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+import teleopdesign as td
 from teleopdesign import Model
 from teleopdesign.check.bandwidth_check import check_bandwidth
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.narrower_band import narrower_band
+from teleopdesign.diagnose.narrower_band import choose_band, narrower_band, narrower_to_search
 from teleopdesign.diagnose.prepare import prepare
 
 
@@ -62,3 +64,44 @@ def test_a_bandwidth_that_is_stated_is_the_users(filtered):
     model, prepared = filtered
     stated = replace(prepared.experiment, bandwidth=prepared.bandwidth)
     assert narrower_band(model, replace(prepared, experiment=stated)) is None
+
+
+def ended(error, bandwidth, *, more=True):
+    """A diagnosis whose final model leaves this error."""
+    return Ended(
+        after=SimpleNamespace(fit_error=error, check_error=error),
+        before=None,
+        prepared=SimpleNamespace(bandwidth=bandwidth),
+        more_is_missing=more,
+    )
+
+
+@dataclass(frozen=True)
+class Ended:
+    after: object
+    before: object
+    prepared: object
+    more_is_missing: bool
+    left_out: tuple = ("pairs",)
+
+
+def test_the_narrower_band_is_kept_where_its_final_model_leaves_far_less():
+    wide, narrow = ended(0.6, 80.0), ended(0.6 / CRITERIA.falls - 1e-6, 20.0)
+    kept = choose_band(wide, narrow)
+    assert kept.prepared.bandwidth == 20.0 and kept.left_out[0] == "pairs"
+    assert "faster than 20 Hz" in kept.left_out[1] and "up to 80 Hz" in kept.left_out[1]
+    # a resonance that an effect explains leaves little in the wide band
+    assert choose_band(ended(0.6 / CRITERIA.falls, 80.0), ended(0.2, 20.0)).prepared.bandwidth == 80
+
+
+def test_no_narrower_band_is_searched_where_nothing_is_missing():
+    assert narrower_to_search(ended(0.6, 80.0, more=False)) is None
+
+
+@pytest.mark.slow
+def test_such_a_position_is_diagnosed_in_a_narrower_band(filtered):
+    """The lag of the sensor's filter remains there, and looks like one of the actuator."""
+    diagnosis = td.diagnose(filtered[1].experiment, among=("actuator_lag",))
+    assert diagnosis.prepared.bandwidth < filtered[1].bandwidth
+    assert diagnosis.after.check_error < 0.1
+    assert any("faster than" in words for words in diagnosis.left_out)
