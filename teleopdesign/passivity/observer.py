@@ -78,7 +78,7 @@ class PortEnergy(ByValue):
         ]
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Energy over time with its band of uncertainty; intervals of released energy are marked."""
+        """Figure of the energy over time with its band, and of the intervals of released energy."""
         from ..plot.port_energy import plot_port_energy
 
         return plot_port_energy(self)
