@@ -41,7 +41,7 @@ __all__ = [
 
 Target = TypeVar("Target", bound=Callable[..., Any])
 
-#: folders whose mistakes are those of an experiment
+#: folders whose functions raise ExperimentError for a wrong argument
 _OF_EXPERIMENTS = ("measurement", "examples")
 
 
