@@ -48,6 +48,7 @@ def unchecked_energy(body: Body, reach: Reach | None = None, *, errors: float) -
     """Names of a user's effects that declare to supply no energy while nothing shows this.
 
     Friction levels and shapes of friction are judged elsewhere, whatever they declare.
+
     errors: standard errors of the parameters to either side
     """
     declaring = (

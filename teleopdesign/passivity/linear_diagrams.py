@@ -34,9 +34,9 @@ WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motio
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     """Claims of passivity of a linear diagram, and of absolute stability where it has two ports.
 
-    A refuted claim is also refuted at four nearby sets of values: it does not rest on the rounding
-    of a number. A proof includes that no internal mode grows by itself. A diagram that is not
-    linear has one claim, which is unknown.
+    A refuted claim is also refuted at four nearby sets of values, so it does not rest on rounding.
+    A proof includes that no internal mode grows by itself. A diagram that is not linear has one
+    claim, which is unknown.
 
     diagram: with values;  all_ports: its ports, see `ports`
     """

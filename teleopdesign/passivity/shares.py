@@ -50,7 +50,7 @@ def total_share(terms: Mapping[str, sp.Expr | float], shares: Shares) -> sp.Expr
 def drives_alone(diagram: Diagram, signal: str, body: Moving) -> bool:
     """Whether a force acts unchanged on that body, and on nothing else.
 
-    An actuator of the body is not considered: the caller has to exclude one.
+    An actuator of the body is not considered; the caller has to exclude one.
     """
     shares = shares_of(diagram, signal)
     forces = {name: sp.S(0) for name in (body.command, *body.loads)}

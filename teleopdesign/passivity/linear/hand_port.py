@@ -22,7 +22,7 @@ from .impedance import Impedance, impedance
 def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple[str, ...]]:
     """Impedance at the hand (N s/m), and the names of parts without a linear form.
 
-    The names include parts that are declared linear and are not: their form in Z has no meaning.
+    The names include parts that are declared linear and are not; their form in Z has no meaning.
 
     diagram: a haptic interface without position loop
     speed: m/s, at which smoothed friction and schedules are linearised. A claim about the impedance

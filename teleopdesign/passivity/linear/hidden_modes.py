@@ -167,6 +167,7 @@ def _count_shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
 
     Elimination with the entry whose pole is of the highest order as pivot; no entry of the rest
     then has a pole of a higher order.
+
     returns: sum of their exponents, and their number
     """
     field = sp.QQ.frac_field(S)

@@ -109,8 +109,8 @@ def free_motion(
     Plain symmetric cycles of the motor release none if and only if f_D <= f_1 + f_2 and
     f_D (1 - tanh(u)/u) <= f_1, u = sigma_D f_2/(k f_D). If this fails, a cycle refutes the claim.
     If it holds, other closed paths are searched. Cycles with a small step back and forth at each
-    reversal release more: the bristle forgets the last stroke at the cost of little friction.
-    Random paths follow.
+    reversal release more, because the bristle forgets the last stroke at the cost of little
+    friction. Random paths follow.
 
     motor_level, link_level: f_1, f_2, N;  transmission_stiffness: k, N/m
     compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m

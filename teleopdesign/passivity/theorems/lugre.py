@@ -146,6 +146,7 @@ def add_bristle_damping(
     F_min), and then a proof without them holds with them. Otherwise nothing is known: the bristle
     may recoil after a jump of speed at a lower level. A refuting motion of the pair can be as slow
     as one likes, so that the dampings take nothing, and the refutation stays.
+
     coulomb_level, highest_level: F_min and F_max, N;  stiffness: sigma_0, N/m
     bristle_damping, viscous_damping: s1, s2, N s/m
     """

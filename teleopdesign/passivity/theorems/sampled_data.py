@@ -108,6 +108,7 @@ def sampled_coupling(
     """Is a teleoperator passive whose equal and opposite forces -H(z) (x_m - x_s) are sampled?
 
     The least loss over a travel of x_m - x_s is that of a damping b_m b_s/(b_m + b_s).
+
     coupling: H(z), N/m, as in `sampled_passivity`
     master_damping, slave_damping: b_m, b_s, N s/m;  sample_time: s
     """
@@ -208,8 +209,8 @@ def sampled_wave(
 ) -> SampledWave:
     """The motion with growing travel at s = rate + j frequency, in the phase that releases most.
 
-    Where the controller itself grows faster than this travel: a step, and a second step along the
-    force that the first one has caused.
+    Where the controller itself grows faster than this travel, the motion is a step, and a second
+    step along the force that the first one has caused.
     """
     system = law, damping, sample_time, stiffness
     z = _factor(rate, frequency)

@@ -118,7 +118,7 @@ def wave_claim(diagram: Diagram) -> Claim:
     """The claim `wave_teleoperator` for a diagram that is wired by `wave_variables`.
 
     Controllers are in continuous time. Hand and environment are left out. Coulomb friction may act
-    in addition to the impedances: its force opposes the velocity, so it dissipates energy.
+    in addition to the impedances, because its force opposes the velocity and dissipates energy.
 
     returns: unknown where some part is not in the impedances, or hides a growing mode
     raises ModelError: another wiring, a block without values, two wave impedances that differ, a

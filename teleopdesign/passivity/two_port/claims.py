@@ -52,6 +52,7 @@ def passive(system: TwoPort) -> Claim:
     """Is the two-port passive: does no motion of its two ports take energy out (Raisbeck)?
 
     The positive-real test of the matrix decides, poles on the axis included.
+
     returns: proved; or refuted by a growing wave; or, with dead times, evidence over frequency;
         unknown where no proof and no wave is available
     """
@@ -86,6 +87,7 @@ def absolutely_stable(system: TwoPort) -> Claim:
     """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
     `checker/absolute_stability.py` contains the statement and its proof.
+
     returns: proved; or refuted by a motion that grows by itself between the two passive
         terminations that the verdict names. With dead times: evidence over frequency, or refuted by
         a wave with which port 1 releases energy while port 2 has the termination that the verdict

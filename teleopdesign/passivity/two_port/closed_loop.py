@@ -30,8 +30,8 @@ def grows_between(z: Entries, held: tuple[Ratio, Ratio]) -> bool:
 def hidden_poles(z: Entries, held: tuple[Ratio, Ratio], k: int) -> Polynomial:
     """Polynomial whose zeros are poles of z[k] and of the same entry of the closed loop.
 
-    Only poles count at which the determinant of the closed loop is finite: there the other port
-    rests. The result is 1 where the determinant is zero or shares a pole with z[k].
+    Only poles count at which the determinant of the closed loop is finite, because there the other
+    port rests. The result is 1 where the determinant is zero or shares a pole with z[k].
     k: 1 (z12) or 2 (z21);  held: impedances of the two terminations
     """
     det, _ = _close_loop(z, held)

@@ -22,6 +22,7 @@ def points_of_growth(z: Entries) -> np.ndarray:
 
     The points lie beside the axis where an inequality fails, beside poles, and on a grid over the
     quadrant with imaginary part >= 0.
+
     z: z11, z12, z21, z22 as coprime numerators and denominators
     """
     return np.array([*_points_near_axis(z), *points_near_poles(z)])

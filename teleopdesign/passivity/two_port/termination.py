@@ -96,6 +96,7 @@ def velocities_in_phase(
     """Velocities of both ports at t = 0, m/s, complex; the larger one has the size 1 m/s.
 
     Their phase is the one in which the terminations take in most energy.
+
     ratio: velocity of the far port over that of the near port, at s
     """
     size = max(1.0, abs(ratio))

@@ -120,7 +120,7 @@ def teleoperator_two_port(
 class FrequencyMargins(ByValue):
     """Margins of a two-port on the imaginary axis over frequency; numerical.
 
-    Nonnegative margins are necessary, not sufficient: they show neither poles in the right half
+    Nonnegative margins are necessary and not sufficient. They show neither poles in the right half
     plane nor residues at poles on the axis. `passive` and `absolutely_stable` check all conditions.
 
     frequency: Hz, (n,)
@@ -147,7 +147,7 @@ class FrequencyMargins(ByValue):
 def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
     """Margins of passivity and of absolute stability (Llewellyn) over frequency.
 
-    Numerical: nothing is known between the frequencies, nor about poles off the axis.
+    The result is numerical. Nothing is known between the frequencies, nor about poles off the axis.
 
     frequency: Hz, (n,); default: 4001 points from 1e-4 to 1e4
     returns: both margins, >= 0 at every frequency if the two-port is passive or absolutely stable;
