@@ -151,7 +151,7 @@ def _resolve(annotation: Any, names: Mapping[str, Any]) -> Any:
     return Any
 
 
-_MOST_NAMES = 9  # names in one annotation
+_MOST_NAMES = 9  # most names of one annotation that are imported for it
 
 
 def _find_type_import(module: str, name: str) -> Any:

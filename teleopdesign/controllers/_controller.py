@@ -29,7 +29,7 @@ __all__ = [
     "state_symbol",
 ]
 
-_MOST_SHOWN = 8  # parameters of a law that one line shows
+_MOST_SHOWN = 8  # most parameters of a law in one line
 
 
 @dataclass(frozen=True)
