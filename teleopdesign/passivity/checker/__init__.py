@@ -2,11 +2,9 @@
 
 For each file the program prints the statement that the certificate proves, or one line that says
 why it proves nothing. The statement is made from the contents of the certificate alone. The exit
-status is 1 if any certificate is refused.
-
-A small parser (`algebra.py`) reads the texts of a certificate and never runs them. All numbers are
-fractions. The effort is bounded (`effort.py`). The folder imports nothing but Python's standard
-library, so a copy of the folder checks certificates without the package.
+status is 1 if any certificate is refused. A small parser (`algebra.py`) reads the texts of a
+certificate and never runs them. All numbers are fractions. The effort is bounded (`effort.py`). The
+folder imports nothing but Python's standard library: a copy checks without the package.
 
 Each kind of certificate has its theorem and its proof in its file: `storage.py`,
 `positive_real.py`, `absolute_stability.py`, and `over_a_box.py` for all values within intervals.

@@ -108,11 +108,7 @@ class Condition:
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
-    """The statement that a certificate of this kind proves.
-
-    c: fields kind, title, digest, impedance (2x2, texts in s)
-    raises Refused: a condition does not hold
-    """
+    """The statement that a certificate of this kind proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, rows, text = read_matrix(c["impedance"], (2,))
     one = Quotient(algebra.number(1), {})
@@ -184,10 +180,7 @@ def _simple_poles(name: str, z: Ratio) -> Condition:
 
 
 def _inequality(z: Entries) -> Iterator[Condition]:
-    """Condition 3 as signs of two polynomials in x = w^2.
-
-    Both are multiplied by denominators that are never negative.
-    """
+    """Condition 3 as signs of two polynomials in x = w^2, times denominators >= 0."""
     difference, twice = llewellyn(z)
     for name, p in (
         ("2 Re z11 Re z22 - Re z12 z21 >= 0 on the axis", difference),
@@ -198,10 +191,7 @@ def _inequality(z: Entries) -> Iterator[Condition]:
 
 
 def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
-    """A and A^2 - abs(z12 z21)^2 as polynomials in x = w^2.
-
-    A = 2 Re z11 Re z22 - Re z12 z21. Both are multiplied by factors that are never negative.
-    """
+    """A and A^2 - abs(z12 z21)^2 as polynomials in x = w^2, times factors that are >= 0."""
     loop = coprime(multiply(z[1][0], z[2][0]), multiply(z[1][1], z[2][1]))
     (r1, d1), (r2, d2) = (_real_ratio(one) for one in (z[0], z[3]))
     re, d = real_part(*loop), real_part(loop[1], loop[1])
@@ -211,10 +201,7 @@ def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
 
 
 def _real_ratio(z: Ratio) -> tuple[Polynomial, Polynomial]:
-    """Re z = r/d as polynomials in x = w^2; d >= 0 for x >= 0.
-
-    Common factors are divided out, but only if d is then still nowhere negative.
-    """
+    """Re z = r/d in x = w^2, d >= 0; common factors are divided out where d stays >= 0."""
     r, d = real_part(*z), real_part(z[1], z[1])
     common = greatest_common_divisor(r, d)
     short = divide(d, common)[0]

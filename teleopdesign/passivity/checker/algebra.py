@@ -19,10 +19,7 @@ _TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?)|([A-Za-z_]\w*)|(\*\*|[-+*/()]))", re
 
 @dataclass(frozen=True)
 class Quotient:
-    """A quotient of polynomials: above over the product of base^power.
-
-    below: name of a base -> power; the bases (`Algebra.bases`) are not zero
-    """
+    """above over the product of base^power; below: name of a base (not zero) -> power."""
 
     above: Poly
     below: Mapping[str, int]
@@ -55,10 +52,7 @@ class Algebra:
         return {tuple(int(n == name) for n in self.names): Fraction(1)}
 
     def weigh(self, a: Poly, b: Poly) -> int:
-        """Effort of one product of coefficients of a and b.
-
-        1 for short coefficients; for long ones it grows with the product of their lengths.
-        """
+        """Effort of a product of coefficients: 1, or by the product of lengths for long ones."""
         return 1 + (longest(a.values()) * longest(b.values()) >> 17)
 
     def plus(self, a: Poly, b: Poly, factor: Fraction | int = 1) -> Poly:
@@ -87,10 +81,7 @@ class Algebra:
         return result
 
     def divided(self, a: Poly, b: Poly) -> tuple[Poly, Poly]:
-        """(quotient, rest) of a over b, by the highest term of b.
-
-        With several names the rest is {} if and only if b divides a.
-        """
+        """(quotient, rest) by the highest term of b; the rest is {} if and only if b divides a."""
         quotient: Poly = {}
         high = max(b)
         while a and min(map(sub, max(a), high), default=0) >= 0:
@@ -100,10 +91,7 @@ class Algebra:
         return quotient, a
 
     def invert(self, a: Poly) -> Quotient:
-        """1/a, where a is a product of bases and a number other than 0.
-
-        raises Refused: another a, unless `divides` makes it a base
-        """
+        """1/a, where a is a product of bases and a number other than 0; else raises Refused."""
         below: dict[str, int] = {}
         for name, base in self.bases.items():
             while a and base and {*a} != {self.unit} != {*base}:
@@ -136,10 +124,7 @@ class Algebra:
         return above
 
     def read(self, text: object) -> Quotient:
-        """The rational function of a text; the text is parsed and never run.
-
-        text: + - * / ** ( ), numbers and names;  raises Refused: any other text
-        """
+        """The rational function of a text (+ - * / ** ( ), numbers, names), which is never run."""
         need(isinstance(text, str), "expected a text where there is none")
         return _Reader(self, str(text)).whole()
 

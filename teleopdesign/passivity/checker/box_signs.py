@@ -29,9 +29,8 @@ Answer = Literal["yes", "no", "halve"]
 
 @dataclass(frozen=True)
 class BoxPart:
-    """Bernstein coefficients of a polynomial over a part of the box.
+    """Bernstein coefficients of a polynomial over a part of the box; shape: along each variable.
 
-    shape: number of coefficients along each variable
     flat: all coefficients in one list; the index of the last variable runs fastest
     """
 
@@ -60,11 +59,7 @@ class BoxPart:
         return BoxPart(self.shape, left), BoxPart(self.shape, right)
 
     def spread(self, axis: int) -> float:
-        """How much the polynomial changes along a variable, relative to its largest coefficient.
-
-        The largest difference of neighbouring coefficients, over the largest coefficient, times the
-        degree.
-        """
+        """Largest change between neighbours, over the largest coefficient, times the degree."""
         size = max(map(abs, self.flat)) or 1
         lines = _lines(self.shape, axis)
         steps = (
@@ -79,10 +74,7 @@ def are_non_negative(polys: Sequence[Poly], ends: Ends, left: list[int]) -> bool
 
 
 def are_apart_from_zero(polys: Sequence[Poly], ends: Ends, left: list[int]) -> bool:
-    """Whether it is shown that polynomials (one, or two) have no common zero.
-
-    For all x >= 0 and all values in the box.
-    """
+    """Whether polynomials (one, or two) are shown to have no common zero for all x and values."""
     kept = [p for p in polys if p]
     return bool(kept) and _holds(kept, ends, left, _apart_from_zero)
 
@@ -133,10 +125,7 @@ def _non_negative(cell: Sequence[BoxPart]) -> Answer:
 
 
 def _apart_from_zero(cell: Sequence[BoxPart]) -> Answer:
-    """Whether one or two polynomials have no common zero in this cell.
-
-    "yes" for two: the pairs of coefficients lie strictly on one side of a line through zero.
-    """
+    """No common zero: all pairs of coefficients lie strictly on one side of a line through 0."""
     if any(min(one.flat) > 0 or max(one.flat) < 0 for one in cell):
         return "yes"
     corners = list(zip(*(one.corners() for one in cell), strict=True))
@@ -161,10 +150,7 @@ def _lines(shape: tuple[int, ...], axis: int) -> list[list[int]]:
 
 
 def _unit(polys: Sequence[Poly]) -> Fraction:
-    """Scale of x = unit t/(1 - t): a power of 4 at which the powers of x have similar sizes.
-
-    Any positive unit gives a correct answer.
-    """
+    """A power of 4 at which the powers of x have similar sizes; any unit > 0 would be correct."""
     sizes: dict[int, Fraction] = {}
     for p in polys:
         for k, c in p.items():

@@ -30,10 +30,7 @@ KINDS = ("storage", *_DECIDED)
 
 
 def read(content: object) -> tuple[dict[str, Any], Storage | None]:
-    """Fields of a certificate, and its meaning if its kind is "storage"; no proof is checked yet.
-
-    raises Refused: no certificate, a wrong digest, or a storage certificate with a wrong content
-    """
+    """Fields of a certificate, and its meaning if its kind is "storage"; no proof is checked."""
     c: dict[str, Any] = expect(dict, content, "certificate")
     for field in ("kind", "title", "digest"):
         expect(str, c.get(field), field)
@@ -49,10 +46,7 @@ def read(content: object) -> tuple[dict[str, Any], Storage | None]:
 
 
 def check(content: object) -> str:
-    """The statement that a certificate proves, in words.
-
-    content: data as read from JSON;  raises Refused: the certificate proves nothing
-    """
+    """The statement that a certificate (data as read from JSON) proves; raises Refused if none."""
     c, storage = read(content)
     if storage is None:
         return _DECIDED[c["kind"]](c)
@@ -61,10 +55,7 @@ def check(content: object) -> str:
 
 
 def load(path: str) -> object:
-    """The data of a JSON file, for `check`.
-
-    raises Refused: not readable, too long, no JSON, or a field that appears twice
-    """
+    """The data of a JSON file; raises Refused: not readable, too long, no JSON, a field twice."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         need(len(dict(pairs)) == len(pairs), "a field twice")
@@ -83,10 +74,7 @@ def load(path: str) -> object:
 
 
 def main(paths: list[str]) -> int:
-    """Check files and print one line for each.
-
-    returns: exit status: 0 if all are proved, 1 if any proves nothing, 2 without files
-    """
+    """Print one line for each file; returns 0 if all are proved, 1 if not, 2 without files."""
     status = 0 if paths else 2
     for path in paths:
         try:

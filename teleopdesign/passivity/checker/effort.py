@@ -1,8 +1,7 @@
 """Bounds of what the checker reads and computes, and the refusal of what exceeds these bounds.
 
 The functions of `polynomials.py` serve a proof, whose effort is bounded, and a search, whose effort
-is not. So the effort that they may spend is not an argument: `bound_effort` opens a context, and
-the context holds it.
+is not. So the effort is no argument of these functions: `bound_effort` opens a context with it.
 """
 
 from __future__ import annotations
@@ -19,8 +18,7 @@ FILE, DIGITS, NAMES, SIGNS, NESTING = 2_000_000, 4000, 60, 4, 40
 #: microseconds each, so a few seconds at most)
 DEGREE, BITS, EFFORT = 4000, 100_000, 1_500_000
 
-#: effort that is left, a list of one number, so that all functions count down the same one; None:
-#: not bounded
+#: effort that is left, in a list of one number, which all functions share; None: not bounded
 _LEFT: ContextVar[list[int] | None] = ContextVar("_LEFT", default=None)
 
 
@@ -36,10 +34,7 @@ def need(condition: object, problem: str) -> None:
 
 @contextmanager
 def bound_effort(left: list[int]) -> Iterator[None]:
-    """A context in which computations with polynomials take their effort from `left`.
-
-    left: list of one number, the effort that is left; below 0 the computation is refused
-    """
+    """A context in which polynomials take effort from `left`, a list of one number, or refuse."""
     token = _LEFT.set(left)
     try:
         yield
@@ -64,8 +59,7 @@ def longest(numbers: Iterable[Fraction]) -> int:
 def spend(times: int, a: Iterable[Fraction], b: Iterable[Fraction]) -> None:
     """Subtract the effort of `times` products of numbers of a and b, where effort is bounded.
 
-    A product of short numbers costs 1. The cost of long numbers grows with the product of their
-    lengths.
+    A product of short numbers costs 1, of long ones it grows with the product of their lengths.
     """
     left = _LEFT.get()
     if left is not None:

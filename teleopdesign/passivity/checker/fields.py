@@ -13,10 +13,7 @@ _NUMBER = re.compile(r"-?\d+(/0*[1-9]\d*)?", re.ASCII)
 
 
 def expect(kind: type, value: Any, what: str) -> Any:
-    """The value itself, if it is exactly of that type; else raises Refused.
-
-    what: name of the value in the message
-    """
+    """The value, if it is exactly of that type; else raises Refused. what: name in the message."""
     need(type(value) is kind, f"{what}: expected {kind.__name__}, found {type(value).__name__}")
     return value
 
@@ -49,10 +46,9 @@ def flat(text: str) -> str:
 
 
 def read_matrix(value: Any, sizes: tuple[int, ...]) -> tuple[Algebra, list[list[Quotient]], str]:
-    """Read a square matrix of texts, each a rational function of s.
+    """Read a square matrix of texts: the algebra in s, the entries, and a text for a statement.
 
-    sizes: numbers of rows that are allowed
-    returns: the algebra in s, the entries row by row, and the matrix as text for a statement
+    sizes: numbers of rows that are allowed;  raises Refused: another matrix
     """
     rows = [expect(list, row, "impedance") for row in expect(list, value, "impedance")]
     shape = " or ".join(f"{n}x{n}" for n in sizes)

@@ -52,10 +52,7 @@ _MOST_VALUES = 8
 
 
 class SignsOverBox:
-    """Tests of signs of polynomials over the box of a certificate.
-
-    ends: interval of each name;  algebra: polynomials in s (or x) and the names
-    """
+    """Tests of signs of polynomials in s (or x) and the names over the box of a certificate."""
 
     def __init__(self, c: dict[str, Any]) -> None:
         box = expect(dict, c["box"], "box")
@@ -96,18 +93,12 @@ class SignsOverBox:
         return n == 0 or are_apart_from_zero(_halves(p), self.ends, self.left)
 
     def is_nowhere_zero(self, p: Poly) -> bool:
-        """Whether some coefficient of p is shown to be zero nowhere in the box.
-
-        Then p is the zero polynomial at no point of the box.
-        """
+        """Whether some coefficient of p is zero nowhere in the box, so that p is nowhere 0."""
         parts = (_coefficient(p, k) for k in range(_degree(p) + 1))
         return any(are_apart_from_zero((q,), self.ends, self.left) for q in parts)
 
     def are_non_negative(self, polys: Sequence[Poly], weight: Poly | None = None) -> bool:
-        """Whether all polynomials are shown to be >= 0 for x >= 0, anywhere in the box.
-
-        weight: a polynomial that is >= 0 there, and by which the others may be divided
-        """
+        """Whether all are shown >= 0 for x >= 0 in the box; weight: a divisor that is >= 0."""
         return are_non_negative([self._short(p, weight) for p in polys], self.ends, self.left)
 
     def _short(self, p: Poly, weight: Poly | None) -> Poly:
@@ -128,17 +119,13 @@ class SignsOverBox:
         return plus(times(a, c), _times_x(times(b, d))), plus(times(b, c), times(a, d), -1)
 
     def where(self) -> str:
-        """The intervals in words, for a statement."""
         pairs = zip(self.names, self.ends, strict=True)
         listed = [f"{n} from {a} to {b}" for n, (a, b) in pairs]
         return f"for all {', '.join(listed)}" if listed else "no value left open"
 
 
 def state_stability(c: dict[str, Any]) -> str:
-    """The statement of a certificate that a polynomial is stable over a box.
-
-    c: fields kind, title, digest, box, squares, polynomial;  raises Refused: not shown
-    """
+    """The statement that a polynomial is stable over a box; raises Refused where not shown."""
     expect_fields(c, "kind", "title", "digest", "box", "squares", "polynomial")
     box = SignsOverBox(c)
     need(box.is_stable(box.read(c["polynomial"])), "not shown to be stable over the box")
@@ -146,10 +133,7 @@ def state_stability(c: dict[str, Any]) -> str:
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
-    """The statement of a certificate that Z, 1x1 or 2x2, is positive real over a box.
-
-    c: fields as in `_impedance`, and `scale`, the c > 0 of the proof;  raises Refused: not shown
-    """
+    """The statement that Z is positive real over a box; raises Refused where it is not shown."""
     box, n, d, text = _impedance(c)
     scale = read_number(c["scale"], "scale")
     need(scale > 0, "scale: not > 0")
@@ -164,10 +148,7 @@ def state_positive_real(c: dict[str, Any]) -> str:
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
-    """The statement of a certificate that Z, 2x2, is absolutely stable over a box.
-
-    c: fields as in `_impedance`;  raises Refused: not shown
-    """
+    """The statement that Z is absolutely stable over a box; raises Refused where not shown."""
     box, n, d, text = _impedance(c)
     need(len(n) == 4, "numerators: not 2x2")
     need(_is_absolutely_stable(box, n, d), "not shown to be absolutely stable over the box")
@@ -224,11 +205,10 @@ def _is_balanced(box: SignsOverBox, residues: list[list[Poly]]) -> bool:
 def _scale_signs(
     box: SignsOverBox, n: list[Poly], d: Poly
 ) -> tuple[list[Poly], Poly, list[list[Poly]]] | None:
-    """N and d with the highest coefficient of d > 0, and residues times a number > 0.
+    """N, d (highest coefficient > 0), and residues at infinity and at 0, times a number > 0.
 
-    returns: N row by row, d, and the residues at infinity and (where d(0) = 0) at 0. None where
-        it is not shown that d has no zero with Re s >= 0 but a simple one at 0, or where an entry
-        grows faster than s
+    None where an entry grows faster than s, or where it is not shown that d has no zero with
+    Re s >= 0 but a simple one at 0.
     """
     has_zero = not _coefficient(d, 0)
     rest = {(k[0] - 1, *k[1:]): c for k, c in d.items()} if has_zero else d
@@ -244,11 +224,7 @@ def _scale_signs(
 
 
 def _impedance(c: dict[str, Any]) -> tuple[SignsOverBox, list[Poly], Poly, str]:
-    """The box, the numerators row by row, the denominator, and the text of Z of a certificate.
-
-    c: fields kind, title, digest, box, squares, numerators (1x1 or 2x2), denominator, and `scale`
-        for "positive real over a box"
-    """
+    """The box, the numerators row by row, the denominator, and the text of Z of a certificate."""
     fields = ("kind", "title", "digest", "box", "squares", "numerators", "denominator")
     expect_fields(c, *fields, *(["scale"] if c["kind"].startswith("positive") else []))
     rows = [expect(list, r, "numerators") for r in expect(list, c["numerators"], "numerators")]

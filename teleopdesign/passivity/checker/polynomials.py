@@ -131,8 +131,7 @@ def is_hurwitz(p: Polynomial) -> bool:
 def is_positive_real(p: Polynomial, q: Polynomial) -> bool:
     """Whether p/q, coprime, is positive real: p + q is Hurwitz, and Re p conj q >= 0 on the axis.
 
-    Then (p - q)/(p + q) is bounded by 1 in the right half plane. The test also holds for improper
-    p/q.
+    Then (p - q)/(p + q) is bounded by 1 in the right half plane. Improper p/q are allowed.
     """
     return is_hurwitz(add(p, q)) and is_non_negative(real_part(p, q))
 
@@ -170,10 +169,7 @@ def odd_part(p: Polynomial) -> Polynomial:
 
 
 def is_non_negative(p: Polynomial) -> bool:
-    """Whether p(x) >= 0 for all x >= 0.
-
-    This is so if p has no root of odd multiplicity at x > 0, and p > 0 for large x.
-    """
+    """Whether p(x) >= 0 for x >= 0: no root of odd multiplicity at x > 0, and p > 0 for large x."""
     if not p:
         return True
     g = without_zero(odd_part(p))
@@ -197,10 +193,7 @@ def signs_at_roots(f: Polynomial, g: Polynomial) -> tuple[int, int, int]:
 
 
 def _chains(f: Polynomial, g: Polynomial) -> list[list[Polynomial]]:
-    """Chains of remainders that sum the signs of f, of f^2 and of 1 over the positive roots of g.
-
-    Three empty lists where g has no root to be counted.
-    """
+    """Chains of remainders that sum the signs of f, f^2 and 1 over the positive roots of g."""
     g = square_free(without_zero(g))
     if len(g) < 2:
         return [[], [], []]

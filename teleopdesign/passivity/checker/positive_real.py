@@ -39,10 +39,7 @@ Matrix = list[list[Polynomial]]
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
-    """The statement that a certificate of this kind proves; raises Refused where Z is not so.
-
-    c: fields kind, title, digest, impedance (1x1 to 6x6, texts in s)
-    """
+    """The statement that a certificate of this kind proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, z, text = read_matrix(c["impedance"], SIZES)
     below = {n: max(e.below.get(n, 0) for row in z for e in row) for n in algebra.bases}

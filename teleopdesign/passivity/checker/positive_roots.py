@@ -22,9 +22,8 @@ _ONE = (Fraction(1),)
 
 
 def has_positive_root(p: Sequence[Fraction]) -> bool:
-    """Whether the polynomial p has a root x > 0.
+    """Whether p (lowest power first; not constant, simple roots, p(0) != 0) has a root x > 0.
 
-    p: coefficients, lowest power first; not constant, simple roots, p(0) != 0
     Cauchy's bound gives k with all roots below 2^k. With x = 2^k t the roots have t < 1.
     """
     changes = variations(p)
@@ -76,8 +75,7 @@ def are_surely_coprime(p: Sequence[Fraction], q: Sequence[Fraction]) -> bool:
     """Whether p and q are shown to have no common factor, by a computation modulo a prime.
 
     A common factor of polynomials with whole coefficients keeps its degree modulo a prime that does
-    not divide the leading coefficients. So no common factor modulo the prime means none at all. The
-    answer False shows nothing.
+    not divide the leading coefficients. The answer False shows nothing.
     """
     spend(len(p) * len(q), _ONE, _ONE)
     a, b = _modulo_prime(p), _modulo_prime(q)

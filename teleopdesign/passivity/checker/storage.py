@@ -3,38 +3,28 @@
 Names are constants, signals (functions of time), states (with a rate each) and, for each x in
 `signs`, abs_x = |x| and sign_x (1 for x > 0, -1 for x < 0, either for x = 0).
 
-Theorem. Assume:
-
-- at all times every expression in `positive` is > 0 and every expression in `nonnegative` is >= 0;
-- signals and the rates of invariants are locally bounded;
-- the states are absolutely continuous, with x' = rate at almost every time;
-- every invariant h is >= 0 at the start.
-
-Then h >= 0 and V >= 0 at all times, and the integral of the supply is at least the change of V,
-with V = 0 at rest. So this integral is never below -V(start), and from rest never below 0.
+Theorem. Assume that at all times every expression in `positive` is > 0 and every expression in
+`nonnegative` is >= 0; that signals and the rates of invariants are locally bounded; that the states
+are absolutely continuous, with x' = rate at almost every time; and that every invariant h is >= 0
+at the start. Then h >= 0 and V >= 0 at all times, and the integral of the supply is at least the
+change of V, with V = 0 at rest. So it is never below -V(start), and from rest never below 0.
 
 Proof.
-
 (1) V and h contain constants and states only; assumptions contain constants and signals only. All
 divisors are products of `positive` expressions. So all expressions are defined, V and h are locally
 Lipschitz, and along a motion V and h are absolutely continuous in time.
-
 (2) For each combination of signs (x = s X, X = |x| >= 0) the expressions h' + rate h, V and
 supply - V' are identically sums of terms weight * factors^powers * square. Weights are rational and
 >= 0. Factors are |x|, assumptions and invariants (no invariants in the terms of an h). Powers are
 integers, below 0 only for `positive`. So each sum is >= 0.
-
 (3) V and h may depend on |e| or sign_e of a state e, if both sides agree at e = 0 and no rate
 depends on sign_e. At almost every time with e = 0 also e' = 0. So both sides have the same V', and
 this is the true one.
-
 (4) From h' >= -rate h follows h >= 0: multiply by the exponential of the integral of the rate. From
 V' <= supply the bound follows by integration.
-
 (5) Where the statement allows sign_x "from -1 to 1" at x = 0 (sticking friction), the supply and
 all rates are affine in sign_x there. The inequalities are shown for -1 and 1, so they also hold for
 all values between.
-
 The example in the certificate meets all assumptions, as stated and at rest. So the assumptions do
 not contradict each other.
 """
@@ -85,10 +75,7 @@ class Meaning:
         return goals
 
     def _change(self, e: Quotient) -> Quotient:
-        """Rate of change of e: the sum over the states of slope times rate.
-
-        No state is in the denominator of e.
-        """
+        """Rate of change of e: sum over states of slope times rate; no state is in a divisor."""
         total = Quotient({}, {})
         for x, rate in self.rates.items():
             i = self.algebra.names.index(x)
@@ -102,10 +89,7 @@ class Meaning:
 
 
 class Storage:
-    """The content of a storage certificate, with all rules checked but the identities.
-
-    `check_proofs` checks the identities. raises Refused: a field or an expression breaks a rule
-    """
+    """The content of a storage certificate; all rules are checked here but the identities."""
 
     def __init__(self, c: dict[str, Any]) -> None:
         expect_fields(c, "kind", "title", "digest", "constants", "signals", "rates", "signs",
@@ -138,9 +122,9 @@ class Storage:
             self._check_example(case)
 
     def _meaning(self, signs: dict[str, int], zero: str = "") -> Meaning:
-        """The expressions for fixed signs: each x in `signs` is replaced by sign * |x|.
+        """Expressions with x = sign * |x| for x in `signs`, the name x standing for |x|.
 
-        The name x then stands for the size |x|. zero: a name that is replaced by 0
+        zero: a name that is replaced by 0
         """
         c, names = self.c, [*self.words, *(p + x for x in self.signs for p in ("abs_", "sign_"))]
         algebra = Algebra(names, self.left)
@@ -222,10 +206,7 @@ class Storage:
                 need(not left.above, f"{goal}: no identity")
 
     def _term(self, case: Meaning, goal: str, term: Any) -> Quotient:
-        """One term of an identity: weight * factors^powers * square, which is >= 0.
-
-        term: [weight, {factor: power}, text of the root of the square]
-        """
+        """A term >= 0, weight * factors^powers * e^2, from [weight, {factor: power}, text of e]."""
         need(type(term) is list and len(term) == 3, f"{goal}: expected weight, powers, square")
         algebra, weight = case.algebra, read_number(term[0], goal)
         need(weight >= 0, f"{goal}: a negative weight")
