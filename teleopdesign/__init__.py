@@ -197,8 +197,8 @@ __all__ = [
     "write_diagram",
 ]
 
-#: group -> public name -> where it is: a folder, and its name there where that is another one.
-#: Looked up when a name is first used, so that `import teleopdesign` is instant
+#: group -> public name -> its folder, and its name in this folder if the two names differ. Python
+#: looks up a name at its first use, so that `import teleopdesign` is instant
 GROUPS: dict[str, dict[str, str]] = {
     "experiments": {
         "Experiment": "measurement",
@@ -263,8 +263,8 @@ GROUPS: dict[str, dict[str, str]] = {
         "ModelError": "errors",
     },
 }
-#: the same for names that `dir` leaves to their folders: classes of results, and what definitions,
-#: studies and recordings are made of
+#: the same for names that `dir` does not list: classes of results, and the parts of definitions,
+#: studies and recordings
 FURTHER: dict[str, dict[str, str]] = {
     "results": {
         "Comparison": "diagnose",
@@ -311,7 +311,7 @@ FURTHER: dict[str, dict[str, str]] = {
     },
 }
 _HOMES = {n: home for names in (*GROUPS.values(), *FURTHER.values()) for n, home in names.items()}
-#: folders that are there as `td.NAME`, imported when first used
+#: folders that are available as `td.NAME`, imported at their first use
 _FOLDERS = (
     "app",
     "arms",

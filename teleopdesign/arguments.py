@@ -41,7 +41,7 @@ __all__ = [
 
 Target = TypeVar("Target", bound=Callable[..., Any])
 
-#: folders whose mistakes are those of an experiment
+#: folders whose functions raise ExperimentError for a wrong argument
 _OF_EXPERIMENTS = ("measurement", "examples")
 
 
@@ -151,7 +151,7 @@ def _resolve(annotation: Any, names: Mapping[str, Any]) -> Any:
     return Any
 
 
-_MOST_NAMES = 9  # names in one annotation
+_MOST_NAMES = 9  # most names of one annotation that are imported for it
 
 
 def _find_type_import(module: str, name: str) -> Any:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
-#: objects that are made before Python seeks circles of those that nobody holds any more. What a
-#: command imports and makes lives to its end: at Python's 700, to seek took 3 % of a diagnosis
+#: new objects after which Python's garbage collector looks for unused cycles. The objects of a
+#: command live to its end, and with Python's 700 the collector took 3 % of the time of a diagnosis
 CIRCLES_SOUGHT = 10_000
 
 

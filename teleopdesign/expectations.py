@@ -26,7 +26,7 @@ class WrongValue:
     hint: str = ""
 
 
-#: a value -> what is wrong with it, None if nothing
+#: a function: a value -> the mistake in it, or None
 TypeCheck = Callable[[Any], WrongValue | None]
 
 

@@ -22,7 +22,7 @@ VERBS = {
     "diagnose": "find_missing",
     "simulate": "simulate_diagram",
 }
-#: what to type instead, where no one function stands for the folder
+#: folder -> what to type instead, if no single function stands for the folder
 INSTEAD = {
     "app": "type `teleopdesign app` in a terminal",
     "plot": "every result draws itself: diagnosis.plot(), simulation.plot(), study.plot",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
-#: rows that a table shows at most: a notebook is no place for more
+#: most rows of a table in a notebook
 MOST_ROWS = 40
 
 

@@ -23,7 +23,7 @@ from .errors import ExperimentError
 if TYPE_CHECKING:
     import xarray
 
-_TRIAL = 4096  # bytes that a trial writes: a block, which a full disk has not
+_TRIAL = 4096  # bytes of a trial of writing: one block, which a full disk does not have
 
 
 def make_plain(value: object, *, digits: int | None = None) -> Any:

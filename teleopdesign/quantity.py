@@ -14,7 +14,7 @@ from .errors import ExperimentError, did_you_mean, quote
 from .unit_text import SYMBOLS, NotAUnit, multiply, parse_unit
 
 AXES = ("prismatic", "revolute")
-#: Hz, of the mains: what hums, hums at these
+#: Hz: frequencies of the mains, at which a hum appears
 MAINS = (50.0, 60.0)
 
 

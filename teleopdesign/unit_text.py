@@ -34,10 +34,10 @@ _PREFIXED = {
     "K": ParsedUnit(1.0, (0, 0, 0, 0, 1, 0)),
     "rad": ParsedUnit(1.0, (0, 0, 0, 0, 0, 1)),
 }
-#: prefixes that a symbol goes with, where not all are in use: others are letters of other words.
-#: "Grad" is the German degree and no gigaradian, "Mm" and "MA" are slips of the shift key
+#: symbol -> its prefixes in use, if not all are: other combinations are other words. "Grad" is the
+#: German degree and no gigaradian; "Mm" and "MA" are typing errors
 _IN_USE = {"rad": "nuµμmk", "m": "nuµμmcdk", "s": "nuµμmcdk", "A": "nuµμmk", "V": "nuµμmk"}
-#: every symbol that a unit may hold, those with prefixes included
+#: every symbol that a unit may contain, those with prefixes included
 SYMBOLS = {
     "1": ParsedUnit(1.0, (0, 0, 0, 0, 0, 0)),
     "%": ParsedUnit(1e-2, (0, 0, 0, 0, 0, 0)),

@@ -16,7 +16,8 @@ from .errors import ModelError, TeleopDesignError
 from .recipes import remember
 
 Thing = TypeVar("Thing")
-#: makes the thing again: (resolved path, path as the user wrote it, digest that it must have)
+#: a function that makes the object again: (resolved path, path as the user wrote it, digest that
+#: the file must have)
 Again = Callable[[Path, Path, str], Thing]
 
 

@@ -11,7 +11,8 @@ import os
 import select
 from pathlib import Path
 
-#: bytes: an answer with all its arrays has some MiB; beyond, reading as JSON would take gigabytes
+#: most bytes of a file: an answer with all arrays has some MiB, and reading a larger one as JSON
+#: would take gigabytes of memory
 LARGEST = 1 << 28
 #: s without a byte from a pipe that someone holds open
 _PATIENCE = 10.0

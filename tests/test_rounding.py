@@ -1,4 +1,4 @@
-"""Numbers with few digits never lie on the wrong side of what they were made of."""
+"""A number rounded down or up to few digits is never on the wrong side of the number."""
 
 import math
 

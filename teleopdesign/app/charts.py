@@ -13,13 +13,13 @@ from ..plot.diagnosis import AFTER, BACKWARD, BEFORE, FORWARD
 if TYPE_CHECKING:
     from xarray import Dataset
 
-#: samples that a page draws at once: more are slow to select from in a browser
+#: most samples of a chart: more make a selection slow in a browser
 MOST = 2500
 #: pixels of the widest chart
 WIDE = 800
 #: pixels of the height of each
 HIGH = 170
-#: the name by which every panel takes the same rows
+#: name of the selection of rows that all panels share
 ROWS = "rows"
 
 

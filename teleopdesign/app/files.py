@@ -14,7 +14,8 @@ from ..plain_data import write_beside
 DROPPED = "dropped"
 #: bytes of a dropped file at most: a browser holds it in memory once, this process twice
 LARGEST = 200_000_000
-#: characters of its name that are kept: most file systems take 255 bytes, a character has up to 3
+#: characters of a file's name that are kept: most file systems allow 255 bytes, and a character
+#: has up to 3
 LONGEST = 60
 
 

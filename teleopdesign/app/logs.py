@@ -17,18 +17,18 @@ from .files import resolve_inside
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: points of a line in the preview: more are not seen
+#: most points of a line in the preview: more are not visible
 POINTS = 3000
-#: what a form of the page says, by the name of its field; empty or None: to be detected
+#: entries of a form of the page, by the name of the field; empty or None: to be detected
 Answers = Mapping[str, str | None]
-#: what the page asks a column and its unit for -> what the survey calls it
+#: quantity in the forms of the page -> its name in the survey
 ASKED = {
     "time": "time",
     "position": "position",
     "actuator force": "actuator_force",
     "hand force": "interaction_force",
 }
-#: numbers that the page asks for -> what the survey calls them
+#: number in the forms of the page -> its name in the survey
 NUMBERS = {
     "gear ratio": "gear_ratio",
     "counts per turn": "counts_per_turn",

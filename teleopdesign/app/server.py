@@ -14,7 +14,7 @@ import uvicorn
 
 from ..errors import ExperimentError
 
-#: s that open pages have to close
+#: s that open pages have to close when the server stops
 LEAVING = 2.0
 NOTEBOOK = Path(__file__).with_name("notebook.py")
 

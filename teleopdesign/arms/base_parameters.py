@@ -23,8 +23,8 @@ from .regressor import force_columns
 
 #: random poses per joint: a few times the number of inertial parameters
 POSES = 60
-#: part of the largest column below which what is left of one is rounding: columns that depend leave
-#: 1e-13, those that do not 1e-4 and more
+#: the rest of a column after elimination, relative to the largest column, below which it is
+#: rounding: dependent columns leave 1e-13, independent ones 1e-4 and more
 INDEPENDENT = 1e-8
 
 

@@ -25,7 +25,7 @@ Array: TypeAlias = NDArray[np.float64]
 INERTIAL = ("m", "mx", "my", "mz", "ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 #: their units
 UNITS = ("kg", *("kg*m",) * 3, *("kg*m^2",) * 6)
-#: m/s^2, of gravity where an arm does not say otherwise: downwards along z of its base
+#: m/s^2: acceleration of gravity if an arm states no other, downwards along z of its base
 GRAVITY = (0.0, 0.0, -9.80665)
 
 

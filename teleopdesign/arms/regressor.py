@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import ModelError
 from .chain import Array, Chain, Link, tensor
 
-#: the two components beside each, in turn
+#: for each axis x, y, z the indices of the two other axes, in cyclic order
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 #: unit vectors (3, 1, 3), and what one unit of each moment of inertia is as a tensor (6, 3, 3)
 _UNITS = np.eye(3)[:, None]

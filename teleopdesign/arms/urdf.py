@@ -19,7 +19,7 @@ from ..errors import ExperimentError, did_you_mean, quote
 from ..whole_files import read_whole
 from .chain import Array, Chain, Link, express_in_frame, inertia_about, rotation_of, tensor
 
-#: bytes of a file, and its elements and their depth: a hundred times what a large robot needs
+#: most bytes of a file, elements, and depth of elements: a hundred times what a large robot needs
 LARGEST, ELEMENTS, DEPTH = 20_000_000, 200_000, 64
 #: joints that move along one axis, and those that never move
 _KINDS = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}

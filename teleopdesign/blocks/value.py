@@ -8,7 +8,7 @@ from ..arguments import instance, number
 from ..by_value import ByValue
 from ..notebook import html_table
 
-#: standard errors to either side of a value that hold it 95 times in 100 (normal)
+#: half width of a 95 % interval in standard errors, for a normal distribution
 NINETY_FIVE = 1.96
 
 

@@ -11,7 +11,8 @@ from ..measurement.bandwidth import hides_motion, motion_beyond, share_in_motion
 from ..measurement.experiment import Experiment
 from ..model import Model
 
-#: part of the share of rows in motion two octaves lower at which a bandwidth is proposed
+#: a bandwidth is proposed if the rows in motion are at least this part of those at a bandwidth two
+#: octaves lower
 ENOUGH = 0.9
 
 

@@ -24,12 +24,12 @@ from ..standard_error import with_standard_error
 from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities
 
-#: force that an effect must make, over the measured force, from which it shows "only if large"
+#: an effect that shows only with more than this part of the measured force shows "only if large"
 LARGE = 0.1
-#: cosine of two marks from which the effects look alike: only at seven times the least size is the
-#: difference as large as what shows
+#: two effects look alike if the cosine between their marks is at least this: only at seven times
+#: the least visible size is their difference visible
 ALIKE = 0.99
-#: letters of a row of effects: a terminal of 100 columns, less the margin of a finding
+#: most letters in a row of effects: a terminal of 100 columns, less the margin of a finding
 ROW = 88
 
 

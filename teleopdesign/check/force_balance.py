@@ -36,9 +36,9 @@ from .force_timing import (
     with_shifts,
 )
 
-#: rows below which nothing is said; part of the other force from which a force is there at all
+#: fewest rows for any finding; least size of a force, relative to the largest one, to be present
 FEWEST, LEAST = 50, 1e-5
-#: forces of the place by axis
+#: effects whose force depends on position alone, by axis
 PLACE = {"prismatic": ("spring",), "revolute": ("spring", "gravity")}
 
 

@@ -20,14 +20,15 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..realise.along_motion import residual_along
 
-#: part of the comparison's bandwidth at which shifts are looked for, one after the other
+#: bandwidths, as parts of the comparison's bandwidth, at which shifts are fitted, one after another
 BANDS = (0.125, 0.25, 0.5, 1.0, 1.0)
-#: part of the measured force left unexplained above which other shifts are started from; these, s
+#: part of the measured force: if more is left unexplained, the fit also starts from other shifts,
+#: up to LATE (s) to either side
 STARTS_ANEW, LATE = 0.2, 0.06
-#: part of the unexplained force that shifts must leave at most to be believed, and part of what
-#: they explain that one alone must explain to be believed alone
+#: shifts count only if they leave at most this part (REMAINS) of the unexplained force. One shift
+#: alone counts if it explains at least this part (ALONE) of what all shifts explain
 REMAINS, ALONE = 0.85, 0.8
-#: low-passed share of samples in sure motion from which a row counts
+#: a row counts if the low-passed share of samples in sure motion is above this
 CLEAR_MOTION = 0.98
 #: ratio of `phase_of_shift` above which a motion has one frequency: 0.9 for a sine on a real motor,
 #: 0.4 for a motion of many frequencies

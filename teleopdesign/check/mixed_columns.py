@@ -13,12 +13,12 @@ from ..measurement.experiment import Experiment
 from ..measurement.first_guess import explain_force
 from ..measurement.soundness.signal import channel_label
 
-#: Hz, rates between which a machine is logged
+#: Hz: lowest and highest plausible rate of a log
 SLOWEST, FASTEST = 5.0, 1e6
-#: part of the force that the motion explains, at most as logged and at least the other way round:
-#: on the recordings of `fetch` and twelve simulated ones it is 0.47 to 1.0 for columns in their
-#: places,
-#: and with one exception (0.43) at most 0.2 for columns that are exchanged
+#: columns seem exchanged if the motion explains less than AS_LOGGED of the force as logged, and
+#: more than EXCHANGED of it the other way round. On the recordings of `fetch` and twelve simulated
+#: ones the part is 0.47 to 1.0 for columns in their places, and, with one exception (0.43), at most
+#: 0.2 for exchanged columns
 AS_LOGGED, EXCHANGED = 0.25, 0.6
 
 

@@ -13,11 +13,11 @@ from ..measurement.motion import Motion
 from ..model import Model
 from ..quantity import unit_of
 
-#: part of the motion one way, of the time, of a force, below which there is none of it
+#: part (of the motion in one direction, of the time, of a force) below which it counts as absent
 RARE = 0.02
-#: scatter of the speed, over its mean, below which it is one speed
+#: standard deviation of the speed over its mean, below which the speed counts as constant
 STEADY = 0.1
-#: part of the force below which inertia takes no part in it
+#: part of the force below which the force of inertia counts as negligible
 LIGHT = 0.1
 
 

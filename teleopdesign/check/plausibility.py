@@ -22,20 +22,22 @@ from .force_timing import phase_of_shift
 from .swapped_columns import check_swapped
 from .unit_slips import NEAR, POWERS, scale_of_forces, slips
 
-#: a gain or an inertia off by more than this factor is a unit, not a calibration or a poor guess
+#: a gain or an inertia that is wrong by more than this factor is in another unit; by less it may be
+#: a calibration or a poor first value
 FAR = 10.0
-#: a gain between one over this and this is the calibration of a force sensor, and no note; and its
-#: standard error, of the gain, up to which it is known at all
+#: a gain between 1/CALIBRATED and CALIBRATED is the calibration of a force sensor and needs no
+#: note. A gain with a relative standard error above UNSURE is not known
 CALIBRATED, UNSURE = 1.25, 0.05
-#: logarithm by which ratios may differ and still be one scale, and the least factor that is
-#: reported: a user's first values are commonly 20 % off
+#: ratios whose logarithms differ by up to ONE_SCALE are one scale. A factor below OFF_SCALE is not
+#: reported, because a user's first values are commonly 20 % off
 ONE_SCALE, OFF_SCALE = 0.15, 2.0
-#: decades between the two values of a device that is known and those of a slip of units, where the
-#: slip is less than `FAR`: first values are commonly 20 % off; turns are 0.8 decades off radians
+#: decades by which a device's known values may differ from those of a slip of units, where the slip
+#: is below `FAR`: first values are commonly 20 % off, and turns are 0.8 decades off radians
 CLEAR = 0.2
-#: force left unexplained above which a shift is not all that is wrong
+#: part of the force that is left unexplained, above which a shift is not the only mistake
 UNEXPLAINED = 0.25
-#: force left unexplained above which nothing is said about signs, units and shifts
+#: part of the force that is left unexplained, above which there is no finding on signs, units,
+#: shifts
 NOTHING = 0.9
 
 

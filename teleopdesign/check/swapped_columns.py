@@ -12,7 +12,8 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .force_balance import ForceBalance, force_balances
 
-#: force left unexplained from which columns may be swapped, and what swapping must leave of it
+#: columns may be swapped if at least UNEXPLAINED of the force is left unexplained, and swapping
+#: them leaves less than SWAPPED of this
 UNEXPLAINED, SWAPPED = 0.25, 0.5
 
 

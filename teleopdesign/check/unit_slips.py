@@ -7,8 +7,7 @@ from collections.abc import Mapping
 
 from ..quantity import unit_of
 
-#: decades that strengths may lie from where a slip of units puts them: the user's values are
-#: guesses
+#: decades by which strengths may differ from those of a slip of units: a user's values are guesses
 NEAR = 0.5
 #: power of (force, position) in each quantity's unit
 POWERS = {

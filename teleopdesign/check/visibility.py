@@ -25,13 +25,15 @@ from ..diagnose.scales import scales
 from ..measurement.filtering import Array
 from ..model import Model
 
-#: shapes of one effect (periods, speeds) that are evaluated at most
+#: most shapes of one effect (periods, speeds) that are evaluated
 SHAPES = 4
-#: factor on the first strength where that shows nothing
+#: factor on the first strength of an effect if this strength is not visible
 STRONG = 30.0
-#: corrections of the strength at most; factor above the threshold that is close enough
+#: most corrections of the strength; the strength is close enough between the threshold and CLOSE
+#: times the threshold
 CORRECTIONS, CLOSE = 6, 1.25
-#: strengths, in the effect's starting value, between which is searched; farthest step (log)
+#: range of strengths that is searched, over the effect's starting value; longest step of a
+#: correction, in the natural logarithm
 WEAKEST, STRONGEST, FARTHEST = 1e-6, 1e4, 7.0
 
 

@@ -22,7 +22,7 @@ from ._paths import inputs, python_files
 BAD_INPUT, INTERNAL = 2, 70
 #: asks for tracebacks, as the option --traceback does
 TRACEBACK = "TELEOPDESIGN_TRACEBACK"
-_LONGEST = 500  # characters of another package's message
+_LONGEST = 500  # most characters of another package's message
 
 
 def failure(error: BaseException, options: argparse.Namespace | None) -> tuple[str, int]:

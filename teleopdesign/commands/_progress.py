@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 #: s between two lines of progress where no terminal shows them
 BETWEEN_LINES = 10.0
-#: parts of a stage that must be begun before its time left is shown: fewer say little of the rest
+#: parts of a stage that must have begun before the remaining time is shown: fewer predict too
+#: little
 FEWEST = 4
 
 

@@ -15,7 +15,7 @@ from ..notebook import html_table
 from ._by_numbers import has_numbers, insert_values, is_by_numbers
 from ._law import SIGNALS, Ability, ControlLaw, ControllerState, Stage, mark_sampled_rate
 
-#: what the file of a law may need: those of `_law` as well
+#: names that the file of a law may import, those of `_law` included
 __all__ = [
     "SIGNALS",
     "Ability",
@@ -29,7 +29,7 @@ __all__ = [
     "state_symbol",
 ]
 
-_MOST_SHOWN = 8  # parameters of a law that one line shows
+_MOST_SHOWN = 8  # most parameters of a law in one line
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from ..recipes import recipe
 
-#: what a law may declare that it can do, by a field of `ControlLaw`
+#: a property that a law may declare, by its field of `ControlLaw`
 Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth", "dead_time"]
 
 

@@ -17,10 +17,10 @@ from ._controller import ControlLaw, Controller, Stage
 if TYPE_CHECKING:
     import control
 
-#: relative; a point of the axis may be off it by the rounding of its computation
+#: relative distance from the axis that is the rounding of a point on the axis
 _ROUNDING = 1e-9
-#: one part in so many of the frequencies, the highest, shows the mass: few of them for one outlier
-#: not to count, high enough for springs and dampers not to
+#: the highest tenth of the frequencies determines the mass: enough of them that one outlier does
+#: not count, and high enough that springs and dampers do not count
 _OF_MASS = 10
 
 

@@ -23,12 +23,12 @@ from ._state_space import check_period
 if TYPE_CHECKING:
     import control
 
-#: relative, and in the states' units; of a system carried over a sample: far below what the
-#: simulation around it resolves, at some hundred calls a sample
+#: tolerances, relative and in units of the states, of the integration of a system over a sample:
+#: far below the resolution of the simulation around it, at some hundred calls a sample
 _RELATIVE, _ABSOLUTE = 1e-10, 1e-13
-#: at which a plant's output is looked at with forces and without
+#: number of random states at which a plant's output is compared with and without forces
 _STATES = 5
-#: begins the names of functions that generated source may call
+#: beginning of the names of functions that generated source may call
 _CALLED = "code_"
 _numbers = count()
 _Numbers = tuple[float, ...]

@@ -12,7 +12,7 @@ from sympy import Max
 from ..effects import Parameter
 from ._controller import ControlLaw
 
-#: m or rad; a travel has to be there, and an encoder tells none below
+#: m or rad: least travel, which must not be zero; no encoder resolves less
 _SHORTEST = 1e-9
 
 

@@ -10,7 +10,7 @@ from ..effects import Parameter
 from . import _state_space
 from ._controller import ControlLaw, Controller, ControllerState
 
-#: kg or kg m^2: a mass has to be there; a millionth of what a hand can tell is as good as none
+#: kg or kg m^2: least mass, which must not be zero; a millionth of a mass that a hand can feel
 _LIGHTEST = 1e-6
 
 

@@ -20,7 +20,7 @@ from .with_values import transfer_function
 if TYPE_CHECKING:
     import control
 
-SECONDS = 2.0  # that the derivation of one output may take
+SECONDS = 2.0  # longest time for the derivation of one output
 
 
 @dataclass(frozen=True)

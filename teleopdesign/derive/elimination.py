@@ -19,7 +19,7 @@ from .loops import loop_of
 from .noncommutative import counterexample
 from .printing import block_symbol, delay_symbol, motion_controller_symbol
 
-#: signal -> coefficient, acting from the left; the sum over all is zero
+#: an equation: signal -> coefficient (multiplied from the left); the sum of all products is zero
 Row = dict[str, sp.Expr]
 _OUTPUT = "output asked for"
 

@@ -22,7 +22,7 @@ from ..simulate import Sampling
 from .prediction import steady_cycle
 from .stated_motion import StatedMotion
 
-#: sizes and frequencies simulated, over those of the stated motion
+#: amplitudes and frequencies of the simulated motions, over those of the stated motion
 SIZES, FREQUENCIES = (0.1, 0.3, 1.0), (1.0, 3.0, 10.0, 30.0)
 
 

@@ -18,7 +18,8 @@ from ..realise.tips import led_motion
 from ..simulate import Sampling
 from .stated_motion import StatedMotion
 
-#: multiples of the stated frequency, and the part of the sample rate that none exceeds
+#: multiples of the stated frequency that are computed, and their upper limit as a part of the
+#: sample rate
 MULTIPLES, MOST = (1.0, 2.0, 5.0, 10.0), 0.05
 
 

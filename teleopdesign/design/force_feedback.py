@@ -24,11 +24,11 @@ from ..rounding import round_down, round_up
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
 
-#: largest gain proposed: beyond it what is left of friction is a few percent already
+#: largest proposed gain: at this gain only a few percent of friction is left
 MOST_GAIN = 20.0
-#: times its delay that the loop bears where the device is held rigidly
+#: multiple of the delay that the loop tolerates while the device is held rigidly
 HELD_FACTOR = 1.5
-#: times the least scheduling velocity of P13 that b keeps
+#: the scheduling velocity b is at least this multiple of the least one of P13
 SCHEDULE_MARGIN = 1.25
 
 

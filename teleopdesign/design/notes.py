@@ -13,7 +13,7 @@ from .outcome import Design
 from .prediction import CasePrediction
 from .quasi_static import slow_body
 
-#: part of a predicted force by which two predictions may be apart and nothing is said
+#: relative difference of two predictions of a force up to which no note is made
 CLOSE = 0.1
 
 

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 #: cycles simulated; the last one counts
 CYCLES = 3
-#: part of the amplitude by which an ideal Coulomb contact deflects before it slides
+#: deflection of an ideal Coulomb contact before it slides in a simulation, as a part of the
+#: amplitude
 BRISTLE_SHARE = 1e-6
-#: part of the peak speed within which motion counts as a reversal
+#: part of the peak speed below which the motion counts as near a reversal
 REVERSAL = 0.3
 
 

@@ -42,9 +42,10 @@ from .verdict import (
     use_units_of,
 )
 
-#: of the load that stands for a hand over the device's inertia, where none is stated
+#: load of a hand over the inertia of the device, if no load is stated
 LOAD = 3.0
-#: Hz and share of the sample rate: bandwidth of the velocity filter where none is stated
+#: bandwidth of the velocity filter if none is stated: the smaller of FILTER (Hz) and FILTER_SHARE
+#: times the sample rate
 FILTER, FILTER_SHARE = 50.0, 0.1
 
 

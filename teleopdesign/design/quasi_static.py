@@ -21,7 +21,7 @@ from ..realise.simulated import without_absent
 from ..realise.tips import move_to_tip_body
 from .stated_motion import StatedMotion
 
-#: what needs states that slow motion does not have: taken away, or at their steady value
+#: roles of effects that need dynamic states: in slow motion they are left out, or at steady state
 _ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact", "contact_shape")
 
 

@@ -21,9 +21,9 @@ from .cancellation import smoothing_name
 from .outcome import Design
 from .prediction import simulated_error
 
-#: how far from its proposal a number is searched, either way where it is free to
+#: factor on the proposed number, up and down, within which the search looks for a better one
 FARTHEST = 30.0
-#: relative distance to a bound that counts as being there
+#: relative distance to a bound within which a number counts as at the bound
 AT_BOUND = 0.01
 
 

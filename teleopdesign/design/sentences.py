@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .outcome import Design  # a design prints itself through this module
 
 WIDTH = 100
-#: every so many of the residual's speeds are printed: half a decade apart
+#: every tenth speed of the residual friction is printed: half a decade apart
 SHOWN = 10
 
 

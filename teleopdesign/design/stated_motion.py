@@ -15,7 +15,7 @@ from ..rounding import round_down
 from ..simulate import Trajectory, sine
 from .assumptions import Assumptions
 
-#: Hz, slowest motion chosen: slower ones cost time and say nothing else
+#: Hz: lowest frequency of a chosen motion; slower motions cost time and show nothing new
 SLOWEST = 0.2
 
 

@@ -38,10 +38,10 @@ from .threads import map_in_threads
 if TYPE_CHECKING:
     from .arms.prepared import PreparedArm
 
-#: s, horizons after which the model is set back onto the measured motion; then the whole record
+#: s: times after which the simulation restarts on the measured motion; at last the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
-#: bristle deflection of an ideal friction, as a part of the travel: far below any error of a
-#: free motion. Smaller: shorter steps
+#: deflection of ideal friction before it slides, as a part of the travel: far below any error of a
+#: free motion. A smaller part needs shorter steps
 BRISTLE_SHARE = 2e-5
 
 

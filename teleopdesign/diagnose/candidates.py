@@ -43,12 +43,13 @@ class Candidate:
         return f"{self.effect.name} at {self.at}"
 
 
-#: share of the spread of time that must be left among samples of one place, from which place and
-#: time differ enough. A sweep that comes back by a quarter of its travel leaves 0.06, by a third
-#: 0.13, a full return 1. Lower: a drift passes for a force of the place; higher: fewer candidates
+#: place and time differ enough if the variance of time among samples of one place is more than this
+#: share of the whole. A sweep that returns over a quarter of its travel has 0.06, over a third
+#: 0.13, a full return 1. A lower limit confuses a drift with a force of the place; a higher one
+#: leaves fewer candidates
 RETURNING_SHARE = 0.1
-#: places into which the travel, or the range of speeds, is divided for that: each holds 1/50 of it,
-#: far less than returns
+#: bins of the travel, or of the range of speeds, for this test: each covers 1/50, far less than a
+#: return
 PLACES = 50
 
 

@@ -120,5 +120,5 @@ class Criteria:
     named: float = 0.5
 
 
-#: those in use; a change of one is a change of every answer
+#: the criteria in use; a change of one changes every answer
 CRITERIA = Criteria()

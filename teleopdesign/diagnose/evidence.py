@@ -15,7 +15,7 @@ from scipy.special import ndtr
 from ..measurement.filtering import Array
 from .fit import Fit
 
-#: difference of two residuals, relative to the smaller, below which they count as the same
+#: relative difference (rms) of two residuals below which they count as equal
 SAME = 1e-3
 
 

@@ -11,7 +11,7 @@ from ..measurement.record import Record
 from .prepare import Prepared, prepare
 from .search_plan import PLAN, SearchPlan
 
-#: samples of all records together above which windows are taken
+#: most samples of all records together; if there are more, only windows of the records are used
 MOST = 100_000
 #: s, length of a window: forty time constants of a 2 Hz low-pass
 WINDOW = 4.0

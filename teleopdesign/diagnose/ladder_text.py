@@ -62,7 +62,7 @@ def _estimate_text(value: Value, unit: str) -> str:
     return f"{text}, not determined by these records"
 
 
-#: part of the error from which the one seen at the command is stated beside it
+#: relative difference from which the error at the command is stated in addition
 DIFFERENT = 0.02
 
 
@@ -83,8 +83,8 @@ def _percent(error: float) -> str:
     return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
 
 
-#: part of the last model's error by which a refused candidate must be lower to be reported: what a
-#: reader sees as less
+#: a refused candidate is reported if its error is lower by more than this part of the last model's
+#: error: a difference that a reader can see
 LESS = 0.02
 
 

@@ -35,15 +35,15 @@ from .record_offsets import apply_record_offsets
 from .residual import residuals
 from .tree_inputs import inputs_along
 
-#: s to either side of a reversal that count as near it: where presliding, gaps and lags show
+#: s to either side of a reversal that count as near: there presliding, gaps and lags show
 NEAR = 0.1
-#: most rows that the trees learn from, spread evenly: more take time and tell little more
+#: most rows that the trees learn from, spread evenly: more rows take time and add little
 MOST_ROWS = 20_000
-#: trees, their learning rate, leaves and fewest rows a leaf: those of scikit-learn with leaves
-#: twice as large, for neighbouring rows are no independent observations; nothing is tuned
+#: number of trees, learning rate, leaves, and fewest rows a leaf: as in scikit-learn, with leaves
+#: twice as large, because neighbouring rows are not independent. No number is tuned
 TREES, RATE, LEAVES, ROWS_OF_A_LEAF = 150, 0.08, 31, 40
-#: by how much the part of what is learned must exceed the part of the rows for a place to be said:
-#: less is everywhere
+#: a place is named if its part of the learned force exceeds its part of the rows by more than this;
+#: otherwise the learned force is spread over all places
 SAID = 0.2
 
 

@@ -84,7 +84,7 @@ def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping:
     return np.asarray(step / size)
 
 
-#: kept off zero in normal equations, relative to each diagonal: what nothing determines stays zero
+#: added to the scaled diagonal of normal equations: an undetermined parameter then stays zero
 RIDGE = 1e-9
 
 

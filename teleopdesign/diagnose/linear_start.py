@@ -23,9 +23,10 @@ from .bodies_apart import select_bodies
 from .fit import Fit
 from .prepare import Prepared
 
-#: columns that are carried through the friction balance at once: an even number, for a phase takes
-#: two; with the residual and another one they fill lanes of eight. Fewer: each call costs a
-#: millisecond besides; more: a record's columns leave a processor's second cache
+#: columns that pass through the friction balance in one call. The number is even, because a phase
+#: takes two columns; with the residual and one more column they fill lanes of eight. With fewer,
+#: the calls cost a millisecond each; with more, the columns of a record leave a processor's second
+#: cache
 AT_ONCE = 30
 
 

@@ -26,7 +26,7 @@ from .prepare import Prepared, Stretch
 from .residual import residuals
 from .sensors import is_noise_seen, sensor_of
 
-#: records drawn anew per floor; its spread from draw to draw is a few percent
+#: records with drawn noise for each noise floor; it differs by a few percent from draw to draw
 DRAWS = 3
 
 

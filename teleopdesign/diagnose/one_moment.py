@@ -15,7 +15,8 @@ from .fit import Fit, block_numbers
 from .noise_floor import NoiseFloor
 from .prepare import Prepared
 
-#: least number of moments of which one may be left out: of fewer, each is too much of the records
+#: fewest moments of which one may be left out: with fewer, one moment is a large part of the
+#: records
 MOMENTS = 10
 
 

@@ -22,15 +22,15 @@ from .shared_links import Shared, share_again
 TRIM = 0.25
 #: samples kept per second and hertz of bandwidth after the low-pass (2 would be Nyquist's)
 OVERSAMPLING = 5.0
-#: samples per second and hertz of bandwidth, at least, on which effects are sought. The motion is
-#: smooth to 1.5 times the bandwidth; what is lost is where a reversal lies between two samples: on
-#: simulated records that left 0.2 to 0.8 % of the force more than all samples. Fewer: faster, and
-#: effects below that are sought on a course that hides them
+#: samples per second and hertz of bandwidth, at least, for the search for effects. The motion is
+#: smooth to 1.5 times the bandwidth, so only the place of a reversal between two samples is lost:
+#: on simulated records 0.2 to 0.8 % more of the force was left than with all samples. With fewer
+#: samples the search is faster, but this loss may hide small effects
 SOUGHT = 6.0
-#: edge over bandwidth up to which few samples hold the command: above the edge of the smoothing
-#: (`SMOOTHING`), below half of `SOUGHT`
+#: edge of the low-pass of the command before samples are thinned out, over the bandwidth: above the
+#: edge of the smoothing (`SMOOTHING`), and below half of `SOUGHT`
 PASSED = 2.0
-#: fewest samples that count in a stretch with fewer samples
+#: fewest remaining samples of a stretch that is thinned out
 FEWEST = 16
 #: blocks of the fit records that are held out in turn where there is no check record
 FOLDS = 4

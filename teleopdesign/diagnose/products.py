@@ -15,7 +15,7 @@ import numpy as np
 from ..measurement.filtering import Array
 from .fit import Fit
 
-#: powers of a product below which a parameter hardly counts in it
+#: a parameter with a smaller power (absolute value) in a product is left out of the product
 POWER = 0.1
 
 

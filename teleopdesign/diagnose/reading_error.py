@@ -32,18 +32,17 @@ from .simulated_course import as_led, dead_times, simulated_course, with_whole_d
 from .solve import solve, spans_decades
 from .threads import map_in_threads
 
-#: bristle lengths of an ideal friction, in encoder steps, and their damping ratios: none can be
-#: read, nor which it is, so that each pair has its turn (with the longest bristle, turns look as if
-#: friction remembered; by the smallest it breaks away at once; damping resists what moves the
-#: contact, be it a turn or a level that changes). 0 is Dahl's friction, 0.5 what the authors of
-#: LuGre chose: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. 1e-9 stands for 0: it moves a
-#: position by less than 1e-10 of its travel, and both ratios share one loop, which takes 2.5 s to
-#: compile
+#: bristle lengths of an ideal friction, in encoder steps, and damping ratios. An encoder cannot
+#: read such a length, so each pair is simulated. With the longest bristle, reversals look like
+#: friction with memory; with the shortest one the contact breaks away at once; damping resists
+#: every change of the contact. A ratio of 0 is Dahl friction; the authors of LuGre chose 0.5:
+#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. 1e-9 stands for 0: it moves a position by
+#: less than 1e-10 of its travel, and both ratios then share one loop, which takes 2.5 s to compile
 BRISTLE_STEPS, DAMPED = (0.3, 0.1, 0.03), (1e-9, 0.5)
-#: shift, over the estimate (in decades' logarithms and angles: as it is), from which nothing is
-#: corrected: what reading moves so far is not known well enough
+#: relative shift of an estimate (for logarithmic parameters and angles: absolute) from which the
+#: estimate is not corrected: a shift this large is not known well enough
 LARGEST = 0.5
-#: simulations one after the other, at most, while the shift still moves by more than its error
+#: most successive simulations, while the shift still changes by more than its error
 ROUNDS = 4
 
 

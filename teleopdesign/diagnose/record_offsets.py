@@ -22,9 +22,10 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from .prepare import Stretch
 
-#: steps of the estimate: two are exact where force is linear in the offsets
+#: iterations of the estimate: two are exact if the force is linear in the offsets
 TURNS = 2
-#: part of their scale over which a slope is taken: far above rounding, far below a curve
+#: step of a numerical derivative, over the scale of an offset: far above rounding, and so small
+#: that curvature does not matter
 SLOPE = 1e-3
 #: least friction level of a record, over the model's: friction does not vanish from a machine
 LEAST = 0.05

@@ -68,7 +68,7 @@ class LoggerClock:
     reported_errors: float = 2.0
 
 
-#: what is known of a log beforehand
+#: prior knowledge of the clock of a log
 CLOCK = LoggerClock()
 
 

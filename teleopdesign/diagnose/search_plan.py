@@ -139,8 +139,8 @@ class SearchPlan:
 
 #: the sizes in use
 PLAN = SearchPlan()
-#: those of a first look. A weak effect, the third and later ones, and two that mask each other may
-#: be missed
+#: sizes of a quick first search. It may miss a weak effect, a third or later one, and two effects
+#: that mask each other
 QUICK = SearchPlan(
     most_effects=2, long=8_000, windows=8_000, trials=0, exchanges=0, tip_starts=0, together=0
 )

@@ -26,8 +26,8 @@ from ..measurement.filtering import Array
 if TYPE_CHECKING:
     from .prepare import Stretch
 
-#: part of the largest eigenvalue of the scaled information below which a direction is unknown:
-#: far above rounding, far below what a record tells of any parameter that it tells at all
+#: eigenvalue of the scaled information matrix, over the largest one, below which a direction is not
+#: determined: far above rounding, and far below the value of any parameter that a record determines
 UNKNOWN = 1e-10
 
 

@@ -21,9 +21,10 @@ from ..realise.kernel import FASTEST, fastest_rate
 from ..realise.simulated import with_bristle, without_absent
 from ..simulate import Sampling, prepare
 
-#: natural frequency of the leading spring over the comparison's bandwidth
+#: natural frequency of the spring that leads the model along the measurement, over the bandwidth of
+#: the comparison
 LEADS = 0.04
-#: inner steps a sample at least and, where something oscillates fast, at most
+#: fewest inner steps in a sample, and most of them where something oscillates fast
 STEPS, MOST_STEPS = 20, 400
 
 

@@ -20,9 +20,9 @@ from .shared_links import best_links
 
 #: seconds over which residuals count as one observation in standard errors and tests
 BLOCK = 0.25
-#: distance to a bound, in the record's scale of the quantity, that counts as being there
+#: distance to a bound, in the scale of the record, within which a parameter counts as at the bound
 AT_BOUND = 1e-6
-#: decades to either side of the record's scale in which a logarithmic parameter is searched
+#: search range of a logarithmic parameter: decades to either side of the scale of the record
 DECADES = 8.0
 
 

@@ -12,7 +12,7 @@ from ..measurement.motion import Motion
 from ..measurement.reversals import look_back_to_reversal
 from .candidates import tells_place_from_time
 
-#: s without sure motion after which the same direction counts as a new start
+#: s without sure motion after which a motion counts as a new start, even in the same direction
 REST = 0.5
 
 

@@ -21,11 +21,11 @@ from .prepare import Prepared
 from .products import product_of
 from .rung import Rung
 
-#: standard error over value from which a parameter counts as open: twice as large or nothing lie
-#: within two standard errors
+#: standard error over value from which a parameter counts as open: then zero and twice the value
+#: both lie within two standard errors
 OPEN = 0.5
-#: part of the least relative error of the open parameters below which a product of them is known
-#: far better than any of them
+#: a product of open parameters is known far better than each of them, if its relative error is
+#: below this part of the least relative error of the parameters
 PRODUCT = 0.5
 
 

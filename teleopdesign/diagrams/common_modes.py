@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 _S = sp.Symbol("s")
 Fractions = list[list[Fraction]]
 Ratios = Sequence[Sequence[tuple[sp.Poly, sp.Poly]]]
-#: relative; a pole this near to the axis or circle counts as one that does not decay: it is then
-#: shared, which is right for any pole
+#: relative distance from the axis or circle within which a pole counts as one that does not decay:
+#: the pole is then shared, which is correct for any pole
 _NEAR = 1e-9
 
 

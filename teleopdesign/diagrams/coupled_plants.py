@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import control
 
 _S = sp.Symbol("s")
-#: relative; a mass matrix is symmetric in mechanics, and computed in floats it is to this
+#: relative asymmetry of a mass matrix that is rounding: in mechanics a mass matrix is symmetric
 _ROUNDING = 1e-9
 
 

@@ -47,17 +47,17 @@ _TABLE = {
 #: functions that a text may hold, by name
 FUNCTIONS: Mapping[str, _Function] = MappingProxyType(_TABLE)
 _VALUES = {f.symbolic: f.value for f in _TABLE.values()} | {sp.exp: math.exp}
-#: what geometry never reaches, and what keeps a text from taking an hour: characters; parts and
-#: brackets in brackets of the text; a power that is a number, also where powers of powers meet;
-#: bits of a fraction; terms of what is multiplied out; roots and functions of numbers, one inside
-#: the other (sympy's assumptions about them double their work with each); different roots of
-#: numbers (in a product it compares each with each)
+#: bounds of a text, which no geometry reaches, and which keep sympy from working for an hour:
+#: characters; parts, and brackets inside brackets; a numerical power, also a product of powers;
+#: bits of a fraction; terms of an expanded product; nested roots and functions of numbers (each
+#: doubles the work of sympy's assumptions); different roots of numbers (in a product sympy compares
+#: each pair)
 LONGEST, MOST_PARTS, DEEPEST = 10_000, 4_000, 60
 LARGEST_POWER, MOST_BITS, _MOST_TERMS, _DEEPEST_NUMBER = 64, 1024, 10_000, 8
 _MOST_ROOTS = 24
-#: calls and returns of Python that reading may take, about 1 s: no bound on a text's form tells
-#: how long sympy thinks about it. The tip of an arm of six joints takes 0.12 million, a sum of 600
-#: sines of as many positions 5 million: then it stops.
+#: calls and returns of Python that reading a text may take, about 1 s: no bound on the form of a
+#: text limits the time that sympy needs. The tip of an arm of six joints takes 0.12 million; a sum
+#: of 600 sines of as many positions takes 5 million and is refused
 _MOST_CALLS = 4_000_000
 NO_VALUE = "has no finite real value"
 

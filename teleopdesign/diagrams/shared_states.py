@@ -21,8 +21,8 @@ from .parts import Block, Control, Moving
 from .wiring import Diagram
 
 _Place = tuple[int, int]
-#: relative; what a computer makes of the entries, each by a matrix exponential of its own, agrees
-#: to this; trades a value that is changed by less against one that rounding moved
+#: relative difference that is rounding: each entry is discretised with a separate matrix
+#: exponential. A value that a user changes by less is taken for the same value
 _ROUNDING = 1e-9
 
 

@@ -29,7 +29,7 @@ from .toml_matrices import MATRICES, read_matrices
 from .wiring import Diagram
 
 LAW = ("law", "parameters", "series")
-#: keys of a block by its kind, beside those of its body or law
+#: kind of a block -> its keys, besides those of its body or law
 WIRING = {
     "moving": ("motion", "command", "loads", "driver"),
     "attached": ("motion", "force", "sign"),

@@ -120,7 +120,7 @@ def _run(content: bytes, path: Path) -> ModuleType:
         raise
 
 
-#: signal -> roles whose laws may use it; for the others there is no such signal along a motion
+#: signal -> roles whose laws may use it; laws of other roles have no such signal along a motion
 ONLY_IN = {
     "command": ("actuation",),
     "level": ("friction_shape",),
@@ -209,7 +209,7 @@ def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]
     return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
 
 
-#: words of other texts -> effect that is meant
+#: other name of an effect in the literature -> its name here
 OTHER_NAMES: Mapping[str, str] = {
     "stiction": "stribeck",
     "static_friction": "stribeck",

@@ -38,7 +38,7 @@ from ._roles import ACTUATION_ORDER, CONTACT_ROLES, ENERGIES, ROLES, Energy, Rol
 from ._signals import FURTHER, INERTIA, SIGNALS, UNEXPLAINED, delayed, parameter_symbol
 from ._state import State
 
-#: what an effect's file may need: the names above stand in separate files
+#: names that the file of an effect may import; some are defined in separate files
 __all__ = [
     "ACTUATION_ORDER",
     "CONTACT_ROLES",

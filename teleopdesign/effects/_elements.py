@@ -11,13 +11,14 @@ from typing import Any
 
 from ._facts import RecordFacts, slip_is_seen
 
-#: part of the friction level below which an element comes last, whatever its stiffness: records do
-#: not tell how stiff it is. Higher: one that shows comes last; lower: one that does not, first
+#: an element whose level is below this part of the friction level comes last, whatever its
+#: stiffness, because records do not determine its stiffness. A higher limit puts visible elements
+#: last, a lower one puts invisible elements first
 LITTLE = 0.02
-#: part of the level from which an element is held against the travel: one that carries less is of
-#: no consequence, wherever a fit leaves its stiffness
+#: an element whose level is above this part of the friction level is compared with the travel; a
+#: smaller one does not matter, whatever stiffness a fit gives it
 CARRIES = 0.05
-#: elements beside the first, which carries what these leave of the level
+#: numbers of the further elements; the first element has the rest of the level
 MORE = (2, 3, 4)
 
 

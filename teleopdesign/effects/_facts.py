@@ -18,23 +18,28 @@ from ..quantity import unit_of
 
 Array = NDArray[np.float64]
 
-#: classes of equal size into which samples are sorted by speed, and samples that each must have
+#: number of classes of equal size into which samples are sorted by speed, and fewest samples in
+#: each
 SPEEDS, SAMPLES = 40, 10
-#: share of a pattern's variance over the place that must be no function of the speed. A sine of one
-#: amplitude leaves next to none, two of different amplitudes over one path 0.2 and more. Lower:
-#: friction of the speed is named for one of the place; higher: sweeps that hardly differ in speed
-#: say nothing
+#: a pattern over the place counts if at least this share of its variance is no function of the
+#: speed. A sine of one amplitude has almost no such share, two amplitudes over one path 0.2 and
+#: more. A lower limit takes friction of the speed for friction of the place; with a higher one,
+#: sweeps that hardly differ in speed show nothing
 APART = 0.1
-#: share of the sliding samples below whose speed nothing is taken as seen: fewer are turning points
+#: share of the sliding samples that are the slowest ones: friction below their speeds counts as not
+#: measured, because they are near turning points
 SELDOM = 0.01
-#: correlation with the size of the gravity torque, over the places, from which the two look alike:
-#: a half wave of a sine over a quarter turn to each side reaches 0.97. Lower: said of uneven rails
+#: correlation of a friction level with the size of the gravity torque, over the places, from which
+#: the two look alike: half a sine wave over a quarter turn to each side reaches 0.97. A lower limit
+#: would also name uneven rails
 ALIKE = 0.9
-#: travels per period from which something is seen to repeat. One and a half: half of it comes
-#: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
+#: travel over period from which a pattern is seen to repeat: at one and a half, half of the period
+#: occurs twice. With less travel, any slow force of the position fits; a higher limit would exclude
+#: long true periods
 REPEATS = 1.5
-#: part of its variation that models of real machines leave: a function of the place that bends by
-#: less over the travel is hardly distinguished from a straight line. Higher: doubted if it bends
+#: a function of the place whose deviation from a straight line is below this part of its variation
+#: is hardly distinguished from a line: models of real machines leave about as much. A higher limit
+#: would also doubt functions that bend
 STRAIGHT = 0.1
 
 

@@ -9,7 +9,7 @@ import sympy as sp
 from ._effect import Effect
 from ._signals import SIGNALS, delayed
 
-#: of a body, driven by which a linear effect may act; a structure sees the force on its tip, too
+#: signals of a body on which a linear effect may depend; a structure also depends on the tip force
 _DRIVING = ("position", "velocity", "acceleration", "command")
 
 

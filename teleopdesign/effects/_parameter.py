@@ -71,10 +71,10 @@ class Parameter:
         return self.search.scale or self.quantity
 
 
-#: period of something that repeats along the travel. Searches start evenly in 1/period, three
-#: quarters of a cycle over the whole travel from one to the next: where two are a cycle apart, what
-#: lies between them is orthogonal to both for a motion that stays at its ends. From two travels on
-#: it is no longer seen to repeat: a bias, or a spring
+#: period of a pattern that repeats along the travel. Starts of a search are even in 1/period, at a
+#: distance of three quarters of a cycle over the whole travel: at a distance of a whole cycle, a
+#: period between two starts would be orthogonal to both for a motion that stays at its ends. A
+#: period of two travels or more is not seen to repeat: such a force is a bias, or a spring
 PERIOD = Parameter(
     "position",
     "p: travel of one period",

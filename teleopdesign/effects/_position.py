@@ -8,7 +8,7 @@ import sympy as sp
 
 from ._effect import SIGNALS, Effect
 
-#: points at which a law is held against itself: two laws that agree at all of them are the same
+#: points at which two laws are compared: laws that agree at all of them are the same
 _POINTS = (
     (sp.Rational(3, 7), sp.Rational(11, 13)),
     (sp.Rational(-17, 19), sp.Rational(5, 23)),

@@ -19,7 +19,7 @@ Role = Literal[
 ROLES: tuple[Role, ...] = get_args(Role)
 Energy = Literal["stores", "dissipates", "supplies"]
 ENERGIES: tuple[Energy, ...] = get_args(Energy)
-#: the order in which actuation stages act, where an effect of that name is there; others come last
+#: the order in which actuation stages act, by names of effects; other stages come last
 ACTUATION_ORDER = (
     "actuator_gain",
     "torque_ripple",
@@ -29,5 +29,5 @@ ACTUATION_ORDER = (
     "actuator_saturation",
 )
 
-#: roles of what belongs to a modelled environment, not to the body that touches it
+#: roles of effects that belong to a modelled environment, and not to the body that touches it
 CONTACT_ROLES = frozenset({"contact", "contact_shape"})

@@ -23,14 +23,15 @@ SIGNALS = {
         "other_acceleration".split()
     )
 }
-#: signal -> the further channel of a record that it is made from; without the channel it is unknown
+#: signal -> the additional channel of a record from which it comes; without the channel the signal
+#: is not known
 FURTHER = {
     "temperature": "temperature",
     "other_position": "other_position",
     "other_velocity": "other_position",
     "other_acceleration": "other_position",
 }
-#: what corrections may use besides: the inertia of the effect's body, and the force that is left
+#: further symbols for corrections: inertia of the effect's body, and the force that is left
 #: unexplained along a measured motion
 INERTIA, UNEXPLAINED = sp.symbols("inertia unexplained", real=True)
 #: delayed(signal, delay): the signal a fixed time earlier

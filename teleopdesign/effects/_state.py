@@ -10,7 +10,8 @@ import sympy as sp
 
 from ..arguments import check_types
 
-#: of a stop: a state that it holds rests up to here, or it would chatter between two rates
+#: factor on the position of a stop up to which the stop holds a state at rest: without a margin the
+#: state would chatter between two rates
 HELD = 1.001
 
 

@@ -30,13 +30,13 @@ from ._effect import SIGNALS, Effect, Energy, Parameter, State
 from ._facts import RecordFacts
 
 Coupling = Callable[[Any, Any], Any]
-#: part by which a hum that is fitted as a resonance lies beside the mains, and the damping ratio
-#: below which a resonance is a tone. More of either: true transmissions are doubted
+#: a fitted resonance may be a hum if its frequency is within BESIDE (relative) of the mains and its
+#: damping ratio is below TONE. Higher limits would doubt true transmissions
 BESIDE, TONE = 0.05, 0.1
-#: part of the largest measured force that half a gap must be worth, K g/2: by no more does the
-#: coupling differ from a spring without a gap. Half a percent is less than models of real machines
-#: leave. Lower: another departure from a spring is named a gap; higher: a small gap in a soft
-#: transmission has no name
+#: a gap counts if K g/2 is at least this part of the largest measured force: this is the largest
+#: difference between the coupling and a spring without a gap. Half a percent is less than models of
+#: real machines leave. A lower limit names other differences from a spring a gap; a higher one
+#: misses a small gap in a soft transmission
 SEEN = 0.005
 
 

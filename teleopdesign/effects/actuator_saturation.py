@@ -11,7 +11,8 @@ from sympy import Max, Min
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: multiples of the rms force, from a command that is nearly always cut to one that seldom is
+#: starting values of the limit, over the rms force: from a command that is almost always cut off to
+#: a command that seldom is
 LIMITS = tuple(0.7 * 1.25**k for k in range(9))
 
 

@@ -25,7 +25,8 @@ def coupling(now, p):
     )
 
 
-#: how closely the tip is led: by less, courses of meetings fall out of step more often
+#: how closely the simulated tip follows the measurement: with less, the simulated contacts more
+#: often occur at other times than the measured ones
 FOLLOWING = 3.0
 EFFECT = make_structure(
     coupling=coupling,

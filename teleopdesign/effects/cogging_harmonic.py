@@ -13,7 +13,7 @@ from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
 from ._facts import repeats_within_travel
 from .cogging import law
 
-#: twice as many starts as `cogging` has: half of the shortest period found there is sought, too
+#: twice as many starts as `cogging` has, so that half of its shortest period is also searched
 STARTS = tuple(4.0 / 3.0 / k for k in range(1, 2 * len(PERIOD.search.starts) + 1))
 EFFECT = Effect(
     role="force",

@@ -9,7 +9,8 @@ from sympy import exp
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: lost part that no lubricant reaches. Lower: a drift is refused; higher: falling with speed is one
+#: part of friction that no warm-up of a lubricant removes. A lower limit refuses true drifts; a
+#: higher one takes friction that falls with the speed for a drift
 ALL = 0.95
 
 

@@ -16,7 +16,7 @@ from sympy import exp, sign
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: m/s or rad/s, far below any that is seen: keeps the law defined at v_S = 0
+#: m/s or rad/s: a speed far below any measured one, which keeps the law defined at v_S = 0
 AT_REST = 1e-9
 
 

@@ -11,8 +11,9 @@ effect looks like `actuator_saturation`.
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: m/s or rad/s; a power has no slope at rest. Far below the speeds that records resolve; lower, a
-#: simulation needs shorter steps
+#: m/s or rad/s: below this speed the law is almost a straight line, because a power has no finite
+#: slope at rest. It is far below the speeds that records resolve; a lower value needs shorter steps
+#: in a simulation
 STRAIGHT = 1e-5
 
 

@@ -9,7 +9,7 @@ hysteresis has the stiffness K. It looks like `presliding`, and like `backlash` 
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: the stiffness that the tip hangs on, of either structure
+#: names of the stiffness that connects the tip to the body, for either structure
 JOINED = ("transmission_compliance.stiffness", "backlash.stiffness")
 
 

@@ -19,7 +19,8 @@ def coupling(now, p):
     return p.stiffness * now.stretch + p.damping * now.stretch_rate
 
 
-#: how closely the tip is led: by more, what it takes to lead it counts more than what it saves
+#: how closely the simulated tip follows the measurement: with more, the force that leads the tip
+#: counts more than the error that it saves
 FOLLOWING = 1.0
 EFFECT = make_structure(
     coupling=coupling,

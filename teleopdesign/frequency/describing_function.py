@@ -19,7 +19,7 @@ from ..errors import ModelError
 from ..realise.simulated import without_absent
 from .one_cycle import LawExpressions, first_harmonic, middles
 
-#: points of a grid taken together, where no hidden state asks for one after the other
+#: points of a grid that are computed together, if no hidden state needs them one after another
 _AT_ONCE = 100
 
 

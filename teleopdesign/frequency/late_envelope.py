@@ -17,10 +17,11 @@ import numpy as np
 from ..errors import ModelError
 from .late_loop import LateRatio, Terms
 
-#: rad, or of a logarithm; a larger step is halved, and a smaller one that may reach what is looked
-#: for on its way, down to the finest: what comes so near to it for so short may be passed over
+#: longest step of a phase (rad) or of the logarithm of a size; a longer step is halved. A shorter
+#: step that may reach the searched value on its way is also halved, down to FINEST: a value that is
+#: reached for less than this may be missed
 STEP, FINEST = 0.5, 1e-3
-#: points; more are not looked at
+#: most points that are evaluated
 _MOST = 2_000_000
 
 

@@ -21,13 +21,14 @@ from ..realise.lti import S
 
 Terms = Mapping[float, np.ndarray]
 
-#: frequencies from the slowest to the fastest root, before steps of the phase are halved
+#: frequencies on the first grid, before steps of the phase are halved
 _POINTS = 4001
-#: rad; a larger step of the phase is halved. A quarter turn would do where f is far from zero
+#: rad: longest step of the phase; a longer one is halved. Far from a zero of f, a quarter turn
+#: would be sufficient
 _STEP = 0.5
-#: of a root's size: what rounding leaves of a real part
+#: real part of a root, over its size, that is rounding
 _ROUNDING = 1e-13
-#: samples of the phase: beyond, dead times are too long against what the loop still lets pass
+#: most samples of the phase: with more, the dead times are too long for the bandwidth of the loop
 _MOST = 2_000_000
 
 

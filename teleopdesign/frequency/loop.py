@@ -25,9 +25,9 @@ from .sampled_loop import SampledLoop, sampled_loop
 if TYPE_CHECKING:
     import control
 
-#: order of the Pade approximation by which a loop with several that sample is shown stable
+#: order of the Pade approximation in the stability test of a loop with several sampled parts
 _PADE = 8
-#: rad/s; crossings are sought between these on a grid of so many points, then refined
+#: rad/s: range in which crossings are searched, on a grid of so many points, and then refined
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 20001
 
 

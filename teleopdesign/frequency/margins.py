@@ -12,14 +12,15 @@ from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, l
 from .late_loop import late_ratio
 from .loop import LoopGain, unity_crossings
 
-#: rad/s; where a loop without corners and without samples is searched
+#: rad/s: range that is searched for a loop without corners and without samples, and points in it
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 4001
-#: share by which a factor is to be smaller before more points are looked at for its sake
+#: more points are evaluated only if they may lower the factor by more than this share
 _SMALLER = 1e-6
-#: steps that are halved at once
+#: most steps that are halved at the same time
 _AT_ONCE = 20_000
-#: share and rad; a gain counts as level, and its phase as -180 degrees, within this: a slope of one
-#: changes it by eight times as much from point to point
+#: relative tolerance within which a gain counts as constant, and tolerance (rad) within which its
+#: phase counts as -180 degrees. A slope of one changes the gain eight times as much from point to
+#: point
 _LEVEL = 1e-3
 
 

@@ -16,10 +16,11 @@ from ..controllers import measured_frequencies
 from ..errors import ModelError, UnstableLoop
 from ..realise.lti import numerical
 
-#: frequencies between two neighbours that were measured: between them the response is a line, and
-#: what the rest of the loop does there is smooth; trades a turn that is not seen against time
+#: frequencies between two neighbouring measured ones. Between these the measured response is
+#: interpolated by a line, and the rest of the loop is smooth. Fewer frequencies may miss a turn of
+#: the phase, more take time
 _BETWEEN = 8
-#: rad; a step of the phase that is larger may be a turn the other way round
+#: rad: longest step of the phase whose direction is certain
 _SURE = np.pi / 2
 
 

@@ -20,7 +20,8 @@ from .lock_in import phasors
 
 #: steps of a cycle. Forces are taken in the middle of each: no step lies on a reversal
 STEPS = 2000
-#: largest change over a cycle, of each state's largest size, and how many cycles that may take
+#: largest change of a state over a cycle, relative to its largest size, that counts as periodic;
+#: and most cycles
 _CLOSED, _MOST_CYCLES = 1e-9, 200
 _Call = Callable[..., list[float]]
 

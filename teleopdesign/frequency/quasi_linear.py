@@ -27,7 +27,8 @@ from .describing_function import describing_function, driven_gain
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
 
-#: the phase of what drives a controller follows from iteration: relative change at its end
+#: relative change at the end of the iteration for the phase of a controller's input; most
+#: iterations
 _CONVERGED, _MOST = 1e-9, 100
 
 

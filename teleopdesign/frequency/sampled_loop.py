@@ -35,9 +35,9 @@ from .late_loop import LateRatio
 #: rational numbers, highest power first
 Coefficients = tuple[Fraction, ...]
 _DIGITS = 50
-#: of the size of a root: nearer to the unit circle it counts as growing
+#: distance of a root from the unit circle, relative to its size, within which it counts as growing
 _NEAR = 1e-20
-#: samples of dead time in all: the polynomial has as many powers
+#: most samples of dead time in all: the polynomial has as many powers
 MOST_SAMPLES = 1000
 
 

@@ -13,19 +13,19 @@ import numpy as np
 
 from .sampled_loop import MOST_SAMPLES, SampledLoop
 
-#: from slow to the fastest that samples tell, angles w h on the grid
+#: lowest angle w h on the grid, which reaches to pi, and its points
 _SLOWEST, _POINTS = 1e-9, 6001
-#: rad; the grid is as fine as whole samples of dead time turn the phase by this
+#: rad: on the grid, whole samples of dead time turn the phase by at most this in a step
 _STEP = 0.2
-#: parts of a sample at which crossings are looked for, before they are followed
+#: parts of a sample as dead times at which crossings are searched, before they are refined
 _PARTS = 8
-#: whole samples up to which short dead times are looked at one by one
+#: whole samples of short dead times that are tested one by one
 _LOOKED = 6
-#: parts of a sample at which the gain at half the sampling rate is looked at
+#: parts of a sample as dead times at which the gain at half the sampling rate is evaluated
 _FINE = 32
-#: shares of the margin, and samples where there is none, at which the loop is to decay
+#: dead times at which the loop must decay: shares of the margin, or samples if there is no margin
 _BEFORE, _SAMPLES = (0.25, 0.5, 0.75, 0.99), (0.5, 1.0, 3.0, 10.0, 30.0)
-#: samples; more dead time than this is not looked at
+#: samples: longer dead times are not considered
 _MOST = 1e6
 #: share and rad, as in `margins`
 _LEVEL = 1e-3

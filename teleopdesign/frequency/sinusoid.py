@@ -14,14 +14,14 @@ from ..simulate import Sampling, Setup, prepare, sine
 from ..simulate.sampling import SAMPLED
 from .lock_in import Harmonic, lock_in
 
-#: share of the amplitude by which ideal Coulomb friction deflects before it slides. What it leaves
-#: of a spring, 1.25 sqrt(share) of the friction (P18), turns the phase of friction by 0.2 degrees
+#: deflection of ideal Coulomb friction before it slides, as a share of the amplitude. Its remaining
+#: spring force, 1.25 sqrt(share) of the friction (P18), turns the phase of friction by 0.2 degrees
 BRISTLE_SHARE = 1e-5
 #: inner steps in which such a bristle is reloaded after a reversal: one more than the kernel needs
 _RELOAD_STEPS = 11
 #: at least that many inner steps a cycle, also where nothing slides
 _LEAST_STEPS = 400
-#: cycles of the first run, and by how much that may grow
+#: cycles of the first run, and the largest factor on them in later runs
 _CYCLES, _MOST_LONGER = 4, 32
 
 

@@ -30,7 +30,7 @@ from .steady_runs import SteadyRun, steady_runs
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: part of a run's travel that its partner must cover too
+#: part of the travel of the shorter one of two runs that both runs must cover
 OVERLAP = 0.3
 #: relative difference of two speeds that count as one
 SAME_SPEED = 0.1

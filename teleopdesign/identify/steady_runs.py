@@ -17,7 +17,7 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions
 from ..model import Model
 
-#: Hz: bandwidth at which runs are sought where the experiment states none
+#: Hz: bandwidth for the search for runs if the experiment states no bandwidth
 BANDWIDTH = 20.0
 #: encoder steps that a run must travel
 STEPS = 20

@@ -17,7 +17,7 @@ from ..whole_files import follow_links
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
 from .toml_table import Table, describe_toml_value
 
-#: whether inertial parameters are estimated, or taken as they are
+#: treatment of inertial parameters: estimated, or taken from the description
 ESTIMATES = ("base parameters", "as given")
 _ARM = ("urdf", "links", "estimate", "gravity", "joints")
 _JOINT = ("urdf_joint", "motor_inertia", "effects")

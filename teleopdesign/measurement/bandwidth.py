@@ -11,14 +11,15 @@ from .filtering import Array
 from .motion import motions
 from .record import Record
 
-#: share of the rows in motion, over that two octaves lower, below which a bandwidth hides the
-#: motion. A half: of what could be tested, most is lost
+#: a bandwidth hides the motion if the share of rows in motion, over the share at a bandwidth two
+#: octaves lower, is below this: then most rows that could be tested are lost
 LEAST_SHARE = 0.5
 #: Hz: no lower bandwidth is chosen or proposed
 LOWEST = 1.0
-#: part of the sample rate up to which a bandwidth is chosen, and up to which one is proposed
+#: highest bandwidth that is chosen, and that is proposed, as parts of the sample rate
 CHOSEN, PROPOSED = 0.1, 0.3
-#: times the density of reading noise from which a position shows a motion: 10 dB
+#: a position shows a motion if its spectral density is above this multiple of that of reading
+#: noise: 10 dB
 ABOVE = 10.0
 
 

@@ -10,7 +10,7 @@ from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
 from .toml_table import Table
 
-# what a body's channel is called -> its quantity in the table of units
+# name of a body's channel -> its quantity in the table of units
 BODY_QUANTITIES = {
     "position": "position",
     "velocity": "velocity",

@@ -9,7 +9,7 @@ from ..quantity import is_unit, measures
 from .conversion import COUNTS
 from .doors._log import bare_column
 
-#: how loggers write units -> as this package reads them
+#: unit as loggers write it -> unit as this package reads it
 ALIASES = {
     "degree": "deg", "degrees": "deg", "grad": "deg", "radian": "rad", "radians": "rad",
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sekunden": "s", "msec": "ms",
@@ -41,7 +41,7 @@ _ADDRESS = re.compile(r"\b0[xX][0-9A-Fa-f]{2,8}\b")
 _SLASH = re.compile(r"\s/\s+\(?([^()/]+(?:/[^()/]+)?)\)?\s*$")
 _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
 
-#: quantity -> words that a name of it may hold, the surest first
+#: quantity -> words in names of its columns, the most certain words first
 WORDS: dict[str, tuple[str, ...]] = {
     "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo", "ts",
              "時間", "时间", "時刻", "시간", "время"),
@@ -67,9 +67,9 @@ WORDS: dict[str, tuple[str, ...]] = {
     ),
     "segment": ("segment", "run", "trial"),
 }  # fmt: skip
-#: place in these lists from which words count alike: still sure
+#: index in these lists from which all words count as equally certain
 LAST_RANK = 12
-#: words of what was wanted, and no reading of a sensor
+#: words in names of commanded values, which are no readings of a sensor
 WANTED = (
     "target",
     "ref",
@@ -84,16 +84,17 @@ WANTED = (
 )
 
 
-#: two words that are one term, as controllers of ROS write them; and marks of a place's derivatives
+#: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;
+#: and endings that mark the derivatives of a position
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position"}
 DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
-#: words and units of what is neither place nor speed nor force
+#: words and units of quantities that are neither a position, a speed nor a force
 OTHER_QUANTITIES = frozenset(
     "pressure press druck pression bar mbar psi pa kpa mpa hpa temperature temp temperatur celsius "
     "degc kelvin humidity flow".split()
 )
 
-#: beginnings of words that say the same: "Sollwinkel", "targetPosition"
+#: beginnings of words with the same meaning as in WANTED: "Sollwinkel", "targetPosition"
 WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consigne", "目標", "指令")
 
 

@@ -8,21 +8,21 @@ from scipy.special import comb
 
 Array = NDArray[np.float64]
 
-#: steps between neighbouring readings up to which their number is sure from the smallest gap,
-#: which may be 1 % off where few digits were written
+#: steps between two readings whose number is certain from the smallest gap alone: this gap may be 1
+#: % wrong if a log has few digits
 STEPS_APART = 20
-#: values lie on a grid where the mean of their phases in it is at least this long: 1 on the grid
-#: itself, 0.04 for 600 values anywhere
+#: values lie on a grid if the size of the mean of exp(2 pi i x/step) is at least this: 1 exactly on
+#: the grid, 0.04 for 600 random values
 ON_GRID = 0.9
-#: part of the readings that may be different values where a grid is an encoder's: a body that rests
-#: reads one value over and over; an even motion lies on a different grid, each value once
+#: the grid is that of an encoder if the different values are less than this part of the readings: a
+#: body at rest repeats a value, while an even motion lies on another grid and repeats none
 DIFFERENT = 0.9
-#: values that are looked at
+#: most values that are evaluated
 ENOUGH = 20_000
-#: samples of a piece over which scatter is held against speed, and the fewest pieces
+#: samples of a piece for the comparison of scatter and speed, and fewest pieces
 PIECE, PIECES = 64, 8
-#: order of the difference that tells scatter from motion. Of a motion at a tenth of the sample rate
-#: the fourth passes as much as a jitter of 2 % of a row would make, the eighth 0.03 %
+#: order of the difference that separates scatter from motion. Of a motion at a tenth of the sample
+#: rate, the fourth difference leaves as much as a jitter of 2 % of a row, the eighth only 0.03 %
 DIFFERENCE = 8
 
 

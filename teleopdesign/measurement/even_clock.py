@@ -9,8 +9,8 @@ import numpy as np
 
 from .record_clock import Array, RecordClock, check_duration
 
-_JITTER = 0.2  # of a sample time: a step may be that much longer or shorter than the others
-_EQUAL = 0.02  # mean and usual step closer than this: rare odd steps are lost samples, not rounding
+_JITTER = 0.2  # deviation of a step from the others, in sample times, that counts as jitter
+_EQUAL = 0.02  # if mean and usual step differ by less, rare odd steps are lost samples
 
 
 def even_clock(stamps: Array, segments: tuple[slice, ...], where: str) -> RecordClock | None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 Array = NDArray[np.float64]
-#: seconds of odd continuation at each end, where the record is long enough
+#: s by which a record is continued (point symmetric) at each end, if the record is long enough
 CONTINUED = 0.6
 
 

@@ -21,18 +21,19 @@ Array = NDArray[np.float64]
 
 #: Hz, part of the sample rate and bounds of the low-pass before the fit
 _BAND = (0.02, 2.0, 40.0)
-#: part of the largest speed below which the direction of motion is not counted as known
+#: part of the largest speed below which the direction of motion counts as unknown
 _SLOW = 0.02
-#: part of the largest speed below which friction may still take any force, and s by which the
-#: low-pass carries such a force into rows beside: one period at 20 Hz. On a simulated joint whose
-#: friction has a Stribeck peak, the error of a balance falls from 13 % to 0.5 % with both
+#: part of the largest speed below which friction may have any force, and s by which the low-pass
+#: spreads such a force over neighbouring rows (one period at 20 Hz): these rows are left out. On a
+#: simulated joint with a Stribeck peak, this lowers the error of a balance from 13 % to 0.5 %
 _AT_REST, _REACH = 0.1, 0.05
-#: standard errors from which the sign of a part of the force is told; three: one in 700 by chance
+#: standard errors from which the sign of a part of the force counts as known; three: wrong by
+#: chance once in 700
 _SURELY = 3.0
-#: part of its rms by which a direction or speed must vary, or the motion goes one way: a twentieth,
-#: as noise and the low-pass at the ends bring
+#: a motion is in one direction if its direction or speed varies by less than this part of its rms:
+#: noise and the ends of the low-pass make about as much variation
 _ONE_WAY = 0.05
-#: part of the squares that a force of the place must leave to be there
+#: a force that depends on position counts only if it leaves less than this part of the squares
 _MOSTLY = 0.5
 
 

@@ -22,7 +22,7 @@ from .spans import cut_to
 from .tables import columns_of
 from .toml_table import Table
 
-#: forms of a channel: a column's name, or a table as in [channels]
+#: a channel in a call: the name of a column, or a table as in [channels]
 ChannelEntry = str | Mapping[str, Any]
 _WHERE = "experiment"
 

@@ -17,16 +17,16 @@ from scipy.optimize import minimize_scalar
 from ..quantity import MAINS
 from .filtering import Array
 
-#: Hz to either side that tell what is usual there, and those within which the tone itself lies
+#: Hz to either side of the mains frequency: the range of the usual power, and the range of the tone
 AROUND, WITHIN = 10.0, 1.5
-#: power of the tone over the median around: noise has 2^-300 of a chance, and a force that follows
-#: a motion without that tone stays below some ten
+#: power of a tone over the median around it, from which it counts as a hum: white noise reaches it
+#: with a probability of 2^-300, and a force that follows a motion without this tone stays below ten
 TONE = 300.0
-#: the same of a position: above, the body moves with that frequency, and the force may well
+#: the same ratio for a position: above it, the body moves at this frequency, so the force may, too
 MOVES = 30.0
-#: rms of the tone over that of the channel from which it is reported: a hundredth changed no answer
+#: rms of a tone over that of the channel, from which it is reported: 0.01 changed no answer
 SHARE = 0.02
-#: s: shorter records do not part the tone from what is beside it
+#: s: shorter records do not separate the tone from neighbouring frequencies
 SHORTEST = 2.0
 
 

@@ -19,10 +19,10 @@ from .time_grid import DATE, EVEN, clock_of, stamps_are_true
 
 Array = NDArray[np.float64]
 
-#: part of the rows without a number in some cell above which a log is refused: a column that is
-#: mostly empty is another column, or belongs to a slower clock
+#: a log is refused if more than this part of the rows lack a number in some cell: such a column is
+#: another column, or belongs to a slower clock
 MOST_EMPTY = 0.2
-#: standard errors by which the position must tell whether stamps are true
+#: standard errors from which the position decides whether the stamps are true
 SURE = 3.0
 
 

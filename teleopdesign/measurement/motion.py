@@ -14,15 +14,14 @@ from .filtering import Array, Spectrum, spectrum
 from .hum import hum_of, without_hum
 from .record import Record
 
-#: smoothing edge over comparison bandwidth: the band below is untouched (|H| > 0.998 there)
+#: edge of the smoothing over the bandwidth of the comparison: below the bandwidth |H| > 0.998
 SMOOTHING = 1.5
-#: a body whose reading stands still longer than this part of a period at the bandwidth may be stuck
+#: a body whose reading is constant for longer than this part of a period at the bandwidth may stick
 DWELL = 0.25
-#: steps of the reading that a motion must cover to be more than the deflection of a contact that
-#: holds
+#: fewest steps of a reading in a motion: a shorter one may be the deflection of a sticking contact
 TRAVEL = 3
-#: velocities within so many of the errors that readings leave count as rest: at slow
-#: motion the steps of an encoder are no white noise, and leave more than that
+#: velocities within so many errors, from the noise of readings, count as rest: in slow motion the
+#: steps of an encoder are no white noise, and their error is larger than that of white noise
 SLOW = 4.0
 #: s, shortest stretch that leaves something after the ends are trimmed
 SHORTEST = 0.6

@@ -18,7 +18,7 @@ from .signals_of_log import signals_of_log
 from .spans import cut_to
 from .tables import LogColumns, read_columns
 
-#: what a record need not share with others: "own" at these keys of [[records]]
+#: keys of [[records]] at which "own" gives the record a separate value
 SEPARATE = ("position_zero", "bias", "friction_level")
 
 

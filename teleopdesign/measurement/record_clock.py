@@ -11,8 +11,8 @@ from ..errors import ExperimentError
 
 Array = NDArray[np.float64]
 RowNumbers = NDArray[np.intp]
-_SHORTEST = 1.0  # s, all segments of a record together
-_FEWEST = 64  # samples
+_SHORTEST = 1.0  # s: least duration of all segments of a record together
+_FEWEST = 64  # fewest samples of a record
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,33 +16,33 @@ from numpy.typing import NDArray
 from .encoder import reading_step
 from .record_clock import Array
 
-#: chance that all that is read repeats together in a row, up to which the row may be lost. One in
-#: so many rows does so by chance: only where more of them do are they lost
+#: a row in which all readings repeat may be lost if the probability of this by chance is at most
+#: this. Rows count as lost only if they are more than this share of all rows
 ALONE = 0.001
-#: rows to either side over which each channel tells how often it repeats by itself
+#: rows to either side that show how often each channel repeats alone
 BESIDE = 25
-#: share of the rows above which a log is one of a slower source, which is another matter
+#: if more than this share of the rows repeat, the log has a slower source, which is another case
 MOST = 0.2
-#: part of the readings of a slower source that must come in step with it, and how far from the step
-#: each may lie, in its periods: of rows that repeat at random 0.6 lie as near
+#: part of the changes that must be in step with the slower source, and their largest distance from
+#: the step, in its periods: of rows that repeat at random, 0.6 lie as near
 IN_STEP, OFF_STEP = 0.95, 0.3
-#: readings below which no period of a source is seen
+#: fewest changes that show the period of a source
 READINGS = 50
-#: changes to either side of a hold that show noise, and the part of them that must turn back after
-#: the one before: two thirds do in white noise, next to none in a motion
+#: changes to either side of a constant stretch that show noise, and the part of them that must have
+#: the opposite sign of the change before: two thirds in white noise, almost none in a motion
 SHOWN, TURNS = 20, 0.4
-#: changes from sample to sample that count as motion, in steps between values
+#: smallest change from sample to sample that counts as motion, in steps between values
 STEPS = 3.0
-#: samples to either side over which a usual change is taken
+#: samples to either side for the usual size of a change
 NEAR = 10
-#: changes on leaving a hold, in usual changes before it, that reveal it
+#: change at the end of a constant stretch, in usual changes before it, that shows a stuck reading
 LEAP = 5.0
-#: samples that a hold must last to be called stuck, and may be a rest: shorter ones are repeats
+#: fewest samples of a constant stretch that is called stuck, or is a rest; shorter ones are repeats
 LASTING = 10
 
-#: chance of a zero among normal changes: density at zero times the step, over the median change
+#: probability of a zero among normal changes, times median change over step: density at zero
 _ZERO = 0.3989 * 0.6745
-#: chance that a sound channel is called stuck
+#: probability that a sound channel is called stuck
 STUCK_BY_CHANCE = 1e-3
 
 

@@ -17,13 +17,13 @@ from .record_clock import RecordClock
 Array = NDArray[np.float64]
 Rule = Literal["held", "position", "line"]
 
-#: encoder steps between two rows up to which readings stay whole steps; above, steps are no longer
-#: seen one by one, and the rounding of a reading is smaller than the motion between two
+#: encoder steps between two rows up to which interpolated readings are rounded to whole steps. In
+#: faster motion the rounding of a reading is small against the motion between two rows
 STEPS = 2.5
-#: pairs of rows that must say the same before that counts, part of those between the same two
-#: changes that must, and step in which the phase is searched, in samples
+#: fewest pairs of rows for this test; part of the pairs between the same two changes that must
+#: agree; and step of the search for the phase, in samples
 _SEEN, _ALIKE, _PHASE = 20, 0.95, 0.005
-#: rows that are taken away and filled again, to see by how much filling errs
+#: rows that are removed and filled again to measure the error of filling
 TRIALS = 2000
 
 

@@ -24,7 +24,7 @@ from .tables import LogColumns
 
 Array = NDArray[np.float64]
 
-#: values of a channel up to which whole numbers are states and no measurement
+#: a channel of whole numbers with at most so many different values is a state, and no measurement
 STATES = 16
 #: mean of exp(2 pi i x / step) from which readings x lie on steps: 1 on them, 0 anywhere
 ON_STEPS = 0.9

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 DAY = 86_400.0
 #: days between two rows: 0.2 s, as in seconds
 LONGEST_DAYS = 0.2 / DAY
-_SHORTEST = 1.0  # s, of a record
+_SHORTEST = 1.0  # s: shortest duration of a record
 
 
 def unit_of_steps(stamps: Array) -> tuple[str, str]:

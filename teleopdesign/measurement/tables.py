@@ -59,7 +59,7 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
-#: how files begin that are known by it
+#: first bytes of a file -> the function that reads such a file
 BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
     b"\x89HDF\r\n\x1a\n": open_hdf5,
     b"PAR1": open_parquet,
@@ -67,9 +67,9 @@ BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
     b"{": open_json,
     b"[": open_json,
 }
-#: bytes of a file that are looked at where its ending says nothing
+#: bytes of a file that are inspected if its ending does not decide
 LOOKED_AT = 4096
-#: what makes a folder an experiment
+#: name of the file that makes a folder an experiment
 EXPERIMENT = "experiment.toml"
 
 

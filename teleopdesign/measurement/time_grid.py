@@ -21,7 +21,8 @@ from .uneven_stamps import rows_in_order, sparse_clock
 
 #: rms jitter, of a sample time, below which stamps are those of an even clock
 EVEN = 0.01
-#: s: stamps above are a date (the year 1970 began at 0), and the record counts from its first one
+#: s: larger stamps are a date (counted from the year 1970), and the time of the record starts at
+#: its first stamp
 DATE = 1e8
 
 

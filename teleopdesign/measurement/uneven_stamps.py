@@ -10,15 +10,18 @@ from numpy.typing import NDArray
 
 from .record_clock import Array, RecordClock, RowNumbers, check_duration, check_size
 
-#: lost rows in a row that are filled; more of them part the record. At 1 kHz six sample times are a
-#: tenth of a period at 16 Hz: what moves in the band of a comparison is still known between them
+#: most successive lost rows that are filled; with more, the record is split. At 1 kHz six sample
+#: times are a tenth of a period at 16 Hz, so the motion between them is still known in the band of
+#: a comparison
 MOST_FILLED = 5
-#: rms distance of stamps from an even clock, of a sample time, above which they follow none: stamps
-#: anywhere would be 0.29 off
+#: rms distance of stamps from an even clock, in sample times, above which they follow no even
+#: clock: random stamps have 0.29
 NO_CLOCK = 0.2
-#: steps back, in sample times, that are rows out of order; longer ones are a clock set anew
+#: longest step back, in sample times, that is a row out of order; a longer one is a clock that was
+#: set back
 OUT_OF_ORDER = 5
-#: part of the rows with the stamp of another one above which stamps are too coarse to place rows
+#: if more than this part of the rows have the stamp of another row, stamps are too coarse to place
+#: rows
 TOO_COARSE = 0.02
 
 

@@ -11,20 +11,21 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: what a counter of 16, 24 or 32 bits loses at its wrap
+#: step of a counter of 16, 24 or 32 bits at its wrap -> the reason in words
 COUNTERS = {2.0**bits: f"a counter of {bits} bits wraps" for bits in (16, 24, 32)}
-#: s that a clock loses: an hour in autumn, the dial of twelve hours, a day, a week of GPS
+#: s by which a clock steps back -> the reason in words: an hour in autumn, a twelve-hour dial, a
+#: day, a week of GPS
 CLOCKS = {
     3600.0: "the clock goes back an hour",
     43_200.0: "the time of day begins anew after twelve hours",
     86_400.0: "the time of day begins anew at midnight",
     604_800.0: "the week begins anew",
 }
-#: fractions of a second that stamps count in
+#: units of stamps, as parts of a second
 _SECONDS = (1.0, 1e3, 1e6, 1e9)
-#: usual steps up to which the step over a wrap may be long: a few rows may be lost there
+#: longest step over a wrap, in usual steps: a few rows may be lost there
 LONGEST_STEP = 20.0
-#: usual steps in the period of a wrap, at least: less is a column that counts rows of blocks
+#: fewest usual steps in the period of a wrap: with fewer, the column counts the rows of blocks
 FEWEST_STEPS = 500.0
 
 

@@ -17,19 +17,20 @@ from ..machine_code import compile_and_keep
 from .filtering import Array
 from .zero_phase import copy_rows, go_on, sections, settle
 
-#: rows between two spans up to which they are one: to cross costs as much as to filter so many
+#: spans with at most so many rows between them are joined: a gap costs as much as filtering so many
+#: rows
 NEAR = 16
-#: what is left of a row's part in the filter's output, over that part, that counts as nothing:
-#: below rounding
+#: decay of the influence of a row on the filter's output that counts as complete: below rounding
 NOTHING = 1e-18
-#: share of a record in windows above which it is taken as a whole: each window costs a call
+#: if windows cover more than this share of a record, the whole record is filtered: each window
+#: costs a call
 MOST_SHARE = 0.7
-#: cutoff over the sample rate from which the filter's states are carried between spans: 1e-9 of
-#: them is lost to rounding at half of it, and the more the lower it is. Below, one span holds all
+#: lowest cutoff over the sample rate at which the states of the filter are carried between spans:
+#: at half of it, rounding loses 1e-9 of them, and more at lower ones. Below it, one span covers all
 LEAST_CUTOFF = 1e-3
-#: powers of two that the rows between two spans are made of: more than any record has
+#: number of powers of two that add up to the rows between two spans: enough for any record
 DOUBLINGS = 40
-#: elements of such a power that count as nothing: their squares would leave the range of numbers
+#: smaller elements of such a power count as zero: their squares would underflow
 TINY = 1e-100
 
 

@@ -25,16 +25,17 @@ from ..measurement.filtering import Array
 from .limits import Limits, shown_limits
 from .proposal import Reference
 
-#: s of one period of the paths, at most: with sines of up to `HARMONICS` times its inverse
+#: longest period of a path, s; and its highest sine, in multiples of the inverse of the period
 PERIOD, HARMONICS = 10.0, 5
-#: samples of a path on which it is judged: forty for each period of its fastest sine
+#: samples of a path for its evaluation: forty for each period of its fastest sine
 SAMPLES = 200
-#: random paths, and changes of the best one: on an arm of two joints twice as many gained little
+#: number of random paths, and of changes of the best one: on an arm of two joints twice as many
+#: improved little
 DRAWS, CHANGES = 100, 300
 #: size of a change, over that of the coefficients
 CHANGE = 0.3
-#: parts of the limits that a path may use, the largest with a force within its limits: 0.95 and not
-#: all, for readings of the records have noise
+#: parts of the limits that a path may use; the largest part with forces within their limits counts.
+#: Not all of a limit is used, because the readings of the records have noise
 USED = (0.95, 0.8, 0.65, 0.5)
 
 

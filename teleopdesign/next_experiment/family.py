@@ -14,17 +14,18 @@ from ..measurement.filtering import Array
 from .limits import Limits
 from .path import Hold, Move, largest_factor, sines, travel, with_window
 
-#: shows a value of a quantity ("position", "velocity", "frequency", "time") with its unit
+#: a function that writes a value of a quantity ("position", "velocity", "frequency", "time") with
+#: unit
 Show = Callable[[float, str], str]
-#: parts of the largest speed at which runs are made: three decades, about three to a decade
+#: speeds of runs over the largest speed: three decades, about three to a decade
 SPEEDS = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
-#: parts of the largest amplitude of sums of sines
+#: amplitudes of sums of sines over the largest amplitude
 SHARES = (1.0, 0.4, 0.15)
-#: encoder steps that a motion must cover to be seen as one
+#: fewest encoder steps of a motion
 SEEN = 10.0
-#: s, about how long a part is meant to last, and the longest of a sweep of the whole stroke
+#: intended duration of a part, s; and longest duration of a sweep over the whole stroke, s
 ABOUT, LONGEST = 4.0, 8.0
-#: part of the largest speed at which a part goes where it starts
+#: speed of the motion to the start of a part, over the largest speed
 BRISK = 0.5
 
 

@@ -18,11 +18,12 @@ from ..measurement.motion import play
 from ..model import Model
 from ..realise.along_motion import residual_along
 
-#: part of the samples at which a record's force may change faster: single ones are noise
+#: part of the samples that may exceed the rate of the force that is read from a record: single ones
+#: are noise
 OUTLYING = 1e-3
-#: s, longest turn of the force that is believed: a slower servo is one that was hardly driven
+#: s: longest time in which the force reverses; a longer one means that the servo was hardly driven
 LONGEST = 0.1
-#: speed over the largest from which a path counts as moving
+#: speed over the largest speed, above which a path counts as moving
 MOVING = 1e-4
 
 

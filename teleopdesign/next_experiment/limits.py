@@ -13,7 +13,7 @@ import numpy as np
 from ..diagnose.prepare import Prepared, Stretch
 from ..errors import ModelError, did_you_mean
 
-#: part of the samples of a signal that may lie above the limit read off: single samples are noise
+#: part of the samples that may exceed a limit that is read from a record: single samples are noise
 OUTLYING = 1e-3
 
 

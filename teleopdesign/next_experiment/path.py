@@ -18,7 +18,7 @@ import numpy as np
 from ..measurement.filtering import Array
 from .limits import Limits
 
-#: s at rest at either end of a part
+#: s: rest at each end of a part
 REST = 0.3
 
 

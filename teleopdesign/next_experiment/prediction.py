@@ -27,10 +27,11 @@ from .synthesis import Bench, PlannedMotion, record_under
 
 #: the two records of a proposed motion
 FIT, CHECK = "next_fit", "next_check"
-#: separation (noise floors) from which a motion decides: a right model's error lies between one
-#: and about one and a half noise floors, so that less may be the method's error
+#: separation of two models, in noise floors, from which a motion decides between them: the error of
+#: a right model is between one and about one and a half noise floors, so a smaller separation may
+#: be an error of the method
 DECIDES = 1.0
-#: separation below which two models' forces count as the same: a twentieth of what sensors leave
+#: separation, in noise floors, below which the forces of two models count as equal
 SAME = 0.05
 
 
@@ -210,7 +211,7 @@ def find_least_determined(
     return tuple(least.values())
 
 
-#: standard error over value from which a parameter counts as left open, and below which as
+#: standard error over value from which a parameter counts as open, and below which it counts as
 #: determined
 LEFT_OPEN, DETERMINED = 0.25, 0.1
 

@@ -24,13 +24,13 @@ from .separation import floor_force, present_separation
 from .synthesis import Bench, plan_motion
 from .words import list_pairs_once, sentence_of
 
-#: s that a proposal may last by default, and that it lasts at least: a short one is repeated, so
-#: that chance weighs less
+#: s: default of the longest duration of a proposal, and its shortest duration: a short one is
+#: repeated, so that chance counts less
 LONGEST, SHORTEST = 20.0, 10.0
-#: s of a repeated run, and how many times the longest record, where time itself matters: a warm-up
-#: is seen when a record lasts several of its time constants
+#: duration of a repeated run, s, and over the longest record, where an effect depends on time: a
+#: warm-up shows if a record lasts several of its time constants
 REPEATED, TIMES = 60.0, 3.0
-#: most pairs that remedies are simulated for
+#: most pairs of models for which remedies are simulated
 PAIRS = 2
 
 

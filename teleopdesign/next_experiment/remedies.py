@@ -26,13 +26,13 @@ from .search import try_parts
 from .separation import Sums
 from .synthesis import Bench
 
-#: how much finer a sensor, how much wider the limits are taken
+#: factors of a remedy: a sensor that is finer by this, limits that are wider by this
 FINER, WIDER = 10.0, 2.0
 #: attached inertia over that of the body; pushing force over the rms force of the records
 ATTACHED, PUSHING = 0.5, 0.5
 #: noise of the sensor that measures a pushing force, over that force
 SENSOR_NOISE = 0.01
-#: every how many parts of the family a change is simulated on: neighbours differ in size alone
+#: a change is simulated on every third part of the family: neighbouring parts differ only in size
 EVERY = 3
 
 

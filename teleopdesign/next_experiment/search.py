@@ -16,7 +16,7 @@ from .rivals import Rival, pairs
 from .separation import Sums, normal_matrix, sums_of
 from .synthesis import Bench, PlannedMotion, plan_motion, record_under
 
-#: a part that is added may cost this share of what was reached: it dilutes what others show
+#: an additional part may lower the value of the chosen parts by this share, because it dilutes them
 DILUTES = 0.02
 
 

@@ -25,13 +25,13 @@ from ..realise.simulated import with_bristle, without_absent
 from .following import Servo, follow_path, with_ramps
 from .limits import BodyPaths
 
-#: bristle length of an ideal friction, in encoder steps: too small to be read
+#: deflection of ideal friction before it slides, in encoder steps: too small to be read
 BRISTLE_STEPS = 0.3
-#: speed over the largest below which a body counts as at rest: far below one step a sample
+#: speed over the largest speed, below which a body is at rest: far below one encoder step a sample
 AT_REST = 1e-5
-#: corrections of the command, and the part of the force that may be left by the last
+#: most corrections of the command, and the part of the force that may then be left
 CORRECTIONS, LEFT = 8, 1e-3
-#: gain below which an actuator is not inverted: what does not pass is not asked for
+#: gain below which an actuator is not inverted, because the force does not pass
 PASSES = 0.05
 #: sines in the force of a hand that pushes
 PUSHES = 7

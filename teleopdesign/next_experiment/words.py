@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .proposal import Proposal
     from .remedies import Remedy
 
-#: pairs of rivals that are named one by one in the sentence; more are summed up
+#: most pairs of rival models that a sentence names one by one; more are summarised
 FEW = 2
 
 
@@ -121,7 +121,7 @@ def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     return f"{said} {_remedies_said(remedies)}"
 
 
-#: remedies in a sentence: more of them are no sentence to read
+#: most remedies in a sentence, so that it stays readable
 MOST_SAID = 3
 
 

@@ -14,7 +14,7 @@ FRICTION = 1.0  # N, at the slave
 STIFFNESS = 1000.0  # P, N/m
 SLAVE_DAMPING = 2.0  # N s/m; settles the slave on the coupling spring
 AMPLITUDE, FREQUENCY = 5e-3, 0.1  # of the master: up to 3 mm/s, inertial forces below 1 mN
-BRISTLE = 1e-5  # m; presliding of what stands for ideal Coulomb friction
+BRISTLE = 1e-5  # m: deflection before sliding, which stands for ideal Coulomb friction
 
 
 def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:

@@ -14,7 +14,7 @@ from ._proof import Correction, Equal, Grows, NotNegative, ProofStep, ProofSteps
 from ._statement import MAHVASH, Numbers, figure_near, shows
 from .dahl_euler import ABOVE, BELOW, INSIDE, LEVELS, T, d, e, f, f_c, sigma
 
-SHARE = sp.exp(-sigma * d / f_c)  # of the distance to the level that is left after the travel d
+SHARE = sp.exp(-sigma * d / f_c)  # remaining share of the distance to the level after the travel d
 
 
 def integrate_in_parts(direction: int) -> ProofStep:

@@ -30,7 +30,7 @@ ZHAT_M = GAMMA**-1 * (Z_M - C)
 ALL = haptic_interface(
     device=ANY, hand=ANY, cancellation=ANY, force_feedback=ANY, position_loop=ANY
 )
-FORCE = ALL.open_at("K")  # R_D from outside
+FORCE = ALL.open_at("K")  # the loop is open at K: R_D comes from outside
 T = transfer_functions(ALL)
 
 

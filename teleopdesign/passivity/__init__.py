@@ -6,7 +6,7 @@
     claim.status, claim.verdict              # "proved", by what, with which margin
     claim.certificates[0].write("c.json")    # python -m teleopdesign.passivity.checker c.json
 
-A refuted claim holds a motion that releases energy: `claim.record.replay()`.
+A refuted claim contains a motion that releases energy: `claim.record.replay()`.
 """
 
 from ..arguments import check_arguments

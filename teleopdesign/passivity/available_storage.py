@@ -1,8 +1,8 @@
 """Available storage of path-dependent friction: the most energy that any motion can release.
 
-Willems: a system is passive from rest where this is finite, and then it is a storage function. With
-friction that depends on the path alone, every motion is a sequence of small travels forward or
-back, so that the available storage V of the forces x solves
+Willems: a system is passive from rest if its available storage is finite, and then the available
+storage is a storage function. If friction depends on the path alone, every motion is a sequence of
+small travels forward or back. So the available storage V, a function of the forces x, solves
 
     V(x) = max(0, max over both directions of (released over the travel + V(x after it)))
 
@@ -28,26 +28,28 @@ from .rate_independent import Coulomb, Dahl, Element, compliance
 from .round_trips import most_released
 
 Array = NDArray[np.float64]
-#: gain, as a share of the compensator's level, below which the storage counts as steady
+#: growth of the storage per travel, as a share of the compensator's level, that counts as none
 _BLUR = 1e-3
-#: share of the storage that may still be gained over the second half of the moves: as much as
-#: interpolation blurs on a grid of 25 points. Less asks for more moves where a limit is near
+#: growth over the second half of the moves, as a share of the storage, that counts as none: about
+#: the error of interpolation on a grid of 25 points. A smaller share needs more moves near a limit
 _STILL_GROWING = 2e-3
-#: moves, and nodes times moves, at 50 us a move and 50 ns a node: some 20 s
+#: most moves, and most nodes times moves: at 50 us a move and 50 ns a node they take some 20 s
 _MOST_MOVES, _MOST_WORK = 400_000, 500_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class AvailableStorage(ByValue):
-    """Available storage (J): the most energy that friction can release, on a grid of forces.
+    """Available storage of friction with a compensator, on a grid of their forces; numerical.
 
-    storage: J, an axis for each force with a state, compensator first, from -level to level
-    gain: energy released per travel in steady state, N; 0 where it is finite
-    travel: m, of one move;  moves: how many were made
+    storage: most energy that a motion can release, J; an axis for each force with a state, the
+        compensator first, from -level to level
+    gain: growth of the storage per travel over the second half of the moves, N
+    travel: of one move, m;  moves: number of moves
+    tolerance: gain that counts as zero, N
     growth: largest increase of the storage over the second half of the moves, J
     coarse: largest storage on a grid of half the points, J. Its difference from the largest
         storage is about the error of the grid, to either side; more points lower this error
-    round_trip: most energy per travel, N, that a round trip between two points releases forever
+    round_trip: most energy per travel that a round trip between two points releases forever, N
     stroke: of that round trip, m
     """
 
@@ -63,16 +65,16 @@ class AvailableStorage(ByValue):
 
     @property
     def is_finite(self) -> bool:
-        """Whether the storage is finite, within the tolerance of the grid: it has stopped to grow.
+        """Whether the storage has stopped growing, within the tolerance of the grid.
 
-        The present growth is below the most energy that some motion takes out, and no round trip
-        releases energy forever.
+        The growth over the second half of the moves is a small share of the storage, and no round
+        trip releases energy forever.
         """
         still = _STILL_GROWING * float(self.storage.max()) + self.tolerance * self.travel
         return self.gain <= self.tolerance and self.growth <= still and not self.round_trip
 
     def evidence(self) -> Evidence:
-        """As the verdict of a claim."""
+        """The result as the verdict of a claim; margin in N."""
         axes = " x ".join(map(str, self.storage.shape))
         searched = (
             f"available storage iterated over {self.moves} moves on a grid of {axes} forces, to "
@@ -97,13 +99,15 @@ def available_storage(
     moves: int | None = None,
     load_coefficient: float = 0.0,
 ) -> AvailableStorage:
-    """Iterate the available storage of friction beside a compensator.
+    """Available storage of friction with a Dahl compensator, by iteration on a grid of forces.
 
-    friction: Coulomb friction has no state, every other element one
-    points: of each force;  moves: default: six strokes of the softest part, both ways
-    load_coefficient: the first element of friction grows by this much of
-        the size of the last one's force (capstan: a contact pressed by the cable's tension)
-    raises ModelError: more than three forces with a state, lengths too far apart for one grid
+    friction: elements that resist; each has a state, except Coulomb friction
+    points: of the grid along each force
+    moves: number of moves; default: six strokes of the softest element, both ways
+    load_coefficient: the first element of friction grows by this factor times the size of the force
+        of the last element (capstan: the tension of a cable presses a contact)
+    raises ModelError: more than three forces with a state, lengths too far apart for one grid,
+        fewer than 3 points or 1 move, or a negative load
     """
     stateful: list[Element] = [compensator, *(e for e in friction if not isinstance(e, Coulomb))]
     if points < 3 or (moves is not None and moves < 1) or load_coefficient < 0:
@@ -138,7 +142,7 @@ def _iterate(
     moves: int,
     load: float,
 ) -> tuple[Array, float]:
-    """Storage after so many moves, and the most that it gained over the second half of them, J."""
+    """Storage after so many moves, J, and its largest gain over the second half of them, J."""
     step = [_move(stateful, friction, s * travel, points=points, load=load) for s in (1, -1)]
     # iterated is V less what springs hold, which interpolation would blur most
     held = _stored_energy(stateful, points)
@@ -151,7 +155,10 @@ def _iterate(
 
 
 def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:
-    """ModelError for an iteration of minutes. ratio: longest over shortest length of a force."""
+    """Raise ModelError for an iteration that would take minutes.
+
+    ratio: longest over shortest length of the forces
+    """
     work = moves * points**forces
     if moves > _MOST_MOVES or work > _MOST_WORK:
         raise ModelError(
@@ -162,12 +169,12 @@ def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:
 
 
 def _length(element: Element) -> float:
-    """Travel over which its force changes by about its level, m."""
+    """Travel over which the force of an element changes by about its level, m."""
     return element.level * compliance(element)
 
 
 def _stored_energy(stateful: Sequence[Element], points: int) -> Array:
-    """Energy in the springs of friction at each node, less that of the compensator's, J."""
+    """Energy in the springs of friction less that in the compensator's, at each node, J."""
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):
         forces = np.linspace(-element.level, element.level, points)
@@ -185,7 +192,7 @@ def _move(
     points: int,
     load: float,
 ) -> Callable[[Array], Array]:
-    """One travel as a map from storage after it to storage before it."""
+    """One travel (m, with sign) as a map from the storage after it to the storage before it."""
     gain: Array = np.zeros((1,) * len(stateful))
     cells = []
     for axis, element in enumerate(stateful):
@@ -212,7 +219,7 @@ def _move(
 
 
 def _cells(nodes: Array, at: Array) -> tuple[NDArray[np.intp], Array]:
-    """Left neighbour among the nodes, and the share of the right one, of each point (n,)."""
+    """For each point, (n,): index of the left neighbouring node, and weight of the right one."""
     position = np.clip((at - nodes[0]) / (nodes[1] - nodes[0]), 0, len(nodes) - 1)
     left = np.minimum(position.astype(np.intp), len(nodes) - 2)
     return left, position - left

@@ -1,10 +1,10 @@
-"""Declarations of energy and bounds in a user's files, checked before a claim uses them.
+"""Declarations of energy and of bounds in a user's files, checked before a claim uses them.
 
-Tests check the declarations of the effects and laws in the catalogue. A declaration in another file
-counts only where the law itself shows it. This holds for a force without states that opposes the
-velocity for all values of its parameters, for a force that depends on position alone, and for a law
-whose size intervals bound. A declaration that nothing has checked leaves the claim open, and the
-claim names it.
+Tests check the declarations of the effects and laws in the catalogue. A declaration in a user's
+file counts only where the equations show that it is true. They can show it for a force without
+states that opposes the velocity for all values of its parameters, for a force that depends on
+position alone, and for a law whose size interval arithmetic bounds. A declaration that nothing has
+checked leaves the claim open, and the claim names it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _ANY = (-math.inf, math.inf)
 
 
 def is_shipped(effect: Effect) -> bool:
-    """Whether an effect is one of the catalogue, with or without its optional parameters."""
+    """Whether an effect is from the catalogue, with or without its optional parameters."""
     known = {**EFFECTS, **BLOCK_EFFECTS}.get(effect.name)
     if known is None or not set(effect.parameters) <= set(known.parameters):
         return False
@@ -45,9 +45,11 @@ def is_shipped(effect: Effect) -> bool:
 
 
 def unchecked_energy(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
-    """Effects of a user that declare to store or dissipate, and nothing shows that they do.
+    """Names of a user's effects that declare to supply no energy while nothing shows this.
 
-    Friction levels, and shapes of friction, are judged elsewhere, whatever they declare.
+    Friction levels and shapes of friction are judged elsewhere, whatever they declare.
+
+    errors: standard errors of the parameters to either side
     """
     declaring = (
         e
@@ -68,7 +70,10 @@ def _shows_energy(effect: Effect, body: Body, reach: Reach | None, errors: float
 
 
 def falsely_linear(diagram: Diagram) -> list[str]:
-    """Laws that are declared linear and are not, as "block.effect" or "block"."""
+    """Names of effects and laws that are declared linear and are not.
+
+    returns: "block.effect" for an effect, "block" for a controller
+    """
     names = []
     for part in diagram.blocks:
         body = getattr(part, "body", None)
@@ -81,14 +86,14 @@ def falsely_linear(diagram: Diagram) -> list[str]:
 
 
 def is_kept(stage: Stage) -> bool:
-    """Whether a law of a stage does what it declares, as far as its equations tell."""
+    """Whether the law of a stage keeps its declarations, as far as its equations show."""
     law = stage.law
     known = CONTROLLERS.get(law.name) is law or law.source == "python-control"
     return known or not broken_declarations(law)
 
 
 def keeps_its_bound(stage: Stage) -> bool:
-    """Whether the force of a law is surely within the bound that it declares."""
+    """Whether the force of a law certainly stays within the bound that the law declares."""
     law, bound = stage.law, stage.value_of("bound")
     if bound is None or CONTROLLERS.get(law.name) is law:
         return bound is not None
@@ -102,7 +107,10 @@ def keeps_its_bound(stage: Stage) -> bool:
 
 
 def _stays_within(alone: Controller, bound: float, way: int) -> bool:
-    """Whether a law without states is within the bound at all speeds in that direction."""
+    """Whether a law without states stays within its bound at all speeds in one direction.
+
+    way: 1 or -1, the sign of the velocity
+    """
     share = sp.Symbol("share", positive=True)
     speed = share / (1 - share)  # every speed, and a range that ends
     signals = {**SIGNALS, "velocity": way * speed, "speed": speed, "period": sp.S(0)}

@@ -1,4 +1,4 @@
-"""Claims about one identified device with one compensator, and their margins."""
+"""Claims about an identified device, alone, with a compensator or a virtual wall; and margins."""
 
 from __future__ import annotations
 
@@ -18,15 +18,16 @@ from .identified import DIGITS, IdentifiedDevice
 from .search.by_simulation import SimulatedMotion, search_counterexample
 from .theorems import Question, TopicClaim, Wall, settle
 
-#: N/m; sets a scale of length to friction that was identified as ideal
+#: N/m: a stiffness that gives ideal friction a length, for the strokes of a search
 _RIGID = 1e5
 
 
 @dataclass(frozen=True)
 class Compensator:
-    """A control law that cancels friction, by its name in the catalogue.
+    """A control law that cancels friction, from the catalogue.
 
-    level: its bound, N;  second: stiffness of its bristle (N/m), or its smoothing velocity (m/s)
+    law: name in the catalogue;  level: bound of its force, N
+    second: stiffness of its bristle, N/m, or its smoothing velocity, m/s
     """
 
     law: str
@@ -42,7 +43,7 @@ class Compensator:
 
     @property
     def stage(self) -> Stage:
-        """The one stage of that controller."""
+        """The single stage of the controller."""
         return self.controller.stages[0]
 
 
@@ -50,7 +51,8 @@ class Compensator:
 class Margin:
     """A limit of a design value, with its meaning in words.
 
-    value: in `unit` (SI), rounded to the side on which it is kept: the printed number is safe
+    text: the meaning
+    value: in `unit` (SI), rounded to the safe side: a design at the printed number is passive
     """
 
     text: str
@@ -69,9 +71,11 @@ def compensation_claims(
     rng: np.random.Generator,
     tries: int = 15,
 ) -> list[TopicClaim]:
-    """Claims about friction compensation, for every level in the 95 % interval at once.
+    """Claims about friction compensation, for all friction levels in the 95 % interval at once.
 
-    computer: period, delay (whole periods) and encoder of the compensator; None: continuous
+    computer: period, delay (whole periods) and encoder of the compensator; None: continuous time
+    rng: draws the motions of a search in simulation;  tries: number of these motions
+    returns: claims by theorems, then one claim by the search
     """
     question = Question(device, compensator.stage, computer=computer)
     return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
@@ -80,7 +84,7 @@ def compensation_claims(
 def friction_claims(
     device: IdentifiedDevice, compensator: Compensator, *, computer: Sampling | None = None
 ) -> list[TopicClaim]:
-    """Claims by theorems about a device's friction with a compensator; without simulation.
+    """Claims about friction compensation by theorems alone, without simulation.
 
     computer: as in `compensation_claims`
     """
@@ -95,7 +99,7 @@ def _search_claim(
     rng: np.random.Generator,
     tries: int,
 ) -> TopicClaim:
-    """The claim about the whole device with its compensator by a search in simulation."""
+    """A claim about the whole device with its compensator, from a search in simulation."""
     topic, lengths = "search by simulation", [device.lowest.estimate / _RIGID]
     if device.presliding is not None:
         lengths = [device.lowest.estimate / device.presliding.estimate]
@@ -121,7 +125,7 @@ def _search_claim(
 
 
 def device_claims(device: IdentifiedDevice) -> list[TopicClaim]:
-    """Claims about the device alone, if all parts of LuGre friction are identified."""
+    """Claims about the device alone; none unless all parts of LuGre friction are identified."""
     return settle(Question(device))
 
 
@@ -135,14 +139,20 @@ def wall_claims(
 ) -> list[TopicClaim]:
     """Claims about a virtual wall: its sampled law, and its encoder steps with friction.
 
-    stiffness, damping: K, N/m, and B, N s/m;  cancelled: friction that a compensator takes, N
+    stiffness: K, N/m;  damping: B, N s/m
+    computer: period, delay (whole periods) and encoder of the wall
+    cancelled: friction that a compensator cancels, N
     """
     wall = Wall(stiffness, damping, cancelled)
     return settle(Question(device, wall=wall, computer=computer))
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
-    """Largest and smallest design values that are passive for all values in the 95 % intervals."""
+    """Limits of design values within which the pair is passive.
+
+    They hold for all values in the 95 % intervals, and the first one at the estimates. Empty or
+    shorter where no limit is known.
+    """
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
     limits = [
@@ -177,5 +187,5 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
 
 
 def _round_limit(limit: float) -> float:
-    """A limit from above with the digits of claims, on its safe side."""
+    """An upper limit, rounded down to the digits of claims."""
     return round_down(limit, digits=DIGITS)

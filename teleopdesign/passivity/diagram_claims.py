@@ -1,10 +1,9 @@
 """Claims about every port of a diagram.
 
-The claims are exact where the diagram is linear. Where only friction and its cancellation are
-nonlinear, they follow from a theorem. All other claims rest on a search for motions that release
-energy.
+If the diagram is linear, the claims are exact. If only friction and its cancellation are nonlinear,
+they follow from theorems. All other claims come from a search for motions that release energy.
 
-Proofs hold for controllers in continuous time; the search uses the sampling that `computer` states.
+Proofs hold for controllers in continuous time. The search uses the sampling that `computer` states.
 """
 
 from __future__ import annotations
@@ -40,9 +39,10 @@ from .theorems.wave_channel import wave_claim
 @check_types
 @dataclass(frozen=True)
 class Search:
-    """Settings of the search for motions; SI.
+    """Settings of the search for motions that release energy.
 
-    stroke, speed: largest, m or rad;  tries: how many motions;  computer: see `simulate`
+    stroke: largest position, m or rad;  speed: largest speed, m/s or rad/s
+    tries: number of motions;  computer: sampling of the controllers, see `simulate`
     """
 
     stroke: float = 0.01
@@ -53,7 +53,10 @@ class Search:
 
 @dataclass(frozen=True, eq=False)
 class DiagramClaims(ByValue):
-    """Ports of a diagram, its nonlinear parts, and the claims with their verdicts."""
+    """Claims about the ports of a diagram, with their verdicts.
+
+    ports: all ports;  nonlinear: names of the nonlinear parts
+    """
 
     diagram: Diagram
     ports: tuple[Port, ...]
@@ -75,8 +78,11 @@ def diagram_claims(
 ) -> DiagramClaims:
     """Claims about the ports of a diagram, with all other outside signals zero.
 
-    Hand and environment (`Z_H`, `Z_E`) hold a port and are no part of what is judged; in the
-    search, which is made where nothing settles all ports, those at other ports stay.
+    Hand and environment (`Z_H`, `Z_E`) act at a port and are left out of the judged diagram. The
+    search moves one port and keeps the hand or environment at the other ports. It runs where no
+    claim decides about all ports, and where `search` states a sampling for controllers.
+
+    rng: draws the motions of the search;  search: its settings
     raises ModelError: a block without values, or no port
     """
     search = search or Search()
@@ -106,7 +112,10 @@ def diagram_claims(
 
 
 def wave_claims(diagram: Diagram) -> list[TopicClaim]:
-    """The theorem about wave variables, if the diagram is wired by `wave_variables`."""
+    """The claim by the theorem about wave variables, if the diagram is wired by `wave_variables`.
+
+    returns: the claim if it is proved; else empty
+    """
     if not any(part.dead_time is not None for part in diagram.controls):
         return []  # without delays the linear tests decide either way
     try:
@@ -121,10 +130,13 @@ def wave_claims(diagram: Diagram) -> list[TopicClaim]:
 def composed_claim(
     diagram: Diagram, all_ports: Sequence[Port], pairs: Sequence[FrictionPair]
 ) -> TopicClaim | None:
-    """The sum of parts on the same motions: linear rest, and friction with what cancels it.
+    """A proof from the parts of a diagram: its linear rest, and friction with its cancellation.
 
-    Friction acts on a motion that the ports determine, in parallel with the forces of the ports, so
-    energies add. None where the diagram has other parts, or not every part is proved.
+    Friction acts on a motion that the ports determine, in parallel with the forces of the ports. So
+    the energies of the parts add, and passive parts make a passive diagram.
+
+    pairs: of `friction_pairs`
+    returns: None where the diagram has other parts, or where some part is not proved
     """
     rest, proofs = diagram, []
     for pair in pairs:

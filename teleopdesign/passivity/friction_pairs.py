@@ -1,4 +1,4 @@
-"""Friction of bodies together with the controllers that cancel it, with exact values."""
+"""Pairs of a body with friction and the controller that cancels it, with exact values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from .theorems import Question, TopicClaim, settle
 
 @dataclass(frozen=True)
 class FrictionPair:
-    """A body with friction, and the one controller that cancels it (None: none does)."""
+    """A body with friction, and the one controller that cancels this friction.
+
+    cancellation: None where no controller cancels;  device: bounds of the friction
+    """
 
     body: Moving
     cancellation: Control | None
@@ -25,7 +28,7 @@ class FrictionPair:
 
     @property
     def stage(self) -> Stage | None:
-        """The law that cancels, with its values; None where none does."""
+        """The law that cancels friction, with its values; None where no controller does."""
         if self.cancellation is None:
             return None
         assert isinstance(self.cancellation.controller, Controller)
@@ -33,19 +36,22 @@ class FrictionPair:
 
     @property
     def question(self) -> Question:
-        """Question for the theorems: values are exact, so estimates need no separate question."""
+        """The question for the theorems.
+
+        Values are exact, so estimates and intervals are the same, and only intervals are asked.
+        """
         return Question(self.device, self.stage, estimates=False)
 
     @property
     def is_constant(self) -> bool:
-        """Whether the friction level is one number, whatever the motion."""
+        """Whether the friction level does not depend on the motion."""
         assert isinstance(self.body.body, Body)
         parameters = set(self.body.body.symbols().values())
         return not self.body.body.level().free_symbols - parameters
 
     @property
     def lengths(self) -> list[float]:
-        """Travels over which friction and its cancellation build up, m or rad."""
+        """Travels over which friction, and the cancelling force, build up, m or rad."""
         lengths = []
         if self.device.presliding is not None:
             lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
@@ -55,11 +61,10 @@ class FrictionPair:
 
 
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
-    """One for each body with friction whose cancellation, if any, is a law with a known bound.
+    """A pair for each body with friction whose cancellation, if any, has a known bound.
 
-    A cancellation takes the motion of the body. Its force acts unchanged on this body, and on
-    nothing else, through any sums. A friction level whose interval includes zero leaves no friction
-    to cancel.
+    A cancellation is a controller whose input is the motion of the body, and whose force acts
+    unchanged on this body and on nothing else. A body whose friction level may be zero has no pair.
     """
     pairs = []
     for part in diagram.blocks:
@@ -87,7 +92,7 @@ def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:
 
 
 def _exact(body: Body) -> Body:
-    """The body with values that are known exactly."""
+    """The body with its values made exact: no standard errors."""
     values = {n: replace(v, fixed=True, stderr=0.0) for n, v in body.parameters.items()}
     return body.with_values(dict[str, float | Value](values))
 
@@ -95,7 +100,9 @@ def _exact(body: Body) -> Body:
 def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
     """Claims about friction with its cancellation, by the theorems for a diagnosed device.
 
-    simulated: whether the motions of refutations are replayed in simulation
+    simulated: whether simulations replay the motions of refutations
+    returns: empty where no controller cancels the friction; one unknown claim where no theorem
+        applies
     """
     if pair.stage is None or pair.cancellation is None:
         return []

@@ -1,4 +1,4 @@
-"""Bounds of an identified device for passivity: friction levels, stiffness and damping."""
+"""Bounds of an identified device for claims of passivity: friction, stiffness and damping."""
 
 from __future__ import annotations
 
@@ -29,24 +29,25 @@ from .claims.claim import Claim, Unknown
 from .declarations import unchecked_energy
 
 _PRESLIDING = EFFECTS["presliding"]
-#: digits of a measured number in a claim: standard errors are rarely known better than to two, of
-#: estimates with three or four; what is rounded outward costs a thousandth of a level at most
+#: digits of a measured number in a claim. A standard error is rarely known to more than two digits,
+#: and an estimate to more than three or four. Rounding outward to four digits costs a thousandth of
+#: a level at most
 DIGITS = 4
-#: roles of the friction level: their laws are in the interval of the level, whatever they do
+#: roles of effects that change the friction level: the interval of the level covers them
 _LEVEL = ("friction_level", "friction_factor", "friction_speed")
 
 
 @dataclass(frozen=True)
 class IdentifiedDevice:
-    """Friction of a device, as bounds for claims of passivity.
+    """Friction of an identified device, as bounds for claims of passivity.
 
-    reach: of the motions that claims are about; None: every motion
-    friction: levels and presliding stiffness, bounds over its reach and the 95 % intervals
-    least_resistance: the least that level and viscous damping together come to at any speed
-    damping: at every speed, N s/m, 0 where the model has none
-    bristle_damping: N s/m, 0 where friction has none before it slides
-    set_aside: effects that may supply energy, or of a kind that no theorem here is about
-    unknown: parameters without standard error
+    reach: range of the motions in the claims; None: every motion
+    friction: levels and presliding stiffness, bounds over the reach and the 95 % intervals
+    least_resistance: least force of friction level and viscous damping together at any speed, N
+    damping: damping that is present at every speed, N s/m; 0 where the model has none
+    bristle_damping: damping of friction before it slides, N s/m; 0 where the model has none
+    set_aside: names of effects that may supply energy, or that no theorem covers
+    unknown: names of parameters without a standard error
     """
 
     body: Body
@@ -70,35 +71,38 @@ class IdentifiedDevice:
 
     @property
     def presliding(self) -> Interval | None:
-        """Stiffness before it slides, N/m; None where friction was identified as ideal."""
+        """Stiffness of friction before it slides, N/m or N m/rad; None for ideal friction."""
         return self.friction.presliding
 
     @property
     def actuation(self) -> tuple[str, ...]:
-        """Effects that stand between a command and the force that acts."""
+        """Names of effects of the actuation, between a command and the acting force."""
         return tuple(e.name for e in self.body.effects if e.role == "actuation")
 
     def acting_force(self, command: float) -> float:
-        """Largest force that acts under commands up to that, in their 95 % intervals, N; or inf."""
+        """Largest acting force, N, for commands up to this size (N), in the 95 % intervals.
+
+        inf where no bound is known.
+        """
         return largest_acting_force(self.body, command, self.reach, errors=NINETY_FIVE)
 
     @property
     def force_unit(self) -> str:
-        """Unit of levels on the device's axis."""
+        """Unit of friction levels on the axis of the device."""
         return unit_of("force", self.body.axis)
 
     @property
     def stiffness_unit(self) -> str:
-        """Unit of stiffnesses on the device's axis."""
+        """Unit of stiffnesses on the axis of the device."""
         return unit_of("stiffness", self.body.axis)
 
 
 def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
-    """Read levels, presliding and damping off a body, with the errors of its parameters.
+    """Bounds of friction level, presliding stiffness and damping of a body, in 95 % intervals.
 
-    reach: of the motions that claims are about; None: every motion
-    raises ModelError: a body without friction, one whose interval reaches down to no friction, or
-        one without a bound over every motion
+    reach: range of the motions in the claims; None: every motion
+    raises ModelError: a body without friction, or with a friction level that may be zero, or with
+        friction that deflects before it slides and a level without an upper bound
     """
     body = without_absent(body, surely=True)
     friction = friction_interval(body, reach, errors=NINETY_FIVE)
@@ -140,7 +144,7 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
 
 
 def _round_friction(friction: FrictionInterval) -> FrictionInterval:
-    """Levels and stiffness with as many digits as claims are about."""
+    """Levels and stiffness, rounded outward to the digits of claims."""
     presliding = friction.presliding
     return replace(
         friction,
@@ -151,7 +155,7 @@ def _round_friction(friction: FrictionInterval) -> FrictionInterval:
 
 
 def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
-    """The least of level and damping together, each damping at its end of its interval."""
+    """Least force of friction level and damping together at any speed, N, with its interval."""
     at_estimate, at_low = (
         lowest_of(body, body.level() + sp.Float(b) * SPEED, reach, errors=NINETY_FIVE)[0]
         for b in (damping.estimate, damping.low)
@@ -160,9 +164,11 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
 
 
 def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
-    """Effects that may supply energy, or that no theorem on friction covers.
+    """Names of effects that may supply energy, or that no theorem on friction covers.
 
-    Effects of a user that declare to supply no energy are included, if nothing has checked this.
+    They include a user's effects that declare to supply no energy, if nothing has checked this.
+
+    reach: range of the motions in the claims; None: every motion
     errors: standard errors of the parameters to either side
     """
     body = without_absent(body, surely=True)
@@ -175,11 +181,14 @@ def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) 
 def extend_to_device(
     claim: Claim, *, over: str, left: Sequence[str], declared: Sequence[str] = ()
 ) -> Claim:
-    """A claim about friction, extended to its device: reach, and all effects of the device.
+    """A claim about friction, restated for the whole device.
 
-    over: `FrictionInterval.over`;  left: effects that it leaves open
-    declared: of these, which declare that they take energy, where nothing has checked that
-    What holds for friction alone stays open for a device with an effect that may supply energy.
+    If the device has an effect that may supply energy, a claim that holds for friction alone
+    becomes unknown.
+
+    over: reach of the motions, `FrictionInterval.over`
+    left: names of effects that the claim does not cover
+    declared: names of effects that declare to supply no energy
     """
     if over != ANY_MOTION:
         claim = replace(claim, statement=f"{claim.statement} (levels over {over})")
@@ -195,9 +204,9 @@ def extend_to_device(
 def restate_for_device(
     device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()
 ) -> Claim:
-    """A claim about friction as one about the device, in the units of its axis.
+    """A claim about friction, restated for the whole device and in the units of its axis.
 
-    besides: effects that its theorem is about, though no claim about friction alone is
+    besides: names of further effects that the theorem of this claim covers
     """
     left = [name for name in device.set_aside if name not in besides]
     claim = use_units_of(device.body.axis, claim)
@@ -206,7 +215,7 @@ def restate_for_device(
 
 
 def _is_open(effect: Effect) -> bool:
-    """Whether nothing here covers an effect: forces are asked for by `damping_interval`."""
+    """Whether no theorem covers an effect; `damping_interval` judges forces."""
     if effect.role == "friction_shape":
         dahl = _PRESLIDING.without("bristle_damping")
         return not any(_is_same(effect, shape) for shape in (_PRESLIDING, dahl))

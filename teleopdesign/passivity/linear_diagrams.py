@@ -1,7 +1,8 @@
-"""Claims on linear diagrams at their ports: exact, or with dead times by waves and over frequency.
+"""Claims about the ports of linear diagrams: exact, or with dead times numerical.
 
-A refuted claim is refuted for all nearby values, too. A diagram with a proof or with evidence has
-no internal mode that grows by itself, also none that no port shows from rest.
+A refuted claim is also refuted at four nearby sets of values, so that the refutation does not rest
+on the rounding of a number. A proof includes that no internal mode grows by itself, not even a mode
+that no port shows from rest. Evidence includes this as far as it can be checked with dead times.
 """
 
 from __future__ import annotations
@@ -26,16 +27,18 @@ from .two_port.late_one_port import late_one_port
 from .two_port.several_ports import passive_together
 from .two_port.two_port import two_port
 
-#: topics that settle all ports at once
+#: topics of claims that are about all ports at once
 WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    """Passivity of a linear diagram at its ports, and absolute stability where there are two.
+    """Claims of passivity of a linear diagram, and of absolute stability where it has two ports.
 
-    What is refuted is so for all values nearby, too: none rests on the rounding of a number. What
-    is proved has no mode inside that grows by itself, though no port shows it from rest. Nothing is
-    claimed of a diagram that is not linear.
+    A refuted claim is also refuted at four nearby sets of values, so it does not rest on rounding.
+    A proof includes that no internal mode grows by itself. A diagram that is not linear has one
+    claim, which is unknown.
+
+    diagram: with values;  all_ports: its ports, see `ports`
     """
     if bent := nonlinear_parts(diagram):
         statement = f"{diagram.name}: its ports are passive"
@@ -55,7 +58,7 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
 def _refuted_there_too(
     claims: list[TopicClaim], other: Diagram, all_ports: Sequence[Port]
 ) -> list[TopicClaim]:
-    """What is refuted stays so where it fails at other values, too: the same wave will do."""
+    """The claims, with each refutation dropped that does not also hold at the values of `other`."""
     if not any(one.claim.status == "refuted" for one in claims):
         return claims
     try:
@@ -84,7 +87,10 @@ def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
 
 
 def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
-    """Nothing holds beside what grows; where that is not known, nothing is proved."""
+    """The claims with the growth of internal modes taken into account.
+
+    rate: of `growth_within`. A number: no claim holds. NaN: not known, so nothing is proved
+    """
     if rate is None:
         return claims
     if math.isnan(rate):
@@ -118,7 +124,7 @@ def _open_inside(one: TopicClaim) -> TopicClaim:
 
 
 def _nearby(diagram: Diagram) -> list[Diagram]:
-    """The diagram with its values a few last digits of a float away, in turn to either side."""
+    """Four copies of the diagram, each value changed up or down by the relative amount NEARBY."""
     values = diagram.values
     return [
         diagram.with_values(

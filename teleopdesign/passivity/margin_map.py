@@ -1,10 +1,10 @@
-"""Margins of a teleoperator's two-port over two of its values: numbers on the axis, no proof.
+"""Maps of the margins of a teleoperator over two of its values; numerical, no proof.
 
-The impedance matrix is derived once, and computed at each pair of values and each frequency, with
-exact delays. Where the margin is below zero, some pair of passive terminations makes the
-teleoperator unstable, or a motion takes energy out. A margin above zero proves nothing: frequencies
-between and beyond those of the grid, poles and residues are not checked. `diagram_claims` judges a
-single point.
+The impedance matrix is derived once, and then computed at each pair of values and each frequency,
+with exact delays. If Llewellyn's margin is below zero, some pair of passive terminations makes the
+teleoperator unstable. If the margin of passivity is below zero, a motion takes energy out. A margin
+above zero proves nothing: frequencies between and beyond those of the grid, poles and residues are
+not checked. `diagram_claims` judges a single point.
 """
 
 from __future__ import annotations
@@ -30,17 +30,18 @@ if TYPE_CHECKING:
     import matplotlib.figure
     import xarray
 
-#: Hz; 40 frequencies a decade, as a resonance of 5 % damping is 10 % wide
+#: lowest and highest frequency, Hz, and their number: 40 a decade, because a resonance of 5 %
+#: damping is 10 % wide
 _FREQUENCY = (0.01, 1000.0, 201)
 
 
 @dataclass(frozen=True, eq=False)
 class MarginMap(ByValue):
-    """Least margins over the frequencies of a grid, at each pair of two values.
+    """Least margins over a grid of frequencies, at each pair of two values.
 
     data: `llewellyn` (dimensionless, -inf where a port alone is active), `passive` (N s/m), and
         `frequency` (Hz) of the least Llewellyn margin; dimensions are the names of the values
-    left_out: what has no linear form
+    left_out: names of the parts without a linear form
     """
 
     data: xarray.Dataset
@@ -70,12 +71,15 @@ def margin_map(
     frequency: np.ndarray | None = None,
     speed: float = 0.0,
 ) -> MarginMap:
-    """Llewellyn's and Raisbeck's margins of a diagram with two sides over two of its values.
+    """Margins of absolute stability (Llewellyn) and of passivity (Raisbeck) over two values.
 
-    Hand and environment are no part of it. Friction has no linear form: it is left out, and named.
-    values: two names of `diagram.values` -> numbers, of different blocks
-    frequency: Hz, default 0.01 to 1000;  speed: where smoothed friction and schedules are frozen
-    raises ModelError: no two-port, not two names, an unknown name, both of one block
+    Hand and environment are left out. Friction has no linear form: it is left out and named.
+
+    diagram: a teleoperator with two sides
+    values: two names of `diagram.values` -> numbers, of two different blocks
+    frequency: Hz, (n,); default: 201 frequencies from 0.01 to 1000
+    speed: m/s, at which smoothed friction and schedules are linearised
+    raises ModelError: no two-port, not two names, an unknown name, two names of one block
     """
     import xarray
 
@@ -114,7 +118,7 @@ def margin_map(
 
 
 class _Matrix:
-    """The derived impedance matrix by velocities, as a function of what its blocks are."""
+    """The derived impedance matrix, force over velocity, as a function of the blocks' responses."""
 
     def __init__(self, device: Diagram) -> None:
         functions = two_port_functions(device, convention="velocity")
@@ -127,14 +131,17 @@ class _Matrix:
         self.call = sp.lambdify(arguments, [e.xreplace(plain) for e in forms], "numpy")
 
     def __call__(self, s: np.ndarray, blocks: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Values at complex s, (n, 2, 2);  blocks: each at s, of a delay its time."""
+        """Values at complex s (1/s), (n, 2, 2).
+
+        blocks: name -> values of the block at each s, (n,); of a delay its time, s
+        """
         entries = self.call(s, *(blocks[n] for n in self.names))
         flat = [np.broadcast_to(np.asarray(e, dtype=complex), s.shape) for e in entries]
         return np.stack(flat, axis=-1).reshape(*s.shape, 2, 2)
 
 
 def _responses(linear: LinearBlocks, f: np.ndarray) -> dict[str, np.ndarray]:
-    """Each symbol of the derivation over frequency (Hz), by its name."""
+    """Values of each symbol of the derivation over frequency (Hz), by its name, (n,)."""
     s = 2j * np.pi * f
     forms = {x.name: e for x, e in symbol_values(linear).items() if x.name not in linear.dead_times}
     responses = {n: numerical(sp.sympify(e))(s) for n, e in forms.items()}
@@ -142,7 +149,10 @@ def _responses(linear: LinearBlocks, f: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _select_block(device: Diagram, name: str, f: np.ndarray, speed: float) -> dict[str, np.ndarray]:
-    """What belongs to the block of that parameter, at the values of this diagram."""
+    """Responses over frequency of the block that has this parameter, by names of symbols.
+
+    name: of the parameter, "block.parameter"
+    """
     block = name.partition(".")[0]
     here = _responses(linear_blocks(device, speed=speed, only=block), f)
     return {n: x for n, x in here.items() if n in (block, f"A_{block}", f"V_{block}")}

@@ -1,11 +1,11 @@
-"""Passivity observer: the energy that has gone into a port so far, and when it came out again.
+"""Passivity observer: the energy that has gone into a port, over a simulation or a recording.
 
     E[n] = E[n-1] + f[n] (x[n+1] - x[n])          force held between samples: exact
     E[n] = E[n-1] + (f[n] + f[n+1])/2 (x[n+1] - x[n])    force sampled
 
-with the force ON the device along its motion. A device that began at rest has released energy where
-E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, add a damper to each sample in
-which E would fall below 0: `passivity_controlled`.
+The force f acts ON the device along its motion x. A device that started at rest has released energy
+where E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, add a damper in each sample
+in which E would fall below 0: `passivity_controlled`.
 """
 
 from __future__ import annotations
@@ -30,23 +30,23 @@ if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
-#: standard errors of a rounding: of a step's width
+#: standard error of a value that is rounded to steps, in widths of a step
 _ROUNDED = 12**-0.5
 
 
 @dataclass(frozen=True, eq=False)
 class PortEnergy(ByValue):
-    """Energy into a port.
+    """Energy into a port over time.
 
-    data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none is stated)
-    and `power` (W) over `time` (s)
+    data: over `time` (s): `energy` (J, from the start), `stderr` (J, from the noise of the sensors,
+        0 where none is stated) and `power` (W)
     """
 
     data: xarray.Dataset
 
     @property
     def lowest(self) -> float:
-        """Least energy, J: below zero by what the port has released more than it took in."""
+        """Least energy, J; below zero where the port has released more than it took in."""
         return float(self.data["energy"].min())
 
     @property
@@ -61,10 +61,10 @@ class PortEnergy(ByValue):
         return self.lowest < -NINETY_FIVE * float(self.data["stderr"][k])
 
     def given_out(self) -> list[tuple[float, float, float]]:
-        """Begin and end (s) of each time in which the energy fell, and by how much (J), > 0.
+        """Intervals of time in which the port released energy: begin (s), end (s), energy (J), > 0.
 
-        Falls within 1.96 standard errors of the energy, and within a millionth of all that was
-        turned over, are left out.
+        Left out are amounts within 1.96 standard errors of the final energy, or within a millionth
+        of all energy that was turned over.
         """
         t, e = self.data["time"].values, self.data["energy"].values
         change = np.diff(e)
@@ -78,13 +78,13 @@ class PortEnergy(ByValue):
         ]
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Energy over time with its band, and the times in which it came out."""
+        """Figure of the energy over time with its band, and of the intervals of released energy."""
         from ..plot.port_energy import plot_port_energy
 
         return plot_port_energy(self)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write energy, error and power with their units."""
+        """Write energy, standard error and power with their units as a NetCDF file."""
         write_netcdf(path, self.data)
 
     def __repr__(self) -> str:
@@ -106,12 +106,13 @@ def observe(
     position_noise: float = 0.0,
     force_noise: float = 0.0,
 ) -> PortEnergy:
-    """Energy into the port from samples.
+    """Energy into a port from samples of position and force.
 
-    time, position, force: (n,), s, m or rad, N or N m; the force acts ON the device along position
-    held: the force stays until the next sample (a command); else it is a sampled signal
-    position_noise, force_noise: rms of each sample, independent, in their units
-    raises ModelError: samples of different number, or fewer than three
+    time: s, (n,);  position: m or rad, (n,)
+    force: N or N m, (n,), ON the device along its position
+    held: whether each force stays until the next sample (a command), or is a sampled signal
+    position_noise, force_noise: rms error of each sample, independent, in the units of the samples
+    raises ModelError: different numbers of samples, or fewer than three
     """
     import xarray
 
@@ -145,8 +146,9 @@ def _stderr(
 ) -> Array:
     """Standard error of the energy at each sample, (n,), to first order in the noise.
 
-    A position x[k] inside enters with acting[k-1] - acting[k], the last one with acting alone; a
-    force f[k] with the travel that it acts along.
+    The energy depends on an inner position x[k] through acting[k-1] - acting[k], on the first and
+    the last position through the force there, and on a force f[k] through the travel along which
+    the force acts.
     """
     steps = np.concatenate([[0.0], (acting[:-1] - acting[1:]) ** 2])
     inside = np.concatenate([[0.0], np.cumsum(steps)])
@@ -162,11 +164,12 @@ def _stderr(
 def observe_simulation(
     simulation: Simulation, *, motion: str = "L", force: str = "R_V"
 ) -> PortEnergy:
-    """Energy into a port of a simulated diagram; best with rows at every step.
+    """Energy into a port of a simulated diagram.
 
-    motion: position of the port, m or rad;  force: on the device along that motion, N or N m
+    The sum has an error from the curvature between rows, so simulate with `every_step=True`.
+
+    motion: position of the port, m or rad;  force: ON the device along this motion, N or N m
     returns: energy over time, J; negative where the port has released more than it took in
-    The sum errs by the curvature between rows: simulate with `every_step=True`.
     """
     return observe(
         simulation.data["time"].values, simulation[motion].values, simulation[force].values
@@ -180,10 +183,12 @@ def observe_record(
     body: str = "device",
     force: str = "interaction_force",
 ) -> PortEnergy:
-    """Energy that came into a body through a measured force, over one record without interruption.
+    """Energy into a body through a measured force, over one record without interruption.
 
-    force: "interaction_force", sampled, or "actuator_force", held between samples
-    The errors are those of the resolution and noise that the experiment states for the channels.
+    The standard errors come from the resolution and the noise of the channels in the experiment.
+
+    body: name of the body
+    force: "interaction_force", a sampled signal, or "actuator_force", held between samples
     raises ExperimentError: the record has no such force or position, or has several segments
     """
     names = f"{body}.position", f"{body}.{force}"
@@ -212,10 +217,11 @@ def observe_record(
 
 @dataclass(frozen=True, eq=False)
 class PassivityControlled(ByValue):
-    """What the passivity controller made of a force.
+    """A force with the damper of the passivity controller added.
 
-    force: with the damper, (n,), N;  damping: that it added at each sample, N s/m, (n,)
-    energy: into the port with it, J, (n,): below zero only where speed or `largest` forbid it
+    force: N, (n,);  damping: of the added damper at each sample, N s/m, (n,)
+    energy: into the port, J, (n,); below zero only where the velocity is zero, or where the damping
+        is limited by `largest`
     """
 
     force: Array
@@ -226,10 +232,14 @@ class PassivityControlled(ByValue):
 def passivity_controlled(
     velocity: Array, force: Array, *, period: float, largest: float = np.inf
 ) -> PassivityControlled:
-    """Add a damper to each sample over which more would have come out than went in.
+    """Passivity controller: adds a damper in each sample in which E would fall below 0.
 
-    velocity: travel of each sample over the period, (n,);  force: ON the device that moves it so,
-        held over the sample, (n,), N;  largest: damping that may be added, N s/m
+    Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1.
+
+    velocity: travel of each sample over the period, m/s, (n,)
+    force: ON the device along its motion, held over the sample, N, (n,)
+    period: s;  largest: most damping that may be added, N s/m
+    raises ModelError: period not > 0, or different numbers of velocities and forces
     """
     if period <= 0 or len(velocity) != len(force):
         raise ModelError(

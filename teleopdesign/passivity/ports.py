@@ -1,7 +1,8 @@
-"""Ports of a diagram: where forces from outside act on its bodies, and the impedance there.
+"""Ports of a diagram, where forces from outside act on its bodies, and the impedance there.
 
-The velocity at a port is the one that its force does work on: that of the body it acts on, or a sum
-of several bodies' where it acts on several through fixed lever arms.
+Force times velocity at a port is the power that flows in. So the velocity at a port is that of the
+body on which its force acts, or a weighted sum of the velocities of several bodies on which the
+force acts through lever arms.
 """
 
 from __future__ import annotations
@@ -30,15 +31,18 @@ from .declarations import falsely_linear
 from .linear.impedance import exact
 from .shares import shares_of, total_share
 
-#: blocks that hold a port, by their names in the package: not part of what is judged
+#: names of blocks that act at a port, a hand and an environment: left out of the judged diagram
 HOLDING = ("Z_H", "Z_E")
 
 
 @dataclass(frozen=True)
 class Port:
-    """A force from outside and the motion it acts along: sum of weight * motion of a body.
+    """A port: a force from outside, and the motion along which the force acts.
 
-    A weight is an expression where it is a lever arm that changes with position.
+    The motion is the sum of weight * motion of a body.
+
+    force: name of the force
+    weights: motion of a body -> weight; an expression for a lever arm that changes with position
     """
 
     force: str
@@ -51,7 +55,10 @@ class Port:
 
     @property
     def motion(self) -> str | None:
-        """The body's motion, where it is one that can be prescribed."""
+        """Motion of the body if the port has one body with weight 1; else None.
+
+        Only such a motion can be prescribed in a simulation.
+        """
         (first, weight), *others = self.weights.items()
         return first if not others and weight == 1 else None
 
@@ -65,9 +72,9 @@ def _weight_text(weight: float | sp.Expr) -> str:
 
 
 def drop_absent_effects(diagram: Diagram) -> Diagram:
-    """The diagram with effects left out that are absent at their values.
+    """The diagram without the effects whose values make them absent.
 
-    raises ModelError: a block is known by its name only, or a value that is left is infinite
+    raises ModelError: a block without values, or a remaining value that is infinite
     """
     for part in diagram.bodies:
         if isinstance(part.body, Body):
@@ -80,8 +87,9 @@ def drop_absent_effects(diagram: Diagram) -> Diagram:
 
 
 def ports(diagram: Diagram) -> tuple[Port, ...]:
-    """Ports at the bodies' driving forces, in the order of the bodies.
+    """The ports of a diagram, one for each force from outside that drives a body.
 
+    returns: in the order of the bodies
     raises ModelError: no force from outside drives a body
     """
     diagram = with_tips(diagram)
@@ -98,7 +106,7 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
 
 
 def _is_fixed(part: Kinematics) -> bool:
-    """Whether positions are weighted sums of others, as by a Jacobian that does not change."""
+    """Whether a position is a weighted sum of others, so that the Jacobian does not change."""
     return is_linear([sp.sympify(part.expression)], [position_symbol(n) for n in part.inputs])
 
 
@@ -107,7 +115,7 @@ def _plain_number(weight: sp.Expr) -> float | sp.Expr:
 
 
 def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
-    """Names of what keeps the diagram from being linear."""
+    """Names of the parts of a diagram that are not linear."""
     diagram, speed = with_tips(diagram), sp.Symbol("speed", positive=True)
     names = list(linear_blocks(diagram).left_out)
     for part in diagram.controls:
@@ -123,10 +131,14 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
 def impedance_matrix(
     diagram: Diagram, at: Sequence[Port], *, linear: LinearBlocks | None = None
 ) -> sp.Matrix:
-    """Forces over velocities at ports, in exact numbers; all other outside signals are zero.
+    """Impedance matrix at ports: forces over velocities, N s/m, in exact numbers.
 
-    linear: forms of its blocks where they are not those of its values
-    raises ModelError: the wiring does not determine it, or a port that yields to any force
+    All other outside signals are zero.
+
+    at: the ports, n;  linear: forms of the blocks, if they are not those of the diagram's values
+    returns: (n, n), in `realise.lti.S`, with exp(-S T) for dead times
+    raises ModelError: the wiring does not determine the matrix, or one of several ports gives way
+        to any force
     """
     diagram = with_tips(diagram)
     linear = linear or linear_blocks(diagram)
@@ -179,9 +191,9 @@ def _impedance_of(diagram: Diagram, mobility: sp.Matrix | None) -> sp.Matrix:
 def _mobility(
     diagram: Diagram, at: Sequence[Port], values: Mapping[sp.Symbol, sp.Expr]
 ) -> sp.Matrix | None:
-    """Velocities of the ports for their forces, from all equations with their values at once.
+    """Mobility matrix of the ports: velocities over forces, from all equations at once.
 
-    None: the equations do not determine them
+    returns: None where the equations do not determine the velocities
     """
     unknown = [s for s in diagram.signals if s not in diagram.outside]
     equations = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
@@ -199,7 +211,7 @@ def _mobility(
 def arrange_coefficients(
     equations: Sequence[Mapping[str, sp.Expr]], names: Sequence[str]
 ) -> DomainMatrix:
-    """Coefficients of these signals in each equation, exact rational functions of S."""
+    """Coefficients of these signals in each equation: a matrix of exact rational functions of S."""
     field = sp.QQ.frac_field(S)
     entries = [
         [field.from_sympy(make_exact(row.get(n, sp.S(0)))) for n in names] for row in equations
@@ -208,7 +220,7 @@ def arrange_coefficients(
 
 
 def _inverse(matrix: sp.Matrix) -> sp.Matrix | None:
-    """Inverse of a matrix of rational functions, each coprime; None: singular."""
+    """Inverse of a matrix of rational functions, entries coprime; None where it is singular."""
     symbols = sorted(matrix.free_symbols | {S}, key=str)
     field = sp.QQ.frac_field(*symbols)
     rows = [[field.from_sympy(sp.sympify(e)) for e in row] for row in matrix.tolist()]
@@ -219,7 +231,7 @@ def _inverse(matrix: sp.Matrix) -> sp.Matrix | None:
 
 
 def _mark_delays(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
-    """The form with a symbol for each e^(-s T), also within one of a sum of dead times."""
+    """The form with each e^(-s T) replaced by its symbol; an e^(-s (T_1 + T_2)) by a product."""
 
     def product(power: sp.Expr) -> sp.Expr:
         return sp.Mul(*(mark ** -(power.coeff(S).coeff(t)) for t, mark in late.items()))
@@ -228,9 +240,10 @@ def _mark_delays(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
 
 
 def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
-    """The diagram without hands and environments, or without those that hold that motion.
+    """The diagram without hands and environments; with `motion`, without those at that motion.
 
-    One on several axes holds them all. A controller of such a name is no hand: it is judged.
+    A hand or environment on several axes is at all their motions. A controller with such a name
+    remains.
     """
     names = [
         b.name
@@ -243,7 +256,10 @@ def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
 
 
 def is_spanned(motion: str, standing: Sequence[Port]) -> bool:
-    """Whether ports that stand still hold that motion of a body too, at fixed lever arms."""
+    """Whether a motion of a body is certainly zero whenever the ports stand still.
+
+    False also where a lever arm of a port changes with position.
+    """
     if not all(port.is_fixed for port in standing):
         return False
     known = sorted({motion, *(m for port in standing for m in port.weights)})
@@ -254,7 +270,10 @@ def is_spanned(motion: str, standing: Sequence[Port]) -> bool:
 
 
 def without_friction(diagram: Diagram, motion: str, *controllers: str) -> Diagram:
-    """The diagram without these controllers, and the body of that motion without its friction."""
+    """The diagram without these controllers, and with no friction on the body of that motion.
+
+    raises ModelError: no body has that motion
+    """
     diagram = diagram.without(*controllers)
     for part in diagram.blocks:
         if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):

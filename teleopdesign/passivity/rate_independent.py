@@ -1,6 +1,6 @@
-"""Friction that depends on the path, not on the speed, integrated exactly along turning points.
+"""Friction that depends on the path and not on the speed, integrated exactly along a path.
 
-Each element resists motion: `leg` takes the force of the element and a travel of one sign, and
+Each element resists motion. `leg` takes the force of the element and a travel without turning, and
 returns the force at the end and the work that the travel puts in. There is no time step, and
 rounding is the only error.
 """
@@ -15,7 +15,8 @@ from typing import Protocol
 from ..arguments import check_types
 from ..errors import ModelError
 
-#: share of the energy of a round below which springs that are not yet steady do not matter
+#: energy that springs still lend to a round, as a share of the energy of this round, that is
+#: neglected
 _FED = 1e-3
 
 
@@ -28,12 +29,15 @@ class Element(Protocol):
         ...
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
-        """(force at the end, work put in) of a travel without turning."""
+        """(force at the end, N; work put in, J) of a travel (m, with sign) without turning.
+
+        force: at the begin, N
+        """
         ...
 
 
 def _check(element: Element) -> None:
-    """ModelError for a number of an element that is no size of a force or stiffness."""
+    """Raise ModelError for a level or stiffness that is not > 0 and finite; Coulomb: >= 0."""
     for name, number in vars(element).items():
         if not 0 < number < math.inf and not (number == 0 and isinstance(element, Coulomb)):
             raise ModelError(f"{type(element).__name__}: {name} = {number:g}, expected above 0")
@@ -42,7 +46,10 @@ def _check(element: Element) -> None:
 @check_types
 @dataclass(frozen=True)
 class Coulomb:
-    """Coulomb friction: force = level * sign(velocity);  level: N or N m."""
+    """Coulomb friction: force = level * sign(velocity).
+
+    level: N or N m;  raises ModelError: level < 0 or not finite
+    """
 
     level: float
 
@@ -50,14 +57,17 @@ class Coulomb:
         _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
-        """Force jumps to the level against the travel; all work is lost."""
+        """The force jumps to the level against the travel; all work is lost."""
         return math.copysign(self.level, travel) if travel else force, self.level * abs(travel)
 
 
 @check_types
 @dataclass(frozen=True)
 class Dahl:
-    """df/dx = stiffness (1 - f/level sgn v): exact over any travel."""
+    """Dahl friction: df/dx = stiffness (1 - f/level sgn v), exact over any travel.
+
+    level: N;  stiffness: N/m;  raises ModelError: one of them is not > 0 and finite
+    """
 
     level: float
     stiffness: float
@@ -66,7 +76,10 @@ class Dahl:
         _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
-        """f' = s level + (f - s level) e^(-abs(travel)/length), and its integral."""
+        """Exact: f' = s level + (f - s level) e^(-abs(travel)/length), and its integral.
+
+        s: sign of the travel;  length: level/stiffness
+        """
         if not travel:
             return force, 0.0
         length, s = self.level / self.stiffness, math.copysign(1.0, travel)
@@ -79,7 +92,10 @@ class Dahl:
 @check_types
 @dataclass(frozen=True)
 class Spring:
-    """A spring that slides at its level: a body stuck by Coulomb friction behind a compliance."""
+    """A spring that slides at its level: Coulomb friction behind a compliance, without mass.
+
+    level: N;  stiffness: N/m;  raises ModelError: one of them is not > 0 and finite
+    """
 
     level: float
     stiffness: float
@@ -88,7 +104,7 @@ class Spring:
         _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
-        """Linear up to the level, constant beyond it."""
+        """Exact: the force is linear in the travel up to the level, then constant."""
         if not travel:
             return force, 0.0
         s = math.copysign(1.0, travel)
@@ -100,10 +116,12 @@ class Spring:
 @check_types
 @dataclass(frozen=True)
 class DahlBehindSpring:
-    """A contact of Dahl friction (level, stiffness) that is pulled through a spring.
+    """Dahl friction (level, stiffness) that is pulled through a spring in series.
 
     With y = 1 - s f/level and r = stiffness/spring a travel x of sign s leads to
     ln y' + r y' = ln y + r y - stiffness abs(x)/level.
+
+    level: N;  stiffness, spring: N/m;  raises ModelError: one of them is not > 0 and finite
     """
 
     level: float
@@ -130,13 +148,13 @@ class DahlBehindSpring:
 
 
 def compliance(element: Element) -> float:
-    """Travel per force near rest, m/N."""
+    """Compliance of an element near zero force, travel over force, m/N."""
     parts = (getattr(element, n, math.inf) for n in ("stiffness", "spring"))
     return float(sum(1 / x for x in parts))
 
 
 def _quadratic_remainder(y: float) -> float:
-    """y - (1 - e^-y), without cancellation where y is small."""
+    """y - (1 - e^-y), without a loss of digits where y is small."""
     if y > 0.1:
         return y + math.expm1(-y)
     term, total = y * y / 2, 0.0
@@ -147,12 +165,14 @@ def _quadratic_remainder(y: float) -> float:
 
 @dataclass(frozen=True)
 class Cycle:
-    """A closed path through turning points that releases energy each time, as often as one likes.
+    """A closed path through turning points that releases energy in each round, without end.
 
-    compensator: whose force helps the motion;  friction: what resists
-    turning_points: positions, m, of one round, starting at the last of them; from rest and without
-    preloads, `rounds` are travelled, and the last one is counted; where that may still be fed by
-    what springs held, no more than all rounds together released
+    The motion starts with zero forces at the last turning point. All rounds are travelled, and the
+    energy of the last one counts. If springs may still lend energy to the last round, at most the
+    energy of all rounds together counts.
+
+    compensator: its force helps the motion;  friction: elements that resist
+    turning_points: positions of one round, m;  rounds: number of rounds
     """
 
     compensator: Dahl
@@ -166,7 +186,7 @@ class Cycle:
         return self.replay()
 
     def replay(self) -> float:
-        """Energy released in the last round, J, integrated anew."""
+        """Energy released in the last round, J, computed anew along the path."""
         elements: tuple[Element, ...] = (self.compensator, *self.friction)
         forces, here, out = [0.0] * len(elements), self.turning_points[-1], 0.0
         before, total = list(forces), 0.0
@@ -203,10 +223,10 @@ def _list_entries(element: Element) -> list[object]:
 
 
 def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:
-    """The periodic motion between -amplitude and amplitude (m), once its forces repeat.
+    """The periodic motion between -amplitude and amplitude, with enough rounds that forces repeat.
 
-    compensator: pushes along the motion;  friction: elements that act against it
-    amplitude: m or rad;  returns: the cycle, with its energy per round in J (> 0: released)
+    compensator: its force helps the motion;  friction: elements that resist
+    amplitude: m or rad;  returns: the cycle; its energy is > 0 where a round releases energy
     """
     # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding;
     # behind a spring the bristle takes part of the way, and its slip part of the force
@@ -220,13 +240,16 @@ def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: f
 
 
 def lost_share(u: float) -> float:
-    """1 - tanh(u)/u: part of the level that a cycle of u bristle lengths either way takes."""
+    """1 - tanh(u)/u: mean force of Dahl friction over its level, in a symmetric cycle.
+
+    u: amplitude of the cycle in bristle lengths, level/stiffness
+    """
     return u * u / 3 * (1 - 0.4 * u * u) if u < 1e-3 else 1 - math.tanh(u) / u
 
 
 def dahl_loss(level: float, stiffness: float, amplitude: float) -> float:
     """Energy that Dahl friction takes per cycle, J: 4 f A (1 - tanh(u)/u), u = A sigma/f.
 
-    N, N/m;  amplitude: A of a symmetric cycle, m
+    level: f, N;  stiffness: sigma, N/m;  amplitude: A of a symmetric cycle, m
     """
     return 4 * level * amplitude * lost_share(amplitude * stiffness / level)

@@ -1,4 +1,4 @@
-"""Where in a plane of two parameters a claim holds."""
+"""The region of two parameters in which a claim holds."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from .claims.claim import Claim
 
 @dataclass(frozen=True, eq=False)
 class Region(ByValue):
-    """Status of a claim over two parameters.
+    """Status of a claim at each point of a grid of two parameters.
 
-    x, y: (n,), (m,);  status: (m, n) of "proved", "refuted", "evidence" or "unknown"
-    holds: (m, n), 1 where it holds, 0 where not, NaN where unknown
+    x, y: values of the parameters, (n,) and (m,)
+    status: "proved", "refuted", "evidence" or "unknown", (m, n)
+    holds: 1 where the claim holds, 0 where not, NaN where unknown, (m, n)
     """
 
     x: np.ndarray
@@ -31,9 +32,12 @@ class Region(ByValue):
 
 
 def region(claim: Callable[[float, float], Claim], x: np.ndarray, y: np.ndarray) -> Region:
-    """Settle claim(x, y) at every point of a grid, each for itself and exactly as that claim is.
+    """Judge claim(x, y) at every point of a grid, each point alone.
 
-    Between the points nothing is said.
+    Between the points nothing is known.
+
+    claim: a function of two numbers that returns a `Claim`
+    x, y: values of the parameters, (n,) and (m,)
     """
     claims = [[claim(float(a), float(b)) for a in x] for b in y]
     status = np.array([[c.status for c in row] for row in claims])

@@ -1,7 +1,8 @@
 """Periodic motions between two points: the energy that each round trip releases, exactly.
 
-If friction dissipates less in some round trip than a compensator supplies, energy comes out in each
-round, without end. A grid of forces cannot resolve trips that are short compared with its cells.
+If friction dissipates less in a round trip than a compensator supplies, energy comes out in each
+round, forever. A grid of forces, as of `available_storage`, cannot resolve trips that are short
+compared with its cells.
 """
 
 from __future__ import annotations
@@ -12,19 +13,19 @@ import numpy as np
 
 from .rate_independent import Coulomb, Dahl, Element, compliance
 
-#: strokes over the shortest length of a force, and over the longest, within which a stroke gives
-#: most; below, all forces are springs, above, all slide
+#: range of the strokes: the shortest over the shortest length of a force, the longest over the
+#: longest length. Below this range all forces are springs, above it all forces slide
 _SHORTER, _LONGER = 1e-3, 1e2
-#: strokes that are looked at in each decade, before the best is refined
+#: strokes that are evaluated in each decade, before the best are refined
 _PER_DECADE = 24
-#: strokes at which most comes out that are refined
+#: number of strokes that are refined: those that release most
 _REFINED = 3
-#: share of what a compensator gives from which more than friction takes is no rounding
+#: released energy, as a share of the energy that the compensator supplies, that may be rounding
 _ROUNDING = 1e-9
 
 
 def repeated_force(element: Element, stroke: float) -> float:
-    """Force f (N) at the ends of strokes (m) that repeat: a stroke leads from -f to f."""
+    """Force f (N) at the ends of a stroke (m) back and forth that repeats: from -f to f."""
     from scipy.optimize import brentq
 
     def beyond(force: float) -> float:
@@ -36,17 +37,20 @@ def repeated_force(element: Element, stroke: float) -> float:
 
 
 def loss_per_stroke(element: Element, stroke: float) -> float:
-    """Energy (J) that strokes (m) forth and back take, each of them, once they repeat."""
+    """Energy (J) that an element takes in each stroke (m) back and forth, after the transient."""
     return element.leg(-repeated_force(element, stroke), stroke)[1]
 
 
 def most_released(
     compensator: Dahl, friction: Sequence[Element], load_coefficient: float = 0.0
 ) -> tuple[float, float]:
-    """(most energy per travel, N, that a round trip gives out for ever; its stroke, m).
+    """Most energy per travel that a round trip releases forever, and its stroke.
 
-    load_coefficient: the first element of friction grows by this much of the size of the last
-        one's force;  returns: 0 N where friction takes as much at every stroke
+    compensator: its force helps the motion;  friction: elements that resist
+    load_coefficient: the first element of friction grows by this factor times the size of the force
+        of the last element
+    returns: energy per travel, N, and stroke, m; 0 N where friction takes at least as much as the
+        compensator supplies, at every stroke
     """
     from scipy.optimize import minimize_scalar
 
@@ -77,7 +81,7 @@ def most_released(
 
 
 def _integral_of_size(element: Element, stroke: float) -> float:
-    """Integral (N m) of the size of a force over one stroke of a round trip that repeats."""
+    """Integral (N m) of the size of a force over one stroke (m) of a round trip that repeats."""
     from scipy.optimize import brentq
 
     force = repeated_force(element, stroke)

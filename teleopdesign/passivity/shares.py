@@ -1,4 +1,4 @@
-"""Share of one signal in others, through junctions alone, with loops of sums solved."""
+"""Shares of one signal in other signals of a diagram, through junctions alone."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ Shares = Mapping[str, sp.Expr]
 
 
 def shares_of(diagram: Diagram, signal: str) -> Shares:
-    """Signal -> how much of `signal` is in it; those that hold nothing of it are left out.
+    """Shares of `signal` in the other signals, through junctions; loops of sums are solved.
 
-    A share is an expression of positions where a lever arm is on the way.
+    returns: name of a signal -> its share, not 0. A share is an expression of positions where a
+        lever arm is on the way
     raises ModelError: a loop of sums without a solution
     """
     sums = {
@@ -39,14 +40,17 @@ def shares_of(diagram: Diagram, signal: str) -> Shares:
 
 
 def total_share(terms: Mapping[str, sp.Expr | float], shares: Shares) -> sp.Expr:
-    """How much of the signal whose shares these are is in a sum of weight * signal."""
+    """Share of one signal in a sum of weight * signal.
+
+    terms: signal -> weight;  shares: of the one signal, from `shares_of`
+    """
     return sp.expand(sp.Add(*(_weight(w) * shares.get(n, sp.S(0)) for n, w in terms.items())))
 
 
 def drives_alone(diagram: Diagram, signal: str, body: Moving) -> bool:
-    """Whether a force acts on that body, just as it is, and reaches nothing else.
+    """Whether a force acts unchanged on that body, and on nothing else.
 
-    Its actuator counts as one that does nothing: see that none is there.
+    An actuator of the body is not considered; the caller has to exclude one.
     """
     shares = shares_of(diagram, signal)
     forces = {name: sp.S(0) for name in (body.command, *body.loads)}

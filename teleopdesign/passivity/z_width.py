@@ -1,11 +1,11 @@
-"""Z-width of a haptic interface: from its free impedance to the stiffest passive wall.
+"""Z-width of a haptic interface: the range from its free impedance to the stiffest passive wall.
 
 The wall is a sampled law, linear in its stiffness K and damping B; by default
 
     H(z) = z^-d (K + B (z - 1)/(T z))
 
-Passive walls lie on one side of a curve K(B); with this law and no delay it is K = 2 (b - |B|)/T.
-Colgate and Schenkel, J. Robotic Systems 14 (1997) 37.
+Passive walls lie on one side of a curve K(B). With this law and no delay the curve is
+K = 2 (b - |B|)/T. Colgate and Schenkel, J. Robotic Systems 14 (1997) 37.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from .theorems.sampled_data import Z, travel_operator
 
 WALL_STIFFNESS = sp.Symbol("K")
 WALL_DAMPING = sp.Symbol("B")
-_ANGLES = 20001  # from 0 to pi; the limit is then verified by the exact test
-#: relative distance from the limit at which the exact test must agree on both sides
+_ANGLES = 20001  # angles w T from 0 to pi; the exact test then verifies the limit
+#: distance from the limit, as a share of b/T, at which the exact test must agree on both sides
 _AGREE = 1e-6
 
 
@@ -34,8 +34,9 @@ _AGREE = 1e-6
 class ZWidth(ByValue):
     """Largest passive wall stiffness for each wall damping.
 
-    wall_damping: B, N s/m, (n,);  stiffness: largest K >= 0, N/m, (n,); NaN where none is passive
-    damping: b of the device, N s/m;  inertia: kg;  sample_time: s
+    wall_damping: B, N s/m, (n,)
+    stiffness: largest passive K >= 0, N/m, (n,); NaN where no K >= 0 is passive
+    damping: b of the device, N s/m;  inertia: of the device, kg;  sample_time: T, s
     verified: whether the exact test confirms each limit, just inside and just outside
     """
 
@@ -53,9 +54,10 @@ class ZWidth(ByValue):
         return float(self.stiffness[k]), float(self.wall_damping[k])
 
     def width(self, frequency: float) -> float:
-        """abs(Z) of the stiffest wall over that of the free device (both N s/m), at f Hz, in dB.
+        """Z-width in dB at a frequency (Hz): abs(Z) of the stiffest wall over that of the device.
 
-        Both as continuous impedances m s + b and m s + b + B + K/s: for f far below 1/T.
+        Both impedances are continuous, m s + b + B + K/s and m s + b, so the frequency should be
+        far below 1/T.
         """
         s = 2j * np.pi * frequency
         k, b = self.stiffest
@@ -63,7 +65,7 @@ class ZWidth(ByValue):
         return float(20 * np.log10(abs(free + b + k / s) / abs(free)))
 
     def graph(self) -> Graph:
-        """Passive walls: stiffness over damping."""
+        """Limit of passive walls: wall stiffness over wall damping."""
         line = Series("limit of passive walls", self.wall_damping, self.stiffness, "model")
         return Graph("wall damping B (N s/m)", "wall stiffness K (N/m)", (line,))
 
@@ -79,9 +81,11 @@ def z_width(
 ) -> ZWidth:
     """Limits of the passive walls of a device.
 
-    damping: b of the device, N s/m;  sample_time: T, s;  inertia: kg, for `ZWidth.width` alone
-    delay: d, whole samples of computing time;  law: another H(z), linear in WALL_STIFFNESS and
-    WALL_DAMPING;  wall_damping: values of B, default 0 to b
+    damping: b of the device, N s/m;  sample_time: T, s;  inertia: kg, used by `ZWidth.width` only
+    delay: d, whole samples of computing time
+    law: another H(z), linear in WALL_STIFFNESS and WALL_DAMPING
+    wall_damping: values of B, N s/m; default: 0 to b
+    raises ModelError: damping or sample time not > 0, or a law that is not linear in both
     """
     b, late = exact(damping), exact(sample_time)
     if b <= 0 or late <= 0:
@@ -101,7 +105,10 @@ def z_width(
 
 
 def _shares(law: sp.Expr, late: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
-    """Damping that one unit of K, and one of B, needs at each angle w T, (n,)."""
+    """Damping of the device that one unit of K, and one unit of B, needs.
+
+    returns: both at each angle w T, (n,)
+    """
     theta = np.linspace(0, np.pi, _ANGLES)[1:]
     z = np.exp(1j * theta)
     out = []
@@ -115,7 +122,7 @@ def _shares(law: sp.Expr, late: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _largest(per_stiffness: np.ndarray, spent: np.ndarray, b: float) -> float:
-    """Largest K >= 0 with K per_stiffness + spent <= b at every angle; NaN where there is none."""
+    """Largest K >= 0 with K per_stiffness + spent <= b at every angle; NaN where no K does."""
     left = b - spent
     left = np.where(np.abs(left) < 1e-9 * b, 0.0, left)  # rounding of the angles near 0
     more, less = per_stiffness > 0, per_stiffness < 0

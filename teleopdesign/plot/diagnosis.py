@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
 FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
-#: most points drawn per panel; more are not seen and make files large
+#: most points drawn in a panel; more are not visible and make files large
 POINTS = 6000
 
 

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
     from ..passivity import MarginMap
 
-#: margins beyond this are drawn alike: the sign is what counts, and far ones differ by decades
+#: margins above this are drawn in the same colour: the sign counts, and large ones differ by
+#: decades
 _LARGEST = 2.0
 
 

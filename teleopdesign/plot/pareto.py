@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ..studies import ParetoFront
 
-#: evaluated points further than this many lengths of the front from it are outside the picture
+#: evaluated points that are further from the front than this many of its lengths are not drawn
 _BESIDE = 1.5
 GREY, BEST, BEFORE = "#BFBFBF", "#0072B2", "#D55E00"
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-#: ratios of neighbours that differ by less than this are those of a logarithmic axis
+#: an axis is logarithmic if the ratios of neighbouring values differ by less than this (relative)
 _EVEN = 1e-3
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 #: panels side by side; height of a row of them (in)
 COLUMNS, HEIGHT = 3, 1.75
-#: letters on a line above the panels: what 7.16 in hold at 7 points
+#: letters on a line above the panels: as many as fit into 7.16 in at 7 points
 LETTERS = 150
 #: colour of each named series
 COLOURS = {

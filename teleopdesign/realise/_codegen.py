@@ -32,7 +32,7 @@ from .signal_symbols import (
     velocity,
 )
 
-#: arguments of laws in continuous time: where what they take begins in the memory of the loop
+#: arguments of laws in continuous time: index of the first of each kind in the memory of the loop
 ANALOG = "time states bristles inputs late memory".split()
 #: arguments of the computer's laws
 DIGITAL = "n period sampled memory".split()

@@ -12,7 +12,7 @@ import sympy as sp
 
 from ..errors import ModelError
 
-#: symbol -> expression, in an order in which they can be computed
+#: symbol -> expression, in an order in which each can be computed from those before
 Steps = dict[sp.Symbol, sp.Expr]
 
 

@@ -13,9 +13,9 @@ _HEAD = """from math import *
 import numpy as np
 
 """
-# every part is inlined: then what one of them leaves in memory for the next one stays in registers.
-# A product and the sum it goes into are one instruction, rounded once, where the processor has it,
-# and what is divided by the same number is multiplied by its inverse: 0.75 of the time
+# Every part is inlined, so values that one part passes to the next stay in registers. A product and
+# its sum are one instruction with one rounding (where the processor has it), and repeated divisions
+# by one number become products with its inverse. Together this takes 0.75 of the time
 _COMPILED = """from numba import njit
 
 options = dict(nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
@@ -23,7 +23,7 @@ inlined = dict(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 jitted = njit(**options, **inlined)
 entry = njit(cache=True, **options)
 """
-# a call of the library's exp would keep the compiler from working on several lanes at once
+# a call of the library's exp would prevent the compiler from computing several lanes at once
 _LANES = """from teleopdesign.realise.lane_exp import exp
 
 """

@@ -35,7 +35,7 @@ from .stages_along import (
 )
 from .traced import Along, LinkParameter, Probe, Traced, filter_traced
 
-#: signals of a law -> what a motion calls them, where they are known from the records alone
+#: signal of a law -> its name in a motion, for signals that are known from the records alone
 _MEASURED = {
     "time": "time",
     "position": "position",
@@ -47,8 +47,8 @@ _MEASURED = {
 }
 
 
-#: rows by which a hand's force is read later to see what that makes of hidden states. They are
-#: linear in it but for a gap: far less than a row, and far more than rounding
+#: shift of the hand's force, in rows, for a numerical derivative of hidden states. Apart from a gap
+#: the states are linear in the shift: it is far below a row, and far above rounding
 DRIVE_STEP = 1e-3
 
 

@@ -29,7 +29,7 @@ from ..machine_code import hash_files, without_cache_errors
 
 #: folder of the package, whose functions generated source may import
 _PACKAGE = Path(__file__).parents[1]
-#: whether somebody else may write there
+#: permission bits that allow other users to write
 _OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 

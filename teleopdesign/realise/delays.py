@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..errors import ModelError
 
-#: steps or samples; a delay that near to a whole number of them is one: rounding of the division
+#: distance of a delay from a whole number of steps or samples that is rounding of the division
 _WHOLE = 1e-9
 
 

@@ -17,17 +17,17 @@ from mpmath import iv, libmp
 
 from ..errors import ModelError
 
-#: an interval of mpmath, which has no types
+#: an interval of mpmath; mpmath declares no types
 Enclosure = Any
 #: whether a condition can be true, and whether it can be false
 Possible = tuple[bool, bool]
 
 WHOLE: Enclosure = iv.mpf([float("-inf"), float("inf")])
 _ZERO, _ONE = iv.mpf(0), iv.mpf(1)
-#: of an exponential's argument: beyond, the result is taken to be unbounded, or down to zero
+#: largest argument of an exponential: with a larger one the result counts as unbounded, or zero
 _LARGEST_EXPONENT = 1e6
-#: four units in the last place: mpmath rounds some functions of tiny arguments to the wrong side by
-#: one, as atan(9e-17) to its argument
+#: factor of four units in the last place: mpmath rounds some functions of tiny arguments to the
+#: wrong side by one unit, as atan(9e-17) to its argument
 _GUARD = iv.mpf([1 - 2.0**-50, 1 + 2.0**-50])
 
 

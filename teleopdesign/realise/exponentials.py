@@ -20,7 +20,7 @@ def _series() -> str:
     return text
 
 
-#: source of `phi`, to stand behind a line that defines `jitted`
+#: source of `phi`, for use after a line that defines `jitted`
 PHI = f'''
 @jitted
 def phi_near(z):
@@ -41,7 +41,7 @@ def phi(z):
     p2 = (p1 - 1.0) / z
     return e, p1, p2, (p2 - 0.5) / z
 '''
-#: source of `weights`, to stand behind `phi`
+#: source of `weights`, for use after `phi`
 WEIGHTS = '''
 @jitted
 def weights(z, is_near):

@@ -17,13 +17,13 @@ import sympy as sp
 from ..errors import ModelError
 from .enclosure import Enclosure, Singular, enclosure_of, ends, interval
 
-#: by how much a bound may lie below a value that is met, over that value: levels are known to 1e-2
-#: at best, and a tenth of this takes a few boxes more
+#: relative distance of a bound from a value that occurs, at which the bound is tight enough:
+#: friction levels are known to 1e-2 at best, and a tenth of this distance needs a few boxes more
 TIGHTNESS = 1e-4
-#: boxes to look at before a bound is left as loose as it is; about 2 ms each. Those of the
-#: catalogue take under a hundred
+#: most boxes for a bound, about 2 ms each; then the bound stays as it is. Laws of the catalogue
+#: need less than a hundred
 MOST_BOXES = 1000
-#: as many where nothing bounds the law: further out it is as unbounded
+#: most boxes while the law has no bound: further boxes would not change this
 MOST_UNBOUNDED = 100
 
 Ranges = Mapping[sp.Symbol, tuple[float, float]]

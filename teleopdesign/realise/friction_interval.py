@@ -23,11 +23,11 @@ from .extremes import Least, Ranges, least_value
 from .reach import ANY_MOTION, Reach, largest_speed, signal_ranges, words_of
 from .simulated import without_absent
 
-#: the speed of a motion in either direction; sliding, so that its sign is known
+#: symbol of the speed of sliding in either direction; > 0, so that its sign is known
 SPEED = sp.Symbol("speed", positive=True)
 DIRECTION = SIGNALS["direction"]
 
-#: signal -> its quantity, as far as levels depend on it; a direction has none
+#: signal on which friction levels may depend -> its quantity; a direction has none
 _QUANTITIES = {
     "time": "time",
     "speed": "velocity",

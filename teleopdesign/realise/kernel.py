@@ -23,16 +23,18 @@ from ..controllers import SIGNALS, laws_that_declare
 from ..errors import ModelError
 from .program import CompiledLoop, Program
 
-#: h times the fastest rate of the equations at rest; 0.3: 20 steps a period
+#: largest product of the step h and the fastest rate of the equations at rest: 0.3 is 20 steps in a
+#: period
 FASTEST = 0.3
-#: 1/s; a larger rate is no physics but a jump: 1 N at once on 1 kg within 1 nm/s is 1e9
+#: 1/s: a larger rate is a jump and no dynamics: a step of 1 N within 1 nm/s on 1 kg has 1e9
 JUMP = 1e7
-#: m, m/s ...: below every smoothing velocity and bristle length, a state at rest
+#: m, m/s, ...: size of states near rest, below every smoothing velocity and bristle length
 _SMALL = 1e-9
-#: bound of h * (change of a bristle's decay rate in a step); 0.02: 10 steps a reload
+#: largest product of the step h and the change of a bristle's decay rate in a step: 0.02 is 10
+#: steps in a reload of the bristle
 RELOAD = 0.02
-#: by how much a step that is too long may be divided: few numbers, so that simulations side by side
-#: that need about the same step share a grid, and none above 200, which is a model gone wrong
+#: divisors of a step that is too long. There are few, so that simulations side by side that need
+#: similar steps share a grid; above 200 the model is wrong
 FINER = (1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 200)
 
 

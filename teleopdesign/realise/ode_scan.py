@@ -31,10 +31,10 @@ from ._ode_scan_source import list_drivers, list_parameters, write_scan
 from .compiled import compile_source
 from .traced import Along, Traced
 
-#: part of a radian of the fastest mode that one sub-step may cover (at half a radian it swings
-#: 0.05 % too slowly, at one 0.8 %), the most sub-steps, and how much one may cover then
+#: angle of the fastest mode (rad) that one sub-step should cover (at half a radian the mode swings
+#: 0.05 % too slowly, at one radian 0.8 %); most sub-steps; and angle that one may cover at most
 MODE_STEP, MOST_STEPS, STABLE = 0.5, 16, 2.0
-#: growth of a small difference between two courses over which tangents are followed
+#: growth of a small difference between two solutions after which tangents begin anew
 GROWTH = 30.0
 
 
@@ -74,7 +74,7 @@ def _fastest(effect: Effect, along: Along, parameters: Array) -> float:
     return fastest
 
 
-#: what each of these goes on by
+#: driving signal -> the signal that is its rate of change
 _RATES = {"position": "velocity", "velocity": "acceleration"}
 
 

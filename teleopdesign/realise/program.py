@@ -51,7 +51,7 @@ class Program:
 
 
 _programs: dict[Any, Program] = {}
-#: the same by structure under the user's names, each with the diagram that it was made for
+#: programs by structure with the user's names, each with the diagram for which it was made
 _named: dict[Any, tuple[Diagram, Program]] = {}
 _MOST_NAMED = 256
 

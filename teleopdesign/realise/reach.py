@@ -10,10 +10,10 @@ import sympy as sp
 from ..effects import SIGNALS
 from ..quantity import unit_of
 
-#: friction is asked for at up to this many times the recorded speed, at times up to so many
+#: friction bounds are for speeds up to FASTER times the recorded speed, and for times up to LONGER
 #: records: a controller moves a device faster and longer than the experiment that identified it
 FASTER, LONGER = 10.0, 100.0
-#: over what a law is bounded that is one number
+#: name of the reach of a law that is a constant
 ANY_MOTION = "any motion"
 
 

@@ -25,10 +25,10 @@ from .simulated import realise_in_computer
 if TYPE_CHECKING:
     import control
 
-#: by how much an inner step may be divided where bristles or fast oscillations ask for it
+#: largest divisor of an inner step, for bristles or fast oscillations
 _MOST_DIVIDED = 200
-#: samples that a delay block may keep, each a state: 10 s at 1 kHz, beyond any channel; trades
-#: what can be said against the memory of a linearisation, of the square of it
+#: most samples of a delay block, each of them a state: 10 s at 1 kHz, more than any channel has.
+#: The memory of a linearisation grows with the square of this number
 _MOST_KEPT = 10_000
 
 

@@ -34,14 +34,14 @@ from .friction_along import level_along
 from .stages_along import ActuationStage, stages_along
 from .traced import Along, slope
 
-#: part of the gain that a law has where it has most, below which a sample is blind. A command ten
-#: times as uncertain as elsewhere is not reported; of a larger part a ripple or a soft limit would
-#: be called blind that still tells
+#: a sample is blind if the gain of the law is below this part of its largest gain: a command that
+#: is ten times as uncertain as elsewhere is not reported. With a larger part, a ripple or a soft
+#: limit would count as blind although the command is still known
 SLIGHT = 0.1
-#: dynamics are divided by no less than this part of what they are at rest: rounding, not physics
+#: least divisor of dynamics, as a part of their value at rest: below it the division is rounding
 LEAST = 1e-3
-#: commands, as multiples of the largest recorded, at which the strongest force of an actuator is
-#: sought: a law may be strongest for a small command
+#: commands, as multiples of the largest recorded one, at which the strongest force of an actuator
+#: is searched: a law may be strongest at a small command
 COMMANDS = tuple(10.0 ** (0.25 * k) for k in range(-6, 13))
 
 _COMMAND, _ACTING = SIGNALS["command"], SIGNALS["acting_force"]

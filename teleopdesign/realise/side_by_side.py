@@ -20,7 +20,8 @@ from ..errors import ModelError
 from .kernel import Timing, fastest_rates, first_memory, grid, slopes_at_rest
 from .program import CompiledLoop, Program, loop_of
 
-#: lanes of a block: 8 take twice the time a lane, 32 gain a tenth and need more cases to be full
+#: simulations of a block that run in one loop (lanes): with 8, each takes twice the time; with 32,
+#: a tenth less, but more cases are needed to fill a block
 LANES = 16
 
 #: reduction -> number by which the loop knows it (`integrator.keep`), and where it starts

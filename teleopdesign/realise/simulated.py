@@ -18,7 +18,7 @@ from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
 
-#: m/s or rad/s: beyond the velocities at which friction levels change
+#: m/s or rad/s: a speed above which no friction level changes
 _FAST = 1e6
 
 

@@ -16,12 +16,12 @@ from ..errors import ModelError, did_you_mean
 from ..model import Model
 from ..quantity import unit_after_number
 
-#: kg and kg m^2 of what a link must have beside what was identified: simulators refuse less. It
-#: turns or moves with no joint that was identified
+#: kg and kg m^2: least mass and inertia of a link, because simulators refuse less. They do not move
+#: with an identified joint
 CARRIER_MASS, CARRIER_INERTIA = 1e-6, 1e-9
-#: part of the inertia that stands in the link, the rest is the armature. MuJoCo weakens friction of
-#: a joint whose link is light beside its armature: with a link of 1e-6 kg a slider that should stop
-#: in 0.07 s did not stop; with one half its speed is right within 0.3 % of the first
+#: part of the inertia in the link; the rest is the armature. MuJoCo weakens the friction of a joint
+#: whose link is light compared with its armature: with a link of 1e-6 kg a slider that should stop
+#: in 0.07 s did not stop; with one half, its speed is correct within 0.3 % of the initial speed
 LINK_PART = 0.5
 #: s, time constant of MuJoCo's friction constraint, and step: four steps to a constant
 FRICTION_TIME, STEP = 0.002, 0.0005

@@ -19,18 +19,18 @@ from ..measurement.motion import Motion
 from .scan import stage_scan
 from .traced import Along, Traced, filter_traced
 
-#: what a stage may use of the motion
+#: signals of the motion that a stage may use
 _MOTION = ("time", "position", "velocity", "acceleration")
 _COMMAND = SIGNALS["command"]
-#: parts of a row over which a command that acts late is averaged, and most parts of a sample that
-#: stands for several rows: averages over a fifth of a period at the bandwidth, the longest sample,
-#: would weaken the force by 1 %, over a sixteenth of that by 0.03 %
+#: parts of a row over which a late command is averaged, and most parts of a sample that stands for
+#: several rows. The longest sample is a fifth of a period at the bandwidth: an average over it
+#: would weaken the force by 1 %, an average over a sixteenth of it by 0.03 %
 PARTS, MOST_PARTS = 4, 16
-#: name, beside a body's parameters, of the time by which the log of its command is late
+#: name of the time by which the log of a body's command is late, used besides the body's parameters
 RECORD_SHIFT = "record_shift"
 #: the same of the time by which the log of the hand's force is late
 INTERACTION_SHIFT = "interaction_shift"
-#: stand for them among the columns of tangents; no law holds them
+#: symbols of these times among the columns of tangents; no law contains them
 COMMAND_LATE = sp.Symbol(RECORD_SHIFT, real=True)
 INTERACTION_LATE = sp.Symbol(INTERACTION_SHIFT, real=True)
 

@@ -206,7 +206,7 @@ class NumericLaw:
 
 _SIGNALS = tuple(SIGNALS.values())
 _KNOWN = frozenset(_SIGNALS)
-#: signals that depend on parameters themselves, or on shifts of their logs
+#: signals that depend on parameters, or on time shifts of their logs
 TRACED = frozenset(
     {
         SIGNALS[name]

@@ -11,11 +11,11 @@ from ..finding import Array, Graph, Series
 from ..quantity import unit_of
 from .scaled import Scaled, choose_prefix, size_of
 
-#: points of a profile over velocity in each direction, and samples that each needs
+#: most points of a profile over velocity in each direction, and fewest samples of a point
 PROFILE, FEWEST = 24, 3
-#: part of the samples that a band leaves out on each side
+#: part of the samples outside a band on each side
 TAIL = 0.1
-#: periods at the bandwidth that an excerpt shows, and longest part of a stretch that it takes
+#: length of an excerpt in periods at the bandwidth, and its longest part of a stretch
 PERIODS, PART = 60.0, 0.25
 #: points of each line of an excerpt
 EXCERPT_POINTS = 240

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from .candidate_table import LadderRow
 
-#: inches; a panel is as wide as a telephone, two or three stand beside each other on a screen
+#: inches: widths of a panel; a panel fits a telephone, and two or three fit side by side on a
+#: screen
 PANEL, WIDE = 3.4, 4.0
 GREY, RULE = "0.55", "#D9D9D9"
 

@@ -20,7 +20,7 @@ from ..plot.letters import STYLE, further_fonts
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: what a picture of a page sets beside the house style
+#: settings of matplotlib for pictures of a page, besides the house style
 SETTINGS: Any = {
     "svg.fonttype": "none",  # text stays text: small, and sharp at every size
     "svg.hashsalt": "teleopdesign",  # the same identifiers in every process
@@ -34,7 +34,7 @@ SETTINGS: Any = {
     "axes.facecolor": "none",
     "savefig.facecolor": "none",
 }
-#: pixels per inch of what is drawn as pixels: three of them to one of a usual screen
+#: pixels per inch of parts that are drawn as pixels: three for each pixel of a usual screen
 PIXELS_PER_INCH = 288
 
 

@@ -21,11 +21,11 @@ from ..quantity import unit_of
 from .before_and_after import BodySamples, excerpt, plot_over_velocity
 from .scaled import Scaled, choose_prefix, size_of
 
-#: cells of a map along the travel and along velocity, and samples from which a cell shows a mean
+#: cells of a map along the travel and along velocity, and fewest samples in a cell that is shown
 CELLS, FEWEST = (40, 25), 3
-#: buckets of a trace over time, each with its lowest and highest residual
+#: intervals of a trace over time, each with its lowest and highest residual
 BUCKETS = 220
-#: the colour scale reaches at least so many rms of sensor noise: noise alone stays pale
+#: least end of the colour scale, in rms of sensor noise, so that noise alone stays pale
 OUTSIDE = 4.0
 
 

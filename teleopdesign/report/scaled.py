@@ -9,7 +9,7 @@ import numpy as np
 from ..finding import Array
 from .words import unit_text
 
-#: SI unit -> (what it is shown in, factor to that), from small to large; others stay as they are
+#: SI unit -> (unit that is shown, factor), from small to large; other units are not changed
 _SHOWN = {
     "m": (("µm", 1e6), ("mm", 1e3), ("m", 1.0)),
     "m/s": (("µm/s", 1e6), ("mm/s", 1e3), ("m/s", 1.0)),

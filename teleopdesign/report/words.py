@@ -14,7 +14,7 @@ MINUS = "\u2212"
 NONE = "–"
 
 
-#: between two units, and behind one
+#: the sign between two units, and an exponent after a unit
 _PRODUCT = re.compile(r"(?<=[A-Za-z])\*(?=[A-Za-z])")
 _POWER = re.compile(r"(?<=[a-z])\^([23])(?!\d)")
 

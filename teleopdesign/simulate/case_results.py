@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ..realise.side_by_side import LaneResults
 
-#: what `reduce` knows, with the words of the result
+#: names of the reductions that `reduce` allows, with the words of the result
 REDUCTIONS = {
     "final": "last value",
     "maximum": "largest value",

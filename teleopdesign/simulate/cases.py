@@ -21,7 +21,7 @@ from ..diagrams import Control, Diagram
 from ..errors import ModelError, did_you_mean
 from ..realise.simulated import check_levels, least_levels, may_be_negative
 
-#: relative change of a value that shows which simulated numbers follow from it
+#: relative change of a value, to determine which simulated numbers depend on it
 _CHANGE = 1e-3
 
 

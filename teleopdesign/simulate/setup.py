@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 #: most numbers that one simulation may hold, 2 GB
 MOST_NUMBERS = 250_000_000
-#: by how much the step may be divided so that every delay is a whole number of steps
+#: largest divisor of the step, so that every delay becomes a whole number of steps
 _MOST_DIVIDED = 20
 
 

@@ -26,7 +26,7 @@ from ..simulate import Sampling, Setup, Simulation, Trajectory, prepare, simulat
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
 
-#: numbers of a computer that may be varied -> unit; "": that of the first body's motion
+#: number of a computer that may be varied -> its unit; "": the unit of the first body's motion
 _COMPUTER = {"period": "s", "delay": "s", "encoder_step": "", "velocity_bandwidth": "Hz"}
 _SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
 _OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}

@@ -16,10 +16,11 @@ from .processes import Sink, one_thread, pack_task
 from .side_by_side import Unit, evaluate_unit
 from .versions import versions
 
-#: s that a task of the cluster takes: long against the scheduler's ms for each
+#: s: duration of a task of the cluster, long against the milliseconds of the scheduler for each
 _TASK_TIME = 1.0
 _MOST_IN_TASK = 1000
-#: tasks a thread that the cluster knows of at once: enough to be busy, few enough to stop soon
+#: tasks for each thread that the cluster has at a time: enough to be busy, and few enough to stop
+#: soon
 _AHEAD = 3
 
 

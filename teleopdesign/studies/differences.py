@@ -19,12 +19,13 @@ from ..simulate.cases import bounds_of_value
 from .case import SimulatedCase
 from .side_by_side import group_alike, simulate_rows
 
-#: differences over the parameter's scale. From 10 %, which looks across the jumps of an encoder,
-#: down to 2e-5, where smooth signals bend by 1e-9 of their slope and rounding (1e-13) is 1e-8 of it
+#: steps of a numerical derivative over the scale of the parameter. At 10 % a step is longer than
+#: the jumps of an encoder; at 2e-5 the curvature of smooth signals is 1e-9 of their slope, and
+#: rounding (1e-13) is 1e-8 of it
 SIZES = 0.1 * 8.0 ** -np.arange(5)
-#: relative: inner steps closer than this are the same
+#: relative difference of two inner steps that counts as none
 _SAME_STEP = 1e-9
-#: of a computer, what simulated signals follow without jumps
+#: the number of a computer on which simulated signals depend without jumps
 _SMOOTH_IN_COMPUTER = "computer.velocity_bandwidth"
 
 

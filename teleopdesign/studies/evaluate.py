@@ -15,7 +15,7 @@ from .outcomes import PointOutcome
 from .point import Amount, Point
 from .points import Points
 
-_LONGEST_REASON = 300  # characters
+_LONGEST_REASON = 300  # most characters of the reason of a failure
 
 
 @dataclass(frozen=True)

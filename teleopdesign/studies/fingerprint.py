@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-_DIGITS = 16  # of the hash in base 16: 64 bits
+_DIGITS = 16  # hexadecimal digits of the hash: 64 bits
 
 
 def fingerprint(*things: Any) -> str:

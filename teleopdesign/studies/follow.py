@@ -16,25 +16,25 @@ from .differences import SignalSlopes, simulated_signals, slopes_of
 from .problem import start_values
 from .shares import AT_END, shares_of, unit_box, units_at, values_at
 
-#: searches, from the best points simulated at first
+#: number of searches, which start from the best points of the first simulations
 _SEARCHES = 3
-#: simulations of a search beside those of its slopes
+#: most simulations of a search, besides those for its slopes
 _EVALUATIONS = 60
-#: share of an interval by which the start of a search stays off its ends
+#: least distance of the start of a search from the ends of an interval, as a share of the interval
 _INSIDE = 1e-3
-#: two searches came to the same values: shares of all intervals no further apart
+#: two searches agree if their values differ by less than this share of each interval
 _SAME = 1e-2
-#: singular value over the largest one, below which a combination of parameters has no influence;
-#: slopes themselves are right to 1e-6 or so at best
+#: singular value over the largest one, below which a combination of parameters has no influence:
+#: the slopes are correct to about 1e-6 at best
 _NO_INFLUENCE = 1e-5
-#: part that a parameter takes in such a combination, from which on it is not determined
+#: a parameter is not determined if its part in such a combination is larger than this
 _PART = 0.1
-#: slopes over two sizes of difference that are further apart are no derivative to build an error
-#: on: with an encoder's steps in a stiff loop errors were 20 times too small at 0.1 to 1
+#: if the slopes for two sizes of step differ by more (relative), no standard error is derived from
+#: them: with encoder steps in a stiff loop, errors were 20 times too small at 0.1 to 1
 MOST_APART = 0.1
-#: fewest blocks of a record, however short
+#: fewest blocks of a record, also of a short one
 _BLOCKS = 30
-#: weight of a signal that is followed exactly: by this part of its size
+#: least error of a signal, as a part of its size, so that an exact signal has a finite weight
 _EXACTLY = 1e-6
 
 

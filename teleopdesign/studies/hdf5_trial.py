@@ -13,16 +13,17 @@ from pathlib import Path
 
 from ..errors import ExperimentError
 
-#: s of processor time that reading may take beside what its size explains: a study of 10 000 points
-#: takes 0.1 s; trades damaged files that are waited for against large ones on a slow machine
+#: s: processor time for reading a file in addition to the time that its size explains. A study of
+#: 10 000 points takes 0.1 s. A longer time waits for damaged files; a shorter one refuses large
+#: files on a slow machine
 LONGEST = 3.0
-#: bytes that are read in a second of processor time at least; compressed ones take longest
+#: bytes that are read in a second of processor time, at least; compressed bytes take longest
 RATE = 5e7
-#: s until the process is ended whatever it did: a machine may be busy, or know no limit
+#: s until the process is ended in any case: a machine may be busy, or may not limit processor time
 PATIENCE = 120.0
 
-#: reads every attribute and, where they are not too large, all data; what h5py refuses it leaves to
-#: the reader that says so
+#: source of a program that reads every attribute and all data that are not too large. It ignores
+#: what h5py refuses, because the reader of the study then reports it
 _LOOK = """
 import sys
 sys.path[:] = {path!r}

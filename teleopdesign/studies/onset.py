@@ -10,8 +10,8 @@ import numpy as np
 from ..errors import GrowsWithoutBound
 from ..simulate import Simulation
 
-#: share of the largest swing below which a swing has died out: what is left there is creep of
-#: bristles and rounding, whose ratios mean nothing
+#: a swing has died out if it is below this share of the largest one: smaller swings are creep of
+#: bristles and rounding, and their ratios have no meaning
 DIED_OUT = 1e-3
 
 

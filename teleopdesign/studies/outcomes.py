@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-#: forms that have an array each; points of further ones are kept one by one
+#: most forms of results that have an array each; points of further forms are stored one by one
 _MOST_FORMS = 8
-#: places of a point: nowhere, among those that are kept one by one; else the number of its form
+#: place of a point: nowhere, or among the points that are stored one by one; else the number of its
+#: form
 _NOWHERE, _APART = 0, -1
 
 

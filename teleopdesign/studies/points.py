@@ -12,10 +12,10 @@ from ..errors import ModelError
 from ..expectations import describe_value
 from .samples import Samples, distribution_text
 
-#: dimension of points that were drawn together
+#: name of the dimension of points that were drawn together
 SAMPLE = "sample"
-#: most points of a study: the numbers of each take 8 bytes while it runs and 8 in the result, its
-#: reason and what is still to do some tens
+#: most points of a study: each number of a point takes 8 bytes while the study runs and 8 in the
+#: result; the reason of a failure and the list of open points take some tens of bytes
 MOST_POINTS = 100_000_000
 
 #: parameter -> values (a separate dimension), or one value;  or points drawn together

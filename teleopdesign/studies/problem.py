@@ -20,11 +20,12 @@ from .processes import run_on_this_machine
 from .samples import Samples
 from .side_by_side import units_of
 
-#: vertices of the intervals of a limit that the search looks at, beside their middle
+#: most vertices of the intervals of a limit that the search evaluates, besides the middle
 _MOST_VERTICES = 16
-#: N s/m, 1 or 1/s: rounding of a claim's margin where it is zero
+#: N s/m, 1 or 1/s: size of a margin that is rounding of zero
 _ROUNDING = 1e-9
-#: of the spread of a claim's margins: what the best point has at least, as the last check is exact
+#: least margin of the best point, as a share of the spread of all margins of a claim, because the
+#: last check is exact
 _SLACK = 1e-6
 
 

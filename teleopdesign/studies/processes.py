@@ -29,15 +29,15 @@ from .side_by_side import Unit, evaluate_unit
 
 Sink = Callable[[PointOutcome], None]
 
-#: s: points handed to a process at once; short against a look at the progress, long against the
-#: 0.1 ms that a message takes
+#: s: computing time of the points that a process receives at once; short against the intervals of
+#: progress reports, long against the 0.1 ms of a message
 _BATCH_TIME = 0.2
 _MOST_IN_BATCH = 1000
-#: s, of processor time: what a process needs before its first point
+#: s: processor time that a process needs before its first point
 _START_TIME = 4.0
-#: s of this process alone, from which the time of the whole study is estimated
+#: s: time of this process alone from which the time of the whole study is estimated
 _TRIAL_TIME = 1.0
-#: times that a point may end the process that computes it
+#: most times that a point may end the process that computes it, before the point counts as failed
 _MOST_DEATHS = 2
 #: threads that libraries start by themselves would compete with the other processes, and could add
 #: numbers in another order

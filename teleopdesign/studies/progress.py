@@ -12,7 +12,7 @@ from .outcomes import PointOutcome
 
 #: s between two reports: as often as one can read
 _BETWEEN = 0.5
-#: reports from which the rate is taken: 10 s
+#: number of last reports that determine the rate: 10 s
 _REMEMBERED = 20
 
 

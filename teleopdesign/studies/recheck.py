@@ -17,7 +17,7 @@ from .problem import Problem, TrialPoint, box_over
 
 #: points inside the intervals of a limit, beside vertices and middle
 _POINTS = 32
-#: share of all margins that the search saw: nearer to its bound, a limit is called active
+#: a limit is active if its margin is below this share of the spread of margins in the search
 _ACTIVE = 0.02
 
 

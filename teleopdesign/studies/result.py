@@ -24,9 +24,10 @@ if TYPE_CHECKING:
 
     from ..plot.studies import StudyPlots
 
-#: variable that says why a point failed, "" where it did not
+#: name of the variable with the reason of a failed point; "" for a point that did not fail
 REASON = "failure"
-#: bytes of all variables of a file: twenty measures over ten million points; trades size for memory
+#: most bytes of all variables of a file, because they are read into memory: twenty measures over
+#: ten million points
 LARGEST = 1.6e9
 
 

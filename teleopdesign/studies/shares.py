@@ -12,7 +12,7 @@ from ..passivity.intervals.box import ValueBox
 
 #: intervals whose ends differ by more than this factor are searched in logarithms
 _WIDE = 9.9
-#: share of a parameter's interval: nearer to an end, the parameter is said to be there
+#: a parameter is at an end of its interval if it is nearer than this share of the interval
 AT_END = 0.01
 
 

@@ -23,15 +23,16 @@ from .point import Point, SignalRows
 if TYPE_CHECKING:
     import xarray
 
-#: points that are computed, and kept, together
+#: points that are computed and stored together
 Unit = tuple[int, ...] | range
 
-#: steps of all simulations of a block, what a kill can cost: about half a second, and two seconds
-#: where the study has `_BLOCKS` such blocks to share among workers. The few points that need steps
-#: up to 200 times finer take most of the time unless enough of them lie side by side
+#: steps of all simulations of a block, which are lost if the process is killed: about half a
+#: second, and two seconds if the study has `_BLOCKS` such blocks for its workers. The few points
+#: that need up to 200 times finer steps take most of the time, unless enough of them run side by
+#: side
 _STEPS_OF_BLOCK, _STEPS_OF_LARGE = 2e7, 8e7
 _BLOCKS = 8
-#: numbers that the signals of a block hold: 0.2 GB
+#: most numbers in the signals of a block: 0.2 GB
 _NUMBERS_OF_BLOCK = 2e7
 _LEAST_IN_BLOCK, _MOST_IN_BLOCK, _MOST_IN_LARGE = 16, 512, 2048
 

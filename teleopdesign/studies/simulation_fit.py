@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-#: relative: instants closer than this to a sample are at it
+#: relative distance of an instant from a sample that counts as none
 _ROUNDING = 1e-9
 
 

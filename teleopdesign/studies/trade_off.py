@@ -28,7 +28,7 @@ from .tune import Tuned, make_tuned, problem_of, search
 if TYPE_CHECKING:
     import matplotlib.figure
 
-#: share of all points that the search for the best of either objective gets, each
+#: share of all points for the search of the best value of each objective alone
 _ENDS = 0.25
 
 

@@ -38,11 +38,12 @@ from .problem import Problem, TrialPoint
 from .recheck import CheckedLimit, recheck
 from .shares import AT_END, box_of_parameters, shares_of, unit_box, values_at
 
-#: times that the worst point of an interval, which the search had not looked at, joins it
+#: most rounds: after each, the worst point of an interval that the search had not evaluated is
+#: added
 _ROUNDS = 3
-#: the factor by which the best point keeps further away from a claim that the last check refutes
+#: factor on the least margin of the best point after the last check has refuted a claim
 _FURTHER = 100.0
-#: share of the points that the simplex gets
+#: share of all points for the final simplex search
 _POLISH = 0.25
 
 

@@ -6,7 +6,7 @@ import math
 
 from ..quantity import unit_after_number, unit_of
 
-#: quantities that are said in thousandths of their unit up to 1 of it
+#: quantities that are written in thousandths of their unit up to one unit
 _LENGTHS = ("position", "velocity")
 
 

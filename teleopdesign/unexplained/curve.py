@@ -15,7 +15,8 @@ from .shapes import LOST, Shape, functions_of
 BAND = 2.0
 #: points of a curve, and bins of the means beside it
 POINTS, BINS = 161, 14
-#: part of the largest carrier from which a row tells something of what it multiplies
+#: a row determines the curve if its carrier (the factor of the curve) is above this part of the
+#: largest carrier
 TELLS = 0.05
 
 

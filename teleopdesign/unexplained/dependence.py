@@ -22,15 +22,15 @@ from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
 from .waves import wave_number
 
-#: weights of roughness that are compared, relative to the data's
+#: weights of the roughness penalty that are compared, relative to the weight of the data
 SMOOTHNESS = np.logspace(-4, 3, 8)
-#: weight of f itself, relative to the data's: what another value of the model's parameters
-#: would explain as well is left to them; what the rows tell is lowered by a thousandth
+#: weight of a penalty on the size of f, relative to the data: a part that other values of the
+#: model's parameters explain as well is left to the parameters, and f is lowered by a thousandth
 SMALLNESS = 1e-3
-#: part of a gain that must be there too with the variable as the model expects it: at steady speed
-#: the command is what the model needs plus the residual, and goes along with any residual
+#: part of a gain that must also appear with the variable as the model predicts it: at steady speed
+#: the command is the force of the model plus the residual, so the command follows any residual
 NOT_ITSELF = 0.5
-#: chance that a right model is said to depend on anything, over all that is looked at
+#: probability that a dependence is reported for a right model, over all dependences that are tested
 ALARM = 0.01
 
 

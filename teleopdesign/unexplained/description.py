@@ -23,10 +23,10 @@ from .shapes import SHAPES
 from .views import curve_graph, views_of
 from .whiteness import Whiteness, whiteness_of
 
-#: part of what is left that may stay undescribed unmentioned: to first order, with f as lines
-#: between knots, a description leaves some percent by itself
+#: part of the residual that may remain undescribed without a remark: a description to first order,
+#: with f as lines between knots, leaves a few percent anyway
 UNDESCRIBED = 0.1
-#: part of what is left from which it is said to lie where no motion is sure
+#: if at least this part of the residual lies where no motion is certain, the description says so
 MOSTLY = 0.5
 
 

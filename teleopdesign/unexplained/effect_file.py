@@ -18,7 +18,7 @@ from .description import BodyResidual, DescribedDependence
 from .effect_law import law_of_formula, law_of_points
 from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape
 
-#: the signal of a law for each variable; what is missing is known to no law
+#: variable -> signal of a law; laws have no signal for other variables
 SIGNALS = {
     "position": "now.position",
     "speed": "abs(now.velocity)",
@@ -29,7 +29,7 @@ SIGNALS = {
     "interaction_force": "now.interaction_force",
     "time": "now.time",
 }
-#: what f is multiplied by in a law
+#: carrier -> text of the factor of f in a law
 FACTORS = {"damping": " * now.velocity", "mass": " * now.acceleration"}
 _HEAD = '''"""{title}
 

@@ -15,7 +15,7 @@ from .formula import Formula
 from .library import FormulaTerm
 from .sentences import formula_text
 
-#: sizes of f, relative to its largest, that the written line may be off
+#: largest deviation of the written line from f, relative to the largest f
 EXACT = 0.01
 
 

@@ -17,11 +17,11 @@ from .rows import Rows, StretchSignals
 from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
 from .waves import wave_number
 
-#: part of a smooth curve's gain on the checked rows that a formula must reach to be kept
+#: a formula is kept if its gain on the check rows is at least this part of that of a smooth curve
 HOLDS = 0.95
 #: most terms
 MOST = 2
-#: standard errors that each coefficient must differ from zero by
+#: least size of each coefficient, in its standard errors
 SURE = 3.0
 
 

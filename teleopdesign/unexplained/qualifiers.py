@@ -13,9 +13,9 @@ from ..measurement.filtering import Array
 from .dependence import Dependence
 from .rows import RESTED, Rows
 
-#: part of a dependence's squares that each side must hold for the two to be compared
+#: part of the squares of a dependence that each side must have, so that the sides can be compared
 SHARE = 0.1
-#: size on one side, relative to the other, below which it is said to be there "only" on the other
+#: size on one side, relative to the other side, below which the effect is "only" on the other side
 ONLY = 0.25
 
 

@@ -13,11 +13,11 @@ import numpy as np
 from ..measurement.filtering import Array
 from .curve import Curve
 
-#: a range is named from this part of the squares of all
+#: least part of all squares in a range that is named
 NAMED = 0.1
-#: part of the rows that a range may leave out at its ends and still be said to go on to there
+#: part of the rows outside a range at an end, below which the range is said to reach this end
 NONE_BEYOND = 0.02
-#: ranges named at most, and ranges from which something goes up and down
+#: most ranges that are named; and number of ranges from which the text says "goes up and down"
 MOST, TURNS = 3, 4
 
 

@@ -23,8 +23,8 @@ from ..measurement.reversals import look_back_to_reversal
 from ..model import Model
 from ..realise.along_motion import residual_along
 
-#: s without sure motion after which a body counts as having rested: above the quarter of a period
-#: at a hertz that a hand takes to turn round, below the half second that experimenters wait
+#: s without sure motion after which a body counts as having rested: longer than a hand takes to
+#: reverse, and shorter than the half second that experimenters wait
 RESTED = 0.2
 
 _SIZE = {"size": Parameter("force", "size", lower=-float("inf"))}

@@ -29,11 +29,11 @@ SYMBOLS = {
     "since_reversal": "t_r",
     "travel": "s_r",
 }
-#: what a formula's f is multiplied by
+#: carrier -> text of the factor of f in a formula
 FACTORS = {"friction": " sgn v", "damping": " v", "mass": " a", "lost command": " u"}
-#: ratio of the sizes on two sides from which it is said
+#: ratio of the sizes on two sides from which the text states a difference
 UNLIKE = 1.5
-#: words before a range, where it is no plain "below 4 mm/s"
+#: words before a range, except for a plain "below 4 mm/s"
 _PLACES = {
     "position": "at positions ",
     "acceleration": "at accelerations ",

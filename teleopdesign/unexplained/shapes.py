@@ -104,8 +104,8 @@ class Shape:
         return f"{self.carrier.name} {how} {self.variable.name}"
 
 
-#: what is looked at, the simpler of two that look alike first. Last what repeats with a motion that
-#: repeats (time), and what holds the residual itself (the command)
+#: dependences that are tested; of two that look alike the simpler one comes first. Last come time,
+#: which repeats with a periodic motion, and the command, which contains the residual
 SHAPES = (
     *(Shape(c) for c in (FORCE, FRICTION, DAMPING, MASS, LOST, LATENESS)),
     *(Shape(FRICTION, v) for v in (SPEED, POSITION, POSITION_WAVE)),

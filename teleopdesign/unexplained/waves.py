@@ -11,9 +11,10 @@ from ..measurement.filtering import Array
 from .rows import Rows
 from .shapes import Shape
 
-#: most periods within the travel: below two knots a period of the finest cogging of the catalogue
+#: most periods within the travel: more would be below two knots in a period of the finest cogging
+#: of the catalogue
 MOST_PERIODS = 60.0
-#: grid points per resolved wave number, the inverse of the range
+#: grid points for each resolved wave number (the inverse of the range)
 FINENESS = 4
 
 

@@ -1,4 +1,4 @@
-"""A motor that pushes another joint: which motion acts on a joint, and that none does without."""
+"""A motor that also pushes another joint: the coupling is named, and none where there is none."""
 
 from __future__ import annotations
 

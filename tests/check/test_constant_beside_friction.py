@@ -1,4 +1,4 @@
-"""A weight or a pressure of many times the friction turns no sign."""
+"""A constant force much larger than the friction does not make a right sign look wrong."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A tip behind a gap stays in step with the machine, and what keeps it there explains nothing."""
+"""A simulated tip behind a gap follows the machine; the force that leads it explains nothing."""
 
 from dataclasses import replace
 

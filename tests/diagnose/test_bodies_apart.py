@@ -1,4 +1,4 @@
-"""What a body leaves unexplained is its own: one that stands still is not computed anew."""
+"""The residual of one body does not depend on parameters of another, and is not computed anew."""
 
 from dataclasses import replace
 

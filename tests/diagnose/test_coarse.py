@@ -1,4 +1,4 @@
-"""Effects are sought on few samples, which say what all samples of the records say."""
+"""The search for effects on few samples has the results of a search on all samples."""
 
 from collections import Counter
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""When a candidate displaces what the model has, when it is barred for it, and what gives way."""
+"""When a candidate displaces an effect of the model, and when it is refused for that."""
 
 import pytest
 from diagnose.known_models import BY_EFFECT, model

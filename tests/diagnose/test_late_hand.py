@@ -1,4 +1,4 @@
-"""A hand's force that its sensor filters is late beside the command: of the record, not physics."""
+"""A force of the hand that its sensor makes late belongs to the record: no missing effect."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Where a position that is filtered, or coarser than stated, asks for forces that nothing shows."""
+"""A filtered or coarse position leads to a proposal of a narrower bandwidth, and only then."""
 
 from dataclasses import dataclass, replace
 from types import SimpleNamespace

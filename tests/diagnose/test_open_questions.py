@@ -1,4 +1,4 @@
-"""What the records leave open: who may stand in the place of an accepted effect, and how many."""
+"""Open questions of a diagnosis: which effects may replace an accepted one, and how many."""
 
 from dataclasses import replace
 from types import SimpleNamespace

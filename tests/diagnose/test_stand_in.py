@@ -1,4 +1,4 @@
-"""Values that the fit records leave open are no missing effect, whatever a check record shows."""
+"""Parameters that the fit records leave open are not mistaken for a missing effect."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""A search begins at its user's values too, unless it ends at them anyway."""
+"""A search also starts from the user's values, unless it reaches them anyway."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""A model stated without values is led to the values that its effects have."""
+"""A fit of a model that is stated without values reaches the true values of its effects."""
 
 import pytest
 from diagnose.own_cases import write_own

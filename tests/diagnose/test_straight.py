@@ -1,4 +1,4 @@
-"""A spring with a neutral place of its own is no pendulum whose bend another effect undoes."""
+"""A spring with a shifted rest position is not named a pendulum with a further effect."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Three effects of which a fourth does the most alone: many are added, and most taken out."""
+"""Three true effects, added together, replace a fourth one that explains the most alone."""
 
 from dataclasses import replace
 

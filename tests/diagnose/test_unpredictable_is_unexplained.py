@@ -1,4 +1,4 @@
-"""What makes the recorded force unpredictable has not explained it."""
+"""An effect that makes the recorded force unpredictable has not explained this force."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What records cannot tell of parameters is said, and no model keeps what is not surely there."""
+"""Parameters that records do not determine are named, and doubtful effects leave the model."""
 
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""What an effect cannot be without is determined only where other values of it leave more."""
+"""An essential parameter, as a width, counts as determined only if other values fit worse."""
 
 from dataclasses import replace
 

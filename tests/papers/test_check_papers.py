@@ -1,4 +1,4 @@
-"""Every statement of the two papers: its outcome is what it says, and nothing but proofs proves."""
+"""Statements of the two papers have the stated outcome, and only a proof makes one "proved"."""
 
 import ast
 import importlib

@@ -1,4 +1,4 @@
-"""What a file of one's own declares and does not do proves nothing: adversaries write the files."""
+"""A false declaration in a user's file proves nothing: the tests write such files on purpose."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Modes that no port shows count with their multiplicity: what drives itself is proved nothing."""
+"""Modes that no port shows count with their multiplicity: one that drives another has no proof."""
 
 import control as ct
 import numpy as np

@@ -1,4 +1,4 @@
-"""What grows at some values of a box alone, shown by a port or not, keeps the box from a proof."""
+"""A mode that grows at some values of a box, shown by a port or not, prevents a proof."""
 
 from fractions import Fraction
 

@@ -1,4 +1,4 @@
-"""What is refuted stands whatever the last digits of floats are, and its motion replays."""
+"""A refutation does not depend on the last digits of floats, and its motion can be replayed."""
 
 from types import SimpleNamespace
 

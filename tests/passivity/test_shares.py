@@ -1,4 +1,4 @@
-"""A cancellation proves nothing of a body unless its force acts on this body just as it is."""
+"""A cancellation counts in a proof only if its force acts unchanged on the body, and only there."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What a simulation makes of a diagram first: parted bodies, and no delay that is none."""
+"""Diagrams prepared for simulation: bodies split at their structure, and zero delays removed."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A study is another one where what it reads has changed."""
+"""A study counts as another one if a record or folder that it reads has changed."""
 
 import shutil
 from pathlib import Path

@@ -25,7 +25,7 @@ from ..rung import Replaced, Rung, restore_replaced
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
 
-#: what an answer holds that an older one does not
+#: fields of an answer that older answers lack
 _NEEDED = ("models", "floor", "open", "bandwidth")
 
 

@@ -17,7 +17,7 @@ from ...errors import ExperimentError, quote
 from ...measurement.toml_table import describe_toml_value
 from ...whole_files import read_whole
 
-#: checks a value; the text is where it stands, for the message
+#: a check of a value; the text says where the value stands, for the message
 Check = Callable[[object, str], None]
 
 VERDICTS = ("effects_missing", "model_adequate", "undecided")

@@ -29,9 +29,10 @@ from ..solve import BLOCK, solve
 from ..stated_fit import estimate_stated
 from .prepared import PreparedArm
 
-#: part of the measured force below which what is left does not make a joint count for more
+#: least residual, as a part of the measured force, that sets the weight of a joint: below it the
+#: weight no longer grows
 LEAST = 1e-4
-#: rounds over all joints for a fit: what a third changes is below 1e-3 of the error
+#: rounds over all joints of a fit: a third round changes the error by less than 1e-3
 ROUNDS = 2
 
 

@@ -20,9 +20,9 @@ from .fit import ArmFit, estimate_arm
 from .joint import Joint
 from .prepared import PreparedArm
 
-#: why an effect that one joint's records supported is not there
+#: reason why an effect is refused although the records of one joint supported it
 NO_HELP = "it lowers the error no more once all joints are estimated together"
-#: the same of one that passes on less of what sensors read: error and noise floor fall together
+#: the same reason for an effect that only attenuates readings: error and noise floor fall together
 NO_MORE_THAN_NOISE = "it only weakens the noise of the sensors"
 
 

@@ -12,16 +12,18 @@ from ...errors import ExperimentError, quote
 from ._dates import stamps_of
 from ._log import Array
 
-#: digits are taken once ("++"): a cell of a million digits and a letter is decided at once
+#: a number. Possessive quantifiers ("++") match digits once, so that a cell of a million digits and
+#: a letter needs no time
 _NUMBER = re.compile(
     r"[-+]?(\d++(?:\.\d*+)?|\.\d++)([ed][-+]?\d++)?$|[-+]?(nan|inf|infinity)$", re.I
 )
-#: thousands with commas between, as spreadsheets print them: "1,000.0". One comma alone may be a
-#: decimal comma, "1,000", and is none of them
+#: a number with commas between thousands, as spreadsheets print it: "1,000.0". A single comma
+#: without a point, "1,000", may be a decimal comma and does not match
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:(?:,\d{3})++\.\d*+|(?:,\d{3}){2,})$")
-#: the same beside decimal commas: "1.234,5". Points without a comma, "1.234", are none of them
+#: the same with points between thousands and a decimal comma: "1.234,5". Points without a comma,
+#: "1.234", do not match
 _THOUSANDS_WITH_POINTS = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})++,\d*+$")
-#: what loggers and tables write where there is no reading, in lower case
+#: texts for a missing reading in loggers and tables, in lower case
 NO_READING = frozenset(
     "n/a na n.a. #n/a #na null none nil - -- --- ? * . missing invalid "
     "#value! #div/0! #num! #ref!".split()

@@ -23,8 +23,8 @@ _TRADITIONAL = (
     "時間刻位置角度移速加關節電流壓力矩指令值實測操作手外目標軸回轉數左右上下單編號試驗日期扭"
 )
 _KOREAN = "시간위치각도변속가관절전류압력토크힘지령값실측조작손외목표축회수좌우상하번호험일자명모터"
-#: encoding -> letters of tables in it. What loggers, spreadsheets and their drives still write
-#: where it is no UTF-8; of equal ones the first is taken
+#: encoding -> letters of tables in it: the encodings besides UTF-8 that loggers, spreadsheets and
+#: drives still use. Of several that fit equally the first one counts
 ALPHABETS = {
     "cp1252": _LATIN,
     "cp932": _JAPANESE,
@@ -35,10 +35,11 @@ ALPHABETS = {
     "cp1251": "",
     "mac_roman": _LATIN,
 }
-#: share of letters beyond ASCII that must be known, or the usual one of the West is taken
+#: share of the letters beyond ASCII that an encoding must explain; else the usual Western one is
+#: used
 KNOWN = 0.5
-#: least share of ASCII in a table of UTF-16: digits and separators. Bytes at random give 0.002, a
-#: table with a long head in another script some tenths
+#: least share of ASCII (digits and separators) in a table in UTF-16. Random bytes have 0.002, a
+#: table with a long head in another script a few tenths
 PLAIN = 0.1
 
 

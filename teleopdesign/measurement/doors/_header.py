@@ -9,7 +9,7 @@ from ...quantity import is_unit
 from ..column_names import unit_of_text
 
 _BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")
-#: part of the cells of a row that are units from which the others are units that are not known
+#: if at least this part of the cells of a row are units, the other cells are unknown units
 MOSTLY = 0.5
 
 

@@ -21,10 +21,10 @@ Array = NDArray[np.float64]
 
 #: rows above which a file is refused before it is read: fourteen hours at 1 kHz, 0.4 GB a column
 MOST_ROWS = 50_000_000
-#: bytes that a packed file may hold unpacked: what so many rows of a few columns need
+#: most bytes of a packed file after unpacking: enough for MOST_ROWS rows of a few columns
 MOST_BYTES = 4_000_000_000
-#: columns of a log, and characters of the name of one: far above any logger's; what is done with
-#: each name takes a time that may grow with its square
+#: most columns of a log, and most characters of a name: far above those of any logger. The time for
+#: a name may grow with the square of its length
 MOST_COLUMNS, LONGEST_NAME = 10_000, 1000
 
 

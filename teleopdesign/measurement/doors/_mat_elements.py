@@ -20,7 +20,7 @@ _MATRIX, _COMPRESSED = 14, 15
 _NUMBERS = frozenset({1, 2, 3, 4, 5, 6, 7, 9, 12, 13, 16, 17, 18})
 _CELL, _STRUCT, _OBJECT, _SPARSE, _FUNCTION, _OPAQUE = 1, 2, 3, 5, 16, 17
 _CLASSES = range(1, 18)
-#: structs and cells within each other
+#: deepest nesting of structs and cells
 _DEEPEST = 50
 
 

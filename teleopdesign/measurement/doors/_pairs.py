@@ -20,7 +20,7 @@ _PAIR = re.compile(
     r"[\s,;|]*+([^\W\d][\w./]*+)\s*+[=:]\s*+"
     r"([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|nan)([^\W\d]*+)(?:[\s,;|]++|$)"
 )
-#: part of the lines that must be pairs of the same names; the others are messages, and left out
+#: part of the lines that must be pairs with the same names; other lines are messages and left out
 MOST_OF_THEM = 0.8
 
 

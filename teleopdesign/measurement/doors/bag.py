@@ -20,12 +20,12 @@ from ...errors import ExperimentError, quote
 from ...names import LONGEST
 from ._log import Array, Log, join_names, optional, refuse_damage, refuse_size
 
-#: numbers of one message that become columns: images and point clouds are no log
+#: most numbers of one message that become columns: images and point clouds are no log
 MOST_FIELDS = 200
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 STAMP = "stamp"
 _WRITTEN = "written"
-#: s between a header's stamp and when it was written down from which the two are different clocks
+#: s between the stamp in a header and the time of recording, from which they are different clocks
 _OTHER_CLOCK = 10.0
 
 

@@ -17,7 +17,7 @@ from ...errors import ExperimentError
 from ...quantity import measures, si_factor
 from ._log import Array, Log, join_names
 
-#: part of the shortest table for which all tables must run at the same time
+#: all tables must overlap in time for at least this part of the shortest one
 SHARED = 0.5
 
 

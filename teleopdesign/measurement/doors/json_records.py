@@ -17,9 +17,9 @@ from ...errors import ExperimentError
 from ._dialect import open_bytes
 from ._log import MOST_BYTES, Log, refuse_size
 
-#: records within records that are looked into, and numbers of one list that become columns
+#: deepest nesting of records that is read, and most numbers of one list that become columns
 DEPTH, MOST_FIELDS = 6, 200
-#: lines that are no records, and their part, up to which they are left out
+#: most lines that are no records, as a number and as a part of all lines, that are left out
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
 
 

@@ -29,10 +29,10 @@ from ._dialect import (
 from ._log import MOST_BYTES, Array, Log, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
 
-#: rows that are read at once: 20 MB of text
+#: rows that are read in one block: 20 MB of text
 _ROWS = 200_000
-#: lines that are no rows (messages of a logger that starts anew, a row that was garbled), and their
-#: part of the rows, up to which they are left out; more of them are a table of another form
+#: most lines that are no rows (messages of a logger that restarts, a garbled row), as a number and
+#: as a part of the rows, that are left out. More such lines mean that the table has another form
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
 _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 

@@ -14,11 +14,11 @@ from ..filtering import Array
 from ..repeated_rows import STEPS, runs_of
 from .signal import Signal
 
-#: arrivals with speed at the same value from which it counts as a limit
+#: a value counts as a limit if the signal arrives there so often while it moves
 VISITS = 3
-#: samples that one of them lasts at least
+#: fewest samples that the signal stays at the limit
 LASTS = 3
-#: slowing on arrival, relative to the speed, above which it came to rest by itself
+#: deceleration before the arrival, relative to the speed, above which the body stopped by itself
 SLOWING = 0.5
 
 

@@ -8,13 +8,13 @@ from ...finding import Finding
 from .encoder_steps import ON_GRID, measure_griddedness
 from .signal import Signal
 
-#: 1: rounding error over the signal's standard deviation from which a step is reported; a hundredth
-#: of the largest value leaves 0.007 and changed no diagnosis, a tenth leaves 0.07 and six noise
-#: floors
+#: rounding error over the standard deviation of the signal, from which a step is reported. A step
+#: of a hundredth of the largest value has 0.007 and changed no diagnosis; a tenth has 0.07 and
+#: leaves an error of six noise floors
 COARSE = 0.03
-#: levels that a rounded signal takes at least; a relay takes two or three, and means them
+#: fewest levels of a rounded signal: a relay has two or three, on purpose
 LEVELS = 5
-#: part of all changes that go to the next level: what is rounded passes through every level
+#: part of all changes that lead to the next level: a rounded signal passes through every level
 TO_THE_NEXT = 0.9
 
 

@@ -7,8 +7,8 @@ from typing import Literal
 from ...finding import Finding
 from ..record import Record
 
-#: part of the force that reading a log may add to the force error, from which it needs care: a
-#: tenth of what a plain friction model leaves on the recordings of `fetch`
+#: a warning is given if the reading of a log may add more than this part of the force to the force
+#: error: a tenth of the error of a plain friction model on the recordings of `fetch`
 CARE = 0.02
 
 

@@ -14,8 +14,8 @@ from ...finding import Finding
 from ..encoder import reading_noise
 from .signal import Signal
 
-#: ratio of seen to stated noise that is worth a warning; noise of a quarter of a second of record
-#: is known to 10 %, and a floor that is off by this factor moves a verdict
+#: ratio of measured to stated noise that gives a warning: a quarter of a second of a record shows
+#: the noise within 10 %, and a noise floor that is wrong by this factor changes a verdict
 FACTOR = 1.6
 #: samples of a piece
 PIECE = 500

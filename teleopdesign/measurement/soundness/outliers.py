@@ -13,11 +13,11 @@ from ...finding import Finding
 from ..filtering import Array
 from .signal import Signal, largest_by_chance, local_scale
 
-#: deviation left at the neighbours, in local standard deviations or relative to the outlier, up to
-#: which it counts as explained: 3 is five of the deviation's errors
+#: an outlier explains its neighbours if their remaining deviation is within EXPLAINED local
+#: standard deviations (five errors of this deviation), or within RELATIVE of the outlier
 EXPLAINED, RELATIVE = 3.0, 0.2
-#: a command may hold any value: one sample of it is odd where it leaves the range of all others by
-#: more than this part of it
+#: a command may have any value, so a sample is an outlier if it leaves the range of all others by
+#: more than this part of the range
 OUT_OF_RANGE = 0.5
 #: rms of the two statistics for readings rounded to a step: sqrt(70)/6 and sqrt(5) times 0.29
 _ROUNDED_LONE, _ROUNDED_JUMP = 0.40, 0.65

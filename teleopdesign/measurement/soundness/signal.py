@@ -19,9 +19,9 @@ from ..experiment import Experiment
 from ..filtering import Array
 from ..record import Record
 
-#: chance of a false warning about one channel of one record
+#: probability of a false warning about one channel of one record
 FALSE_ALARM = 1e-3
-#: samples from which the smallest step of a channel is read off
+#: most samples from which the smallest step of a channel is determined
 ENOUGH = 200_000
 
 

@@ -15,13 +15,13 @@ from ...finding import Finding
 from ..filtering import Array, spectrum
 from .signal import Signal
 
-#: steps about the last shift; each leaves the square of the part of a period that it was off
+#: iterations of the shift; each leaves an error of about the square of the one before, in periods
 STEPS = 4
-#: part of the sample rate below which both are compared
+#: bandwidth of the comparison of both signals, as a part of the sample rate
 BAND = 0.05
 #: factor beyond which units or clock are doubted
 FACTOR = 1.05
-#: part by which a factor may miss that of a slip of units
+#: relative difference of a factor from that of a slip of units within which it is this slip
 NEAR = 0.03
 #: samples of one stretch that are looked at
 ENOUGH = 200_000

@@ -34,7 +34,7 @@ UNITS = (
     *("s", "ms", "us", "ns", "m", "mm", "um", "rad", "deg", "turns", "counts"),
     *("m/s", "mm/s", "rad/s", "deg/s", "rpm", "N", "mN", "N*m", "Nm", "mN*m", "A", "mA", "V"),
 )
-#: part of a log that is fitted, where one log is all there is; the rest is the check record
+#: part of a single log that is fitted; the rest is the check record
 FIT_PART = 0.6
 
 

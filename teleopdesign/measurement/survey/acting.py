@@ -13,11 +13,12 @@ import numpy as np
 from ..column_names import is_wanted, likeness, words_of
 from .content import SURE_NAME, Array, SurveyedColumn
 
-#: part of a measured current's squares, without the noise of single rows, up to which it is what
-#: was wanted: a drive's current loop and its sensor leave less than a tenth of the force. With
-#: more, something else than the wanted force acted: feedback, or a limit
+#: a measured current equals the commanded one if the difference has at most this part of its
+#: squares, without the noise of single rows: the current loop of a drive and its sensor leave less
+#: than a tenth of the force. If the difference is larger, another force than the command acted:
+#: feedback, or a limit
 FOLLOWED = 0.01
-#: rows by which a drive may come after what was wanted: with all of them it may also smooth
+#: most rows by which a drive may be late behind its command; it may also smooth over these rows
 LATE = 4
 #: words of a current, in the languages that `column_names` reads
 CURRENT = (

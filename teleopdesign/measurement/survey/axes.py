@@ -6,11 +6,11 @@ import re
 
 from ..column_names import bare_name
 
-#: what a force gains that is a field of the position's struct or joint: more than names that are
-#: alike differ by ("current" 0.98, "effort" 0.9), less than a name that says what was commanded
+#: score for a force in the same struct or joint as the position: more than the difference between
+#: similar names ("current" 0.98, "effort" 0.9), and less than that of a name of a commanded value
 BESIDE = 0.2
-#: what a force loses whose name counts another axis than the position's: as much as physics can
-#: add, for two axes that move alike explain each other's forces
+#: loss of score for a force whose name has another axis number than the position: as much as
+#: physics can add, because two axes that move alike explain each other's forces
 ANOTHER_AXIS = 1.0
 #: the field of a struct or joint, or a whole name without one; and the numbers of axes ("J2_pos")
 _STEM = re.compile(r"(?:^|[./])[^./]*$")

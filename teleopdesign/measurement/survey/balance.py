@@ -19,15 +19,16 @@ from .content import SURE_NAME, Array, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
 
-#: what a column without a telling name may leave of the squares that the motion does not explain,
-#: to be taken for the hand's force: with more, chance finds one among many columns. And how far its
-#: factor may lie off one: a sensor's calibration error of a quarter still passes
+#: a column without a clear name counts as the force of the hand if it leaves at most this part of
+#: the squares that the motion does not explain: with a higher limit, one of many columns would pass
+#: by chance. The limit also bounds the deviation of its factor from one: a calibration error of a
+#: quarter still passes
 BALANCES = 2.0 / 3.0
 FACTOR_OF_ONE = 1.25
-#: standard error, of the factor, up to which a balance says a constant: what is printed then has
-#: more than one digit that holds
+#: relative standard error of a factor up to which a balance states a constant: the printed number
+#: then has more than one valid digit
 KNOWN = 0.05
-#: beginnings of the words that say the motor's side of a gear
+#: beginnings of words for the motor side of a gear
 MOTOR = ("motor", "moteur", "モータ", "电机", "мотор")
 #: words of a force or torque: those of `column_names` without letters and words of a command, for
 #: a voltage that drives a motor balances its current too

@@ -14,10 +14,10 @@ from ..first_guess import FirstGuess
 
 Array = NDArray[np.float64]
 
-#: likeness of a name from which no physics is needed
+#: likeness of a name from which the name alone decides, without physics
 SURE_NAME = 0.75
-#: scores that differ by less are those of joints logged beside each other: what physics adds
-#: to a score is known no better
+#: columns whose scores differ by less are equally likely, as of several joints in one log: the part
+#: of a score that comes from physics is known no better
 AS_LIKELY = 0.05
 #: in place of a column's name: the log has none of that quantity
 NONE = "none"

@@ -21,7 +21,8 @@ USUAL_COUNTS = tuple(
     )
 )
 NEAR_USUAL = 0.02
-#: lengths of a turn in units of angle; fewest counts of one that are no range of a motion
+#: lengths of a turn in units of angle; fewest counts of a turn, below which a number of counts may
+#: be the range of a motion
 TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
 
 

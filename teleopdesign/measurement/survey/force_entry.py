@@ -13,7 +13,7 @@ from .acting import names_current, names_torque
 from .content import Choices, Survey
 from .remarks import torque_constant_in
 
-#: N*m/A: of a motor whose constant nothing says
+#: N*m/A: constant of a motor if nothing states it
 PLACEHOLDER = 1.0
 #: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
 PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)

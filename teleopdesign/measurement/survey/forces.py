@@ -31,11 +31,12 @@ from .content import (
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si
 
-#: part that the motion explains by chance; a column with less needs a force's name or unit
+#: part of a column that the motion may explain by chance; a column with less counts as a force only
+#: with the name or unit of a force
 CHANCE = 0.1
-#: a motor's constant that is stated is that of a current: more than any name adds to a score
+#: score for a current if a motor constant is stated: more than any name adds
 OF_CURRENT = 2.0
-#: part of the force that motion explains, from which physics says that a column is the force
+#: part of a column that the motion explains, from which physics shows that the column is the force
 DRIVES = 0.3
 
 

@@ -37,12 +37,13 @@ from .derivative import (
 )
 from .remarks import counts_per_turn_in
 
-#: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
+#: words in names of a counter's column; and the range, in steps of the column, above which whole
+#: numbers are no rounded angle
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
 MOST_ANGLE = 50
-#: correlation that a name is worth: the error of a controller follows the velocity as well
+#: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
-#: drives that report positions in turns; and words of what turns
+#: names of drives that report positions in turns; and words for rotating parts
 IN_TURNS = frozenset(("odrive", "moteus"))
 TURNING = IN_TURNS | set(
     "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
@@ -51,7 +52,8 @@ TURNING = IN_TURNS | set(
 TORQUES = frozenset(
     "torque torques drehmoment moment couple coppia tau effort トルク 力矩 扭矩 토크 момент".split()
 )
-#: part by which a velocity may differ from the position's derivative: filters, and its own rounding
+#: relative difference between a velocity and the derivative of its position that filters and
+#: rounding may cause
 SAME_TIME = 0.1
 
 

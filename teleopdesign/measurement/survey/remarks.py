@@ -10,7 +10,7 @@ from ..column_names import unit_of_text
 
 _TURN = r"(?:turn|rev|revolution|umdrehung|tour|u\b)"
 _COUNTS = r"(?:counts?|cnts?|ticks?|increments?|inkremente|ink|inc|pulses|impulse|cpr)"
-#: a number before or behind the words
+#: texts that state counts per turn: a number before or after the words
 _COUNTS_PER_TURN = (
     re.compile(rf"(\d{{2,9}})\s*{_COUNTS}\s*(?:/|per|pro|par)\s*{_TURN}", re.I),
     re.compile(rf"{_COUNTS}[ _]*(?:/|per|pro|par)[ _]*{_TURN}\w*\s*[=:]?\s*(\d{{2,9}})", re.I),

@@ -1,11 +1,13 @@
-"""Check certificates of passivity: `python checker FILE ...`, Python's library alone.
+"""A small program that checks certificates of passivity: `python checker FILE ...`.
 
-Prints the statement that a certificate proves, made from its contents, or one line why it proves
-nothing; status 1 if any is refused. Texts are read by a small parser (`algebra.py`) and never run;
-all numbers are fractions; the effort is bounded (`effort.py`). This folder imports nothing but
-Python's standard library: copied elsewhere it checks without the package. Each kind has its
-theorem and proof in its file: `storage.py`, `positive_real.py`, `absolute_stability.py`, and for
-all values within intervals `over_a_box.py`.
+For each file the program prints the statement that the certificate proves, or one line that says
+why it proves nothing. The statement is made from the contents of the certificate alone. The exit
+status is 1 if any certificate is refused. A small parser (`algebra.py`) reads the texts of a
+certificate and never runs them. All numbers are fractions. The effort is bounded (`effort.py`). The
+folder imports nothing but Python's standard library: a copy checks without the package.
+
+Each kind of certificate has its theorem and its proof in its file: `storage.py`,
+`positive_real.py`, `absolute_stability.py`, and `over_a_box.py` for all values within intervals.
 """
 
 from .check import KINDS, check, load, main, read

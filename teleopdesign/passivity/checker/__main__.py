@@ -1,4 +1,4 @@
-"""`python -m teleopdesign.passivity.checker FILE ...`, or `python checker FILE ...` for a copy."""
+"""The command `python -m teleopdesign.passivity.checker FILE ...`; of a copy: `python checker`."""
 
 import sys
 from importlib import import_module

@@ -1,9 +1,10 @@
-"""Absolute stability: Llewellyn's criterion with what it leaves out, for rational two-ports.
+"""Absolute stability of rational two-ports: Llewellyn's criterion, poles and residues included.
 
-Z(s) is a 2x2 matrix of rational functions with real coefficients, k_ij the residue of z_ij at a
-pole on the axis (at infinity: the coefficient of s), L = z12 z21. The claim: no pair of
-positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists brings it a pole in the
-open right half plane. It holds if, and but for the second line of 2 only if,
+Z(s) is a 2x2 matrix of rational functions with real coefficients. k_ij is the residue of z_ij at a
+pole on the axis (at infinity: the coefficient of s), and L = z12 z21. The claim: no pair of
+positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists gives this inverse a pole
+in the open right half plane. The claim holds if the conditions 1 to 4 hold. Each of them is also
+necessary, except the second line of 2:
 
     1. z11 and z22 are positive real;
     2. z12 and z21 have no pole in the open right half plane,
@@ -12,34 +13,47 @@ open right half plane. It holds if, and but for the second line of 2 only if,
     4. 2 k11 k22 - Re(k12 k21) >= |k12 k21| at every pole on the axis, 0 and infinity included
        (with 3, k12 k21 is real and >= 0 there, so that this is k11 k22 >= k12 k21).
 
-Llewellyn's inequality is 3. Without 4 it calls [[1, 1/s], [1/s, 1]] stable, whose pole with both
-ports free lies at s = 1: at a lossless pole the axis shows nothing.
+Condition 3 is Llewellyn's inequality. Without 4 it calls [[1, 1/s], [1/s, 1]] stable, although this
+two-port with both ports free has a pole at s = 1. At a lossless pole the axis shows nothing.
 
-Enough. With 3, L has no simple pole on the axis: L ~ l/(j u) near it, u = w - w0, and one sign of
-u makes A < |L|. At a double one, L ~ -k12 k21/u^2 while Re z_ii stay bounded, so k12 k21 > 0. Let n
-= z22 + Z2 be not identically 0: positive real, so without zero in the open half plane, and z_in =
-z11 - L/n has no pole there by 1 and 2. On the axis Re n >= Re z22, and Re(L/n) <= (|L| + Re L)/(2
-Re n), so Re z_in >= 0 by 3; where Re n = 0, 3 makes L real and <= 0, and Re(L/n) = 0. Poles of z_in
-on the axis are simple with residue >= 0: where n has a pole with residue K >= k22 > 0 it is k11 -
-k12 k21/K >= 0 by 4; where k22 = 0, L has no pole by 4, and the residue is k11, or k11 - L/n' where
-n has a zero, with n' > 0 and L <= 0 by 3 (in the limit, if z11 has a pole there). Infinity is the
-same with 1/s for s. So z_in is positive real; det = n (z_in + Z1) is zero nowhere in the open half
-plane or everywhere, and adj/det has no pole there.
-The rest: n = 0 identically makes z22 and -z22 positive real, so z22 = Z2 = 0. Then L has no pole in
-the closed half plane and is real and <= 0 on the axis, so L(s) = L(-s) = -c: a gyrator's product.
-If c > 0, z12 = -c/z21 and z21 have neither pole nor zero in the open half plane, and the inverse,
+The conditions are sufficient. By 3, L has no simple pole on the axis: near such a pole L ~ l/(j u)
+with u = w - w0, and one sign of u makes A < |L|. Near a double pole L ~ -k12 k21/u^2 while the
+Re z_ii stay bounded, so k12 k21 > 0.
+
+First case: n = z22 + Z2 is not identically 0. It is positive real, so it has no zero in the open
+half plane, and by 1 and 2 z_in = z11 - L/n has no pole there. On the axis Re n >= Re z22 and
+Re(L/n) <= (|L| + Re L)/(2 Re n), so Re z_in >= 0 by 3. Where Re n = 0, L is real and <= 0 by 3, and
+Re(L/n) = 0. The poles of z_in on the axis are simple with residue >= 0:
+
+- where n has a pole with residue K >= k22 > 0, the residue is k11 - k12 k21/K >= 0 by 4;
+- where k22 = 0, L has no pole by 4, and the residue is k11, or k11 - L/n' where n has a zero, with
+  n' > 0 and L <= 0 by 3 (in the limit, if z11 has a pole there).
+
+Infinity is the same with 1/s for s. So z_in is positive real, det = n (z_in + Z1) is zero nowhere
+in the open half plane or everywhere, and adj/det has no pole there.
+
+Second case: n = 0 identically. Then z22 and -z22 are positive real, so z22 = Z2 = 0. L has no pole
+in the closed half plane and is real and <= 0 on the axis, so L(s) = L(-s) = -c, as of a gyrator. If
+c > 0, z12 = -c/z21 and z21 have neither pole nor zero in the open half plane, and the inverse,
 [[0, 1/z21], [1/z12, (z11 + Z1)/c]], has no pole there. If c = 0, or z_in + Z1 = 0 identically, no
 inverse exists: velocities are not determined (a free port without mass), and nothing is claimed.
-With port 2 clamped, z11 + Z1 is left, positive real by 1.
 
-Needed. 1: a port whose z_ii is not positive real oscillates with the other one clamped. 2: a pole
-s0 of L in the open half plane is a pole of z_in, which takes every value near it; if z12 has a pole
-there and L has none, the inverse has it. 3: where it fails at w, a reactance and a damper at port 2
-make Re z_in < 0 beside j w. 4: where it fails at j w0, s = j w0 + d and Z2 of the size c/d, c
-small, lead to z_in ~ (k11 - k12 k21/(k22 + c))/d < 0. Then Z1 = -z_in(s), which a damper with a
-mass or a spring can be wherever abs(arg) <= arg s, so near the axis.
-Where 2 fails by a multiple pole on the axis alone, what passes through grows like time or faster,
-but no pole need lie in the open half plane: then nothing is claimed.
+With port 2 clamped, z11 + Z1 remains, which is positive real by 1.
+
+The conditions are necessary.
+
+1: a port whose z_ii is not positive real oscillates while the other port is clamped.
+2: a pole s0 of L in the open half plane is a pole of z_in, so z_in takes every value near s0. If
+z12 has a pole there and L has none, the inverse has this pole.
+3: where it fails at w, a reactance and a damper at port 2 make Re z_in < 0 beside j w.
+4: where it fails at j w0, let s = j w0 + d and Z2 of the size c/d, c small. Then
+z_in ~ (k11 - k12 k21/(k22 + c))/d < 0.
+
+In 3 and 4 the termination is Z1 = -z_in(s). A damper with a mass or a spring takes every value with
+abs(arg) <= arg s. Near the axis, arg s is near 90 degrees.
+
+If 2 fails by a multiple pole on the axis alone, the signal that passes through grows like time or
+faster, but the open half plane need not contain a pole. Then nothing is claimed.
 """
 
 from __future__ import annotations
@@ -73,9 +87,9 @@ from .polynomials import (
     without_zero,
 )
 
-#: numerator and denominator, coprime
+#: numerator and denominator of a rational function, coprime
 Ratio = tuple[Polynomial, Polynomial]
-#: z11, z12, z21, z22
+#: entries of a two-port: z11, z12, z21, z22
 Entries = tuple[Ratio, Ratio, Ratio, Ratio]
 _NAMES = ("z11", "z12", "z21", "z22")
 _ONE = [Fraction(1)]
@@ -83,7 +97,7 @@ _ONE = [Fraction(1)]
 
 @dataclass(frozen=True)
 class Condition:
-    """One of the conditions: what it asks for, whether it holds, where it fails ("": unknown)."""
+    """One of the conditions: its text, whether it holds, and where it fails ("": not known)."""
 
     name: str
     holds: bool
@@ -94,7 +108,7 @@ class Condition:
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
-    """The statement of a certificate of this kind; Refused where a condition does not hold."""
+    """The statement that a certificate of this kind proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, rows, text = read_matrix(c["impedance"], (2,))
     one = Quotient(algebra.number(1), {})
@@ -114,7 +128,7 @@ def state_absolute_stability(c: dict[str, Any]) -> str:
 
 
 def conditions(z: Entries) -> tuple[Condition, ...]:
-    """All conditions of the claim, each decided in rational arithmetic.
+    """All conditions of absolute stability, each decided in rational arithmetic.
 
     z: coprime numerators and denominators of z11, z12, z21, z22
     """
@@ -128,7 +142,7 @@ def conditions(z: Entries) -> tuple[Condition, ...]:
 
 
 def coprime(p: Polynomial, q: Polynomial) -> Ratio:
-    """p/q without common factors; q monic, not zero."""
+    """p/q without common factors, with a monic denominator; q: not zero."""
     common = greatest_common_divisor(p, q)
     above, below = divide(p, common)[0], divide(q, common)[0]
     return [c / below[-1] for c in above], [c / below[-1] for c in below]
@@ -150,7 +164,7 @@ def _without_growth(name: str, z: Ratio) -> Condition:
 
 
 def _simple_poles(name: str, z: Ratio) -> Condition:
-    """On the axis and at infinity."""
+    """The condition that all poles of z on the axis and at infinity are simple."""
     p, q = z
     multiple = greatest_common_divisor(q, derivative(q))
     even, odd = halves(multiple)
@@ -166,7 +180,7 @@ def _simple_poles(name: str, z: Ratio) -> Condition:
 
 
 def _inequality(z: Entries) -> Iterator[Condition]:
-    """Condition 3 as two polynomials in x = w^2, times denominators that are never negative."""
+    """Condition 3 as signs of two polynomials in x = w^2, times denominators >= 0."""
     difference, twice = llewellyn(z)
     for name, p in (
         ("2 Re z11 Re z22 - Re z12 z21 >= 0 on the axis", difference),
@@ -177,7 +191,7 @@ def _inequality(z: Entries) -> Iterator[Condition]:
 
 
 def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
-    """A and A^2 - abs(z12 z21)^2 in x = w^2, times squares that are never negative."""
+    """A and A^2 - abs(z12 z21)^2 as polynomials in x = w^2, times factors that are >= 0."""
     loop = coprime(multiply(z[1][0], z[2][0]), multiply(z[1][1], z[2][1]))
     (r1, d1), (r2, d2) = (_real_ratio(one) for one in (z[0], z[3]))
     re, d = real_part(*loop), real_part(loop[1], loop[1])
@@ -187,7 +201,7 @@ def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
 
 
 def _real_ratio(z: Ratio) -> tuple[Polynomial, Polynomial]:
-    """Re z = r/d in x, without common factors if d is then still nowhere negative."""
+    """Re z = r/d in x = w^2, d >= 0; common factors are divided out where d stays >= 0."""
     r, d = real_part(*z), real_part(z[1], z[1])
     common = greatest_common_divisor(r, d)
     short = divide(d, common)[0]
@@ -195,14 +209,14 @@ def _real_ratio(z: Ratio) -> tuple[Polynomial, Polynomial]:
 
 
 def _describe_place(p: Polynomial) -> str:
-    """About where p < 0 begins, in rad/s."""
+    """Text that names the lowest frequency, rad/s, at which p(x) < 0 begins; approximate."""
     odd = odd_part(p)
     x = first_root([Fraction(-1)], odd)
     return "at every frequency" if isnan(x) else f"beside {x**0.5:.4g} rad/s"
 
 
 def _residues(z: Entries) -> Iterator[Condition]:
-    """Condition 4: at 0, at infinity, and at the poles j w that z12 and z21 share."""
+    """Condition 4 at s = 0, at infinity, and at the poles j w that z12 and z21 share."""
     name = "the residues have 2 k11 k22 - Re k12 k21 >= abs(k12 k21)"
     yield Condition(f"{name} at s = 0", _is_balanced([_residue_at_zero(one) for one in z]))
     yield Condition(f"{name} at infinity", _is_balanced([_residue_at_infinity(one) for one in z]))
@@ -222,7 +236,7 @@ def _residues(z: Entries) -> Iterator[Condition]:
 
 
 def residue_tests(z: Entries, *, shared: bool) -> tuple[Polynomial, Polynomial]:
-    """B and B^2 - C^2 in x = w^2, >= 0 at the poles that meet condition 4.
+    """B and B^2 - C^2 in x = w^2: both are >= 0 at a pole if and only if it meets condition 4.
 
     B = 2 k11 k22 - Re k12 k21 and C = abs(k12 k21), both times the same positive number, with
     k = p/q' at the simple zeros j w of q. shared: whether z11 and z22 have that pole as well
@@ -240,18 +254,18 @@ def residue_tests(z: Entries, *, shared: bool) -> tuple[Polynomial, Polynomial]:
 
 
 def axis_poles(q: Polynomial) -> Polynomial:
-    """Polynomial in x whose roots x > 0 are w^2 of the zeros j w of q."""
+    """Polynomial in x whose roots x > 0 are the w^2 of all zeros j w of q."""
     return without_zero(greatest_common_divisor(*halves(q)))
 
 
 def _residue_at_zero(z: Ratio) -> Fraction:
-    """Residue at s = 0; 0 where no simple pole is."""
+    """Residue of z at s = 0; 0 where z has no simple pole there."""
     p, q = z
     return value(p, 0) / q[1] if q[0] == 0 and q[1] != 0 else Fraction(0)
 
 
 def _residue_at_infinity(z: Ratio) -> Fraction:
-    """Coefficient of s; 0 where z does not grow like s."""
+    """Residue of z at infinity, the coefficient of s; 0 where z does not grow like s."""
     p, q = z
     return p[-1] / q[-1] if len(p) == len(q) + 1 else Fraction(0)
 

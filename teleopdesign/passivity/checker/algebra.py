@@ -12,24 +12,25 @@ from operator import add, sub
 
 from .effort import DEGREE, DIGITS, NAMES, NESTING, Refused, longest, need, spend_from
 
-#: exponents of the names -> coefficient, not 0; {} is 0
+#: a polynomial: exponents of the names -> coefficient, not 0; {} is the zero polynomial
 Poly = dict[tuple[int, ...], Fraction]
 _TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?)|([A-Za-z_]\w*)|(\*\*|[-+*/()]))", re.ASCII)
 
 
 @dataclass(frozen=True)
 class Quotient:
-    """above / product of base^power; the bases are not zero."""
+    """above over the product of base^power; below: name of a base (not zero) -> power."""
 
     above: Poly
     below: Mapping[str, int]
 
 
 class Algebra:
-    """Exact rational functions of some names, within a bounded effort.
+    """Arithmetic of exact rational functions of some names, with a bounded effort.
 
-    put: what stands for a name, other than itself;  left: the effort that is left, shared
-    bases: what may be divided by, by name; with `divides` every divisor becomes one
+    left: effort that is left, a list of one number that others may share
+    bases: polynomials that may be divisors, by name; with `divides` every divisor becomes a base
+    put: polynomials that replace names
     """
 
     def __init__(self, names: list[str], left: list[int], *, divides: bool = False) -> None:
@@ -51,7 +52,7 @@ class Algebra:
         return {tuple(int(n == name) for n in self.names): Fraction(1)}
 
     def weigh(self, a: Poly, b: Poly) -> int:
-        """Effort of one product of coefficients: 1, but quadratic in their length for long ones."""
+        """Effort of a product of coefficients: 1, or by the product of lengths for long ones."""
         return 1 + (longest(a.values()) * longest(b.values()) >> 17)
 
     def plus(self, a: Poly, b: Poly, factor: Fraction | int = 1) -> Poly:
@@ -80,7 +81,7 @@ class Algebra:
         return result
 
     def divided(self, a: Poly, b: Poly) -> tuple[Poly, Poly]:
-        """(quotient, rest) by the highest power of b; with several names: rest {} iff b divides."""
+        """(quotient, rest) by the highest term of b; the rest is {} if and only if b divides a."""
         quotient: Poly = {}
         high = max(b)
         while a and min(map(sub, max(a), high), default=0) >= 0:
@@ -90,7 +91,7 @@ class Algebra:
         return quotient, a
 
     def invert(self, a: Poly) -> Quotient:
-        """1/a for a product of bases and a number other than 0."""
+        """1/a, where a is a product of bases and a number other than 0; else raises Refused."""
         below: dict[str, int] = {}
         for name, base in self.bases.items():
             while a and base and {*a} != {self.unit} != {*base}:
@@ -115,7 +116,7 @@ class Algebra:
         return Quotient(self.plus(*above, factor), below)
 
     def over(self, a: Quotient, below: Mapping[str, int], present: Mapping[str, int]) -> Poly:
-        """a.above times the bases of `below` that are missing in `present`."""
+        """a.above times the powers of bases that `below` has more than `present`."""
         above = a.above
         for n in below:
             if below[n] > present.get(n, 0):
@@ -123,12 +124,12 @@ class Algebra:
         return above
 
     def read(self, text: object) -> Quotient:
-        """The expression of a text: + - * / ** ( ), numbers and names."""
+        """The rational function of a text (+ - * / ** ( ), numbers, names), which is never run."""
         need(isinstance(text, str), "expected a text where there is none")
         return _Reader(self, str(text)).whole()
 
     def value(self, p: Poly, at: Mapping[str, Fraction]) -> Fraction:
-        """At values of the names that it uses."""
+        """Value of a polynomial; at: value of each name that the polynomial uses."""
         numbers = [at.get(n, Fraction(0)) for n in self.names]
         size = max(max(map(sum, p), default=0), 1) * longest([*numbers, *p.values()])
         self.spend(len(p) * (1 + (size * size >> 17)))
@@ -136,13 +137,13 @@ class Algebra:
         return sum(terms, Fraction(0))
 
     def uses(self, *quotients: Quotient) -> set[str]:
-        """The names that occur."""
+        """Names that occur in the quotients, denominators included."""
         polys = [p for q in quotients for p in (q.above, *(self.bases[n] for n in q.below))]
         return {self.names[i] for p in polys for k in p for i, power in enumerate(k) if power}
 
 
 class _Reader:
-    """Recursive descent: sum, product, power, atom."""
+    """Parser of one text by recursive descent: sum, product, power, atom."""
 
     def __init__(self, algebra: Algebra, text: str) -> None:
         self.algebra, self.text, at = algebra, text, 0
@@ -158,7 +159,7 @@ class _Reader:
         self.tokens.reverse()
 
     def next(self, *expected: str) -> str:
-        """The next token if it is one of these, and taken; "" if not."""
+        """Remove and return the next token if it is one of `expected`; else return ""."""
         return self.tokens.pop() if self.tokens and self.tokens[-1] in expected else ""
 
     def whole(self) -> Quotient:

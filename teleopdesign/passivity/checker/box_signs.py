@@ -1,10 +1,12 @@
-"""Signs of polynomials for all x >= 0 and all values within a box: Bernstein coefficients.
+"""Signs of polynomials for all x >= 0 and all values within a box, by Bernstein coefficients.
 
-Over [0, 1]^n a polynomial lies between the least and the greatest of its Bernstein coefficients,
-and at corners it is the coefficient there. Where that leaves a sign open, the cell is halved (de
-Casteljau) and both halves are asked. x = unit t/(1 - t), and the polynomial is multiplied by (1 -
-t)^d > 0: t = 1 is its highest coefficient. All numbers are integers, multiplied by what is positive
-and common to a polynomial: nothing is rounded, floats choose where to halve and decide nothing.
+Over [0, 1]^n a polynomial lies between the least and the greatest of its Bernstein coefficients. At
+each corner its value is the coefficient of this corner. If these bounds leave a sign open, the cell
+is halved (de Casteljau) and both halves are tested. The variable x >= 0 is x = unit t/(1 - t), and
+the polynomial is multiplied by (1 - t)^d > 0, so at t = 1 it is the highest coefficient.
+
+Each polynomial is multiplied by a positive number that makes all coefficients integers, so nothing
+is rounded. Floats choose only where to halve.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from typing import Literal
 from .algebra import Poly
 from .effort import BITS, longest, need, spend_from
 
-#: coefficients of one polynomial: a cell of more takes seconds
+#: most coefficients of one polynomial: one cell with more of them takes seconds
 COEFFICIENTS = 20_000
 Ends = Sequence[tuple[Fraction, Fraction]]
 Answer = Literal["yes", "no", "halve"]
@@ -27,13 +29,16 @@ Answer = Literal["yes", "no", "halve"]
 
 @dataclass(frozen=True)
 class BoxPart:
-    """Bernstein coefficients, the last variable the fastest; shape: how many of each variable."""
+    """Bernstein coefficients of a polynomial over a part of the box; shape: along each variable.
+
+    flat: all coefficients in one list; the index of the last variable runs fastest
+    """
 
     shape: tuple[int, ...]
     flat: list[int]
 
     def corners(self) -> list[int]:
-        """Values at all corners."""
+        """Values of the polynomial at all corners of this part."""
         values = []
         for at in product(*((0, n - 1) for n in self.shape)):
             place = 0
@@ -43,7 +48,7 @@ class BoxPart:
         return values
 
     def halved(self, axis: int) -> tuple[BoxPart, BoxPart]:
-        """Over both halves of that variable, times 2^d."""
+        """Coefficients over both halves of the range of one variable, times 2^d > 0."""
         left, right = list(self.flat), list(self.flat)
         d = self.shape[axis] - 1
         for line in _lines(self.shape, axis):
@@ -54,7 +59,7 @@ class BoxPart:
         return BoxPart(self.shape, left), BoxPart(self.shape, right)
 
     def spread(self, axis: int) -> float:
-        """Largest step along a variable over the largest coefficient, times the degree."""
+        """Largest change between neighbours, over the largest coefficient, times the degree."""
         size = max(map(abs, self.flat)) or 1
         lines = _lines(self.shape, axis)
         steps = (
@@ -69,7 +74,7 @@ def are_non_negative(polys: Sequence[Poly], ends: Ends, left: list[int]) -> bool
 
 
 def are_apart_from_zero(polys: Sequence[Poly], ends: Ends, left: list[int]) -> bool:
-    """Whether it is shown that polynomials (one, or two) are nowhere zero together."""
+    """Whether polynomials (one, or two) are shown to have no common zero for all x and values."""
     kept = [p for p in polys if p]
     return bool(kept) and _holds(kept, ends, left, _apart_from_zero)
 
@@ -104,7 +109,7 @@ def _holds(
 
 
 def _spend_for_cell(p: Poly, degrees: Sequence[int], ends: Ends, left: list[int]) -> None:
-    """What it costs to make the first cell: sums over powers of the ends, along each variable."""
+    """Subtract the effort of making the first cell: sums over powers of the ends per variable."""
     highest = max(degrees)
     bits = longest(p.values()) + highest * (1 + longest(x for pair in ends for x in pair))
     need(bits <= BITS, "a number is too long")
@@ -120,7 +125,7 @@ def _non_negative(cell: Sequence[BoxPart]) -> Answer:
 
 
 def _apart_from_zero(cell: Sequence[BoxPart]) -> Answer:
-    """Whether a line through zero has all coefficients strictly on one side."""
+    """No common zero: all pairs of coefficients lie strictly on one side of a line through 0."""
     if any(min(one.flat) > 0 or max(one.flat) < 0 for one in cell):
         return "yes"
     corners = list(zip(*(one.corners() for one in cell), strict=True))
@@ -138,14 +143,14 @@ def _apart_from_zero(cell: Sequence[BoxPart]) -> Answer:
 
 
 def _lines(shape: tuple[int, ...], axis: int) -> list[list[int]]:
-    """Places of coefficients that differ in one variable alone, line by line."""
+    """Indices in the flat list along one variable, a list for each line of coefficients."""
     stride, n = prod(shape[axis + 1 :]), shape[axis]
     starts = (i for i in range(prod(shape)) if i // stride % n == 0)
     return [[start + k * stride for k in range(n)] for start in starts]
 
 
 def _unit(polys: Sequence[Poly]) -> Fraction:
-    """A power of 4 where powers of x, summed over all values, are about alike: any would do."""
+    """A power of 4 at which the powers of x have similar sizes; any unit > 0 would be correct."""
     sizes: dict[int, Fraction] = {}
     for p in polys:
         for k, c in p.items():
@@ -160,7 +165,7 @@ def _unit(polys: Sequence[Poly]) -> Fraction:
 
 
 def _cell(p: Poly, degrees: Sequence[int], ends: Ends, unit: Fraction) -> BoxPart:
-    """Coefficients over t from 0 to 1 and over the whole box, as integers."""
+    """Bernstein coefficients over 0 <= t <= 1 and the whole box, as integers."""
     shape = tuple(d + 1 for d in degrees)
     flat = [Fraction(0)] * prod(shape)
     for powers, c in p.items():

@@ -1,4 +1,4 @@
-"""What a certificate proves, whatever its kind: the digest, then the rules of that kind."""
+"""Check a certificate of any kind: first its digest, then the rules of its kind."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .over_a_box import state_stability
 from .positive_real import state_positive_real
 from .storage import Storage
 
-#: kinds that are decided from the fields alone; a storage brings its proofs along
+#: kinds that are decided from the fields alone; a certificate of kind "storage" contains its proofs
 _DECIDED: dict[str, Callable[[dict[str, Any]], str]] = {
     "positive real": state_positive_real,
     "absolute stability": state_absolute_stability,
@@ -30,7 +30,7 @@ KINDS = ("storage", *_DECIDED)
 
 
 def read(content: object) -> tuple[dict[str, Any], Storage | None]:
-    """A certificate without its proofs: its fields, and what it means if it is a storage."""
+    """Fields of a certificate, and its meaning if its kind is "storage"; no proof is checked."""
     c: dict[str, Any] = expect(dict, content, "certificate")
     for field in ("kind", "title", "digest"):
         expect(str, c.get(field), field)
@@ -46,7 +46,7 @@ def read(content: object) -> tuple[dict[str, Any], Storage | None]:
 
 
 def check(content: object) -> str:
-    """The statement that a certificate (data as read from JSON) proves; Refused where none."""
+    """The statement that a certificate (data as read from JSON) proves; raises Refused if none."""
     c, storage = read(content)
     if storage is None:
         return _DECIDED[c["kind"]](c)
@@ -55,7 +55,7 @@ def check(content: object) -> str:
 
 
 def load(path: str) -> object:
-    """The data of a JSON file; Refused where it is none."""
+    """The data of a JSON file; raises Refused: not readable, too long, no JSON, a field twice."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         need(len(dict(pairs)) == len(pairs), "a field twice")
@@ -74,7 +74,7 @@ def load(path: str) -> object:
 
 
 def main(paths: list[str]) -> int:
-    """Print a line for each file; 1 if any proves nothing, 2 without files."""
+    """Print one line for each file; returns 0 if all are proved, 1 if not, 2 without files."""
     status = 0 if paths else 2
     for path in paths:
         try:

@@ -1,28 +1,38 @@
-"""Certificates over a box: a claim for all values of some names within intervals, decided alone.
+"""Certificates over a box: a claim that holds for all values of some names within intervals.
 
-Fields: `box` (name -> [low, high], fractions, low < high), `squares` (polynomials P in x and the
-names: what P^2 divides keeps its sign without it), and what is claimed of, in s and the names:
+Each certificate has the fields `box` (name -> [low, high], fractions, low < high) and `squares`
+(polynomials P in x and the names; dividing a polynomial by P^2 does not change its sign). Other
+fields hold polynomials in s and the names. The checker decides each kind from the fields alone.
 
-"stable over a box": a polynomial. It has no root with Re s >= 0. For p(j w) = a(w^2) + j w b(w^2):
-the highest coefficient, and the constant one, are zero nowhere in the box; a and b are nowhere zero
-together for x = w^2 >= 0; and at the middle of the box all roots have Re s < 0 (Routh). The box is
-connected, roots move continuously, none comes from infinity, and none meets the axis.
+"stable over a box": a polynomial p has no root with Re s >= 0, anywhere in the box. The checker
+shows, with p(j w) = a(w^2) + j w b(w^2):
 
-"positive real over a box", one port: Z = n/d, some coefficient of d nowhere zero. With a scale c >
-0, n + c d is stable in the sense above and Re n conj(d) >= 0 on the axis. So (Z - c)/(Z + c) = (n -
-c d)/(n + c d) is analytic for Re s >= 0 and at most 1 on the axis, hence for Re s > 0 (maximum
-principle; bounded on the axis, it is proper). There Re Z >= 0.
+1. the highest coefficient and the constant coefficient are zero nowhere in the box;
+2. a and b have no common zero with x = w^2 >= 0, anywhere in the box;
+3. in the middle of the box all roots have Re s < 0 (Routh).
 
-Two ports: Z = N/d, d = r or s r with r stable in the sense above, and no numerator of a power above
-that of d plus 1. Poles on the axis are then those at s = 0 and infinity, simple, with residues
-n_ij(0)/r(0) and those of s at infinity. r(0) and d's highest coefficient have one sign everywhere,
-that of the middle, by which n and d are multiplied. Positive real: both residue matrices are
-symmetric with entries k11, k22 and determinant >= 0, and Z + Z^H is positive semidefinite on the
-axis. Z less its poles on the axis is analytic and bounded for Re s >= 0, so that v^H (Z + Z^H) v,
-harmonic there, is at least 0 (maximum principle); its poles add to that. Absolute stability: the
-conditions of `absolute_stability.py` at each point of the box: residues k11, k22 >= 0 and k11 k22
->= k12 k21, Re z11, Re z22 >= 0, A = 2 Re z11 Re z22 - Re L >= 0 and A^2 >= abs(L)^2, L = z12 z21,
-on the axis. Where d is zero in the limit of x = w^2, the products stay >= 0: they are polynomials.
+The box is connected and roots move continuously. By 1 no root comes from infinity, and by 1 and 2
+no root meets the axis. So all roots stay on the left.
+
+"positive real over a box", one port: Z = n/d, and some coefficient of d is nowhere zero. For a
+scale c > 0, n + c d is stable over the box, and Re n conj(d) >= 0 on the axis. So (Z - c)/(Z + c) =
+(n - c d)/(n + c d) is analytic for Re s >= 0, and on the axis its size is at most 1. This function
+is bounded on the axis, so it is proper, and by the maximum principle its size is at most 1 for
+Re s > 0. So Re Z >= 0 there.
+
+"positive real over a box", two ports: Z = N/d with d = r or d = s r, r stable over the box, and no
+numerator has a degree above that of d plus 1. So the poles on the axis lie at s = 0 and at
+infinity and are simple. Their residues are n_ij(0)/r(0) and the coefficients of s at infinity. r(0)
+and the highest coefficient of d have one sign in the whole box. N and d are multiplied by the sign
+in the middle. The checker shows that both residue matrices are symmetric with k11, k22 and the
+determinant >= 0, and that Z + Z^H is positive semidefinite on the axis. Z without its poles on the
+axis is analytic and bounded for Re s >= 0, so v^H (Z + Z^H) v is harmonic there, and by the maximum
+principle it is >= 0. The poles add a term >= 0.
+
+"absolute stability over a box": the conditions of `absolute_stability.py` hold at each point of the
+box. With L = z12 z21 the checker shows for the residues k11, k22 >= 0 and k11 k22 >= k12 k21, and
+on the axis Re z11, Re z22 >= 0, A = 2 Re z11 Re z22 - Re L >= 0 and A^2 >= abs(L)^2. All these are
+tested as polynomials, so they hold in the limit where d is zero, too.
 """
 
 from __future__ import annotations
@@ -37,12 +47,12 @@ from .effort import EFFORT, need
 from .fields import expect, expect_fields, flat, read_number, read_words
 from .polynomials import coefficient_list, is_hurwitz
 
-#: values that may vary: effort grows with a power of their number
+#: most names in a box: the effort grows with a power of their number
 _MOST_VALUES = 8
 
 
 class SignsOverBox:
-    """The names of a certificate, their intervals, and what is asked of polynomials over them."""
+    """Tests of signs of polynomials in s (or x) and the names over the box of a certificate."""
 
     def __init__(self, c: dict[str, Any]) -> None:
         box = expect(dict, c["box"], "box")
@@ -57,14 +67,15 @@ class SignsOverBox:
 
     @property
     def left(self) -> list[int]:
+        """Effort that is left, a list of one number."""
         return self.algebra.left
 
     def read(self, text: Any) -> Poly:
-        """A polynomial in s and the names."""
+        """A polynomial in s and the names, from its text; raises Refused for another text."""
         return self.algebra.read(text).above
 
     def middle(self, p: Poly) -> list[Fraction]:
-        """Coefficients in s in the middle of the box, lowest first."""
+        """Coefficients of s of the polynomial in the middle of the box, lowest power first."""
         at = {n: (a + b) / 2 for n, (a, b) in zip(self.names, self.ends, strict=True)}
         powers: dict[tuple[int, ...], Poly] = {}
         for k, coefficient in p.items():
@@ -72,7 +83,7 @@ class SignsOverBox:
         return coefficient_list({k: self.algebra.value(q, at) for k, q in powers.items()})
 
     def is_stable(self, p: Poly) -> bool:
-        """Whether no root has Re s >= 0, anywhere in the box."""
+        """Whether it is shown that no root of p has Re s >= 0, anywhere in the box."""
         n = _degree(p)
         if not p or not is_hurwitz(self.middle(p)):
             return False
@@ -82,16 +93,16 @@ class SignsOverBox:
         return n == 0 or are_apart_from_zero(_halves(p), self.ends, self.left)
 
     def is_nowhere_zero(self, p: Poly) -> bool:
-        """Whether some coefficient is zero nowhere in the box: p is then no zero polynomial."""
+        """Whether some coefficient of p is zero nowhere in the box, so that p is nowhere 0."""
         parts = (_coefficient(p, k) for k in range(_degree(p) + 1))
         return any(are_apart_from_zero((q,), self.ends, self.left) for q in parts)
 
     def are_non_negative(self, polys: Sequence[Poly], weight: Poly | None = None) -> bool:
-        """Whether all are >= 0 for x >= 0, anywhere in the box; weight: >= 0 there itself."""
+        """Whether all are shown >= 0 for x >= 0 in the box; weight: a divisor that is >= 0."""
         return are_non_negative([self._short(p, weight) for p in polys], self.ends, self.left)
 
     def _short(self, p: Poly, weight: Poly | None) -> Poly:
-        """Without factors that are >= 0."""
+        """The polynomial p divided by `weight` and by squares, as often as they divide p."""
         factors = [self.algebra.times(q, q) for q in self.squares]
         for factor in [*factors, *([weight] if weight else [])]:
             while p and factor and max(map(sum, factor)) > 0:
@@ -114,7 +125,7 @@ class SignsOverBox:
 
 
 def state_stability(c: dict[str, Any]) -> str:
-    """The statement of a certificate that a polynomial is stable; Refused where it is not shown."""
+    """The statement that a polynomial is stable over a box; raises Refused where not shown."""
     expect_fields(c, "kind", "title", "digest", "box", "squares", "polynomial")
     box = SignsOverBox(c)
     need(box.is_stable(box.read(c["polynomial"])), "not shown to be stable over the box")
@@ -122,7 +133,7 @@ def state_stability(c: dict[str, Any]) -> str:
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
-    """The statement of a certificate that Z is positive real; Refused where it is not shown."""
+    """The statement that Z is positive real over a box; raises Refused where it is not shown."""
     box, n, d, text = _impedance(c)
     scale = read_number(c["scale"], "scale")
     need(scale > 0, "scale: not > 0")
@@ -137,7 +148,7 @@ def state_positive_real(c: dict[str, Any]) -> str:
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
-    """The statement of a certificate of absolute stability; Refused where it is not shown."""
+    """The statement that Z is absolutely stable over a box; raises Refused where not shown."""
     box, n, d, text = _impedance(c)
     need(len(n) == 4, "numerators: not 2x2")
     need(_is_absolutely_stable(box, n, d), "not shown to be absolutely stable over the box")
@@ -182,7 +193,7 @@ def _is_absolutely_stable(box: SignsOverBox, n: list[Poly], d: Poly) -> bool:
 
 
 def _is_balanced(box: SignsOverBox, residues: list[list[Poly]]) -> bool:
-    """Whether k11, k22 >= 0 and k11 k22 >= k12 k21, all over the box."""
+    """Whether all residue matrices are shown to have k11, k22 >= 0 and k11 k22 >= k12 k21."""
     plus, times = box.algebra.plus, box.algebra.times
     for k11, k12, k21, k22 in residues:
         minor = plus(times(k11, k22), times(k12, k21), -1)
@@ -194,9 +205,10 @@ def _is_balanced(box: SignsOverBox, residues: list[list[Poly]]) -> bool:
 def _scale_signs(
     box: SignsOverBox, n: list[Poly], d: Poly
 ) -> tuple[list[Poly], Poly, list[list[Poly]]] | None:
-    """N and d with d's highest coefficient > 0, and residues at infinity and 0, times a number > 0.
+    """N, d (highest coefficient > 0), and residues at infinity and at 0, times a number > 0.
 
-    None where d has, or may have, another zero than a simple one at 0 for Re s >= 0
+    None where an entry grows faster than s, or where it is not shown that d has no zero with
+    Re s >= 0 but a simple one at 0.
     """
     has_zero = not _coefficient(d, 0)
     rest = {(k[0] - 1, *k[1:]): c for k, c in d.items()} if has_zero else d
@@ -212,7 +224,7 @@ def _scale_signs(
 
 
 def _impedance(c: dict[str, Any]) -> tuple[SignsOverBox, list[Poly], Poly, str]:
-    """The box, numerators row by row, the denominator, and the text of Z."""
+    """The box, the numerators row by row, the denominator, and the text of Z of a certificate."""
     fields = ("kind", "title", "digest", "box", "squares", "numerators", "denominator")
     expect_fields(c, *fields, *(["scale"] if c["kind"].startswith("positive") else []))
     rows = [expect(list, r, "numerators") for r in expect(list, c["numerators"], "numerators")]
@@ -237,7 +249,7 @@ def _degree(p: Poly) -> int:
 
 
 def _coefficient(p: Poly, power: int) -> Poly:
-    """Coefficient of a power of s, as a polynomial of the same names."""
+    """Coefficient of that power of s, as a polynomial in the same names."""
     return {(0, *k[1:]): c for k, c in p.items() if k[0] == power}
 
 

@@ -1,7 +1,8 @@
 """Polynomials as lists of Fractions, lowest power first: exact answers without any library.
 
-The zero polynomial is []. On the axis s = j w polynomials in s become polynomials in x = w^2. What
-is spent on products counts where `effort.bounded` says so.
+The zero polynomial is []. On the imaginary axis s = j w, real and imaginary parts of a polynomial
+in s are polynomials in x = w^2 (the imaginary part times w). Inside `effort.bound_effort` each
+product takes from a bounded effort.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ from .effort import spend
 from .positive_roots import are_surely_coprime, has_positive_root, variations
 
 Polynomial = list[Fraction]
-#: relative error of a root that is written down for people; no decision rests on it
+#: relative error of a root in a text for people; no decision depends on it
 _SHOWN = Fraction(1, 10**4)
 
 
 def polynomial(coefficients: Iterable[Fraction | int]) -> Polynomial:
-    """From coefficients, lowest power first; zeros at the top are dropped."""
+    """A polynomial from its coefficients, lowest power first, without leading zeros."""
     p = [Fraction(c) for c in coefficients]
     while p and p[-1] == 0:
         p.pop()
@@ -27,7 +28,7 @@ def polynomial(coefficients: Iterable[Fraction | int]) -> Polynomial:
 
 
 def coefficient_list(powers: Mapping[tuple[int, ...], Fraction]) -> Polynomial:
-    """From (power,) -> coefficient."""
+    """A polynomial from a mapping (power,) -> coefficient."""
     highest = max(powers, default=(-1,))[0]
     return polynomial(powers.get((k,), Fraction(0)) for k in range(highest + 1))
 
@@ -53,7 +54,7 @@ def multiply(*factors: Polynomial) -> Polynomial:
 
 
 def divide(p: Polynomial, q: Polynomial) -> tuple[Polynomial, Polynomial]:
-    """(quotient, remainder); q is not zero."""
+    """(quotient, remainder) of p over q; q: not zero."""
     rest, quotient = list(p), [Fraction(0)] * max(len(p) - len(q) + 1, 0)
     for k in range(len(p) - len(q), -1, -1):
         ratio = quotient[k] = rest[k + len(q) - 1] / q[-1]
@@ -65,7 +66,7 @@ def divide(p: Polynomial, q: Polynomial) -> tuple[Polynomial, Polynomial]:
 
 
 def small(p: Polynomial) -> Polynomial:
-    """p times a positive number that makes its coefficients coprime integers: same signs."""
+    """p times a positive number that makes all coefficients coprime integers; signs remain."""
     if not p:
         return p
     spend(len(p), p, p)
@@ -76,7 +77,7 @@ def small(p: Polynomial) -> Polynomial:
 
 
 def greatest_common_divisor(p: Polynomial, q: Polynomial) -> Polynomial:
-    """Monic, by Euclid's scheme; [] where both are zero."""
+    """Greatest common divisor, monic, by Euclid's scheme; [] where both are zero."""
     if p and q and are_surely_coprime(p, q):
         return [Fraction(1)]
     while q:
@@ -130,15 +131,16 @@ def is_hurwitz(p: Polynomial) -> bool:
 def is_positive_real(p: Polynomial, q: Polynomial) -> bool:
     """Whether p/q, coprime, is positive real: p + q is Hurwitz, and Re p conj q >= 0 on the axis.
 
-    For then (p - q)/(p + q) is bounded by 1 in the right half plane; improper p/q too.
+    Then (p - q)/(p + q) is bounded by 1 in the right half plane. Improper p/q are allowed.
     """
     return is_hurwitz(add(p, q)) and is_non_negative(real_part(p, q))
 
 
 def is_free_of_growth(q: Polynomial) -> bool:
-    """Whether no root of q lies in the open right half plane: iff q'/q is positive real.
+    """Whether no root of q lies in the open right half plane.
 
-    q'/q is the sum of 1/(s - root), so that its real part on the axis is that of decaying roots.
+    With each root counted once, this is so if and only if q'/q is positive real. q'/q is the sum of
+    1/(s - root), and on the axis the real part of such a term has the sign of -Re root.
     """
     plain = square_free(q)
     return len(plain) < 2 or is_positive_real(derivative(plain), plain)
@@ -152,7 +154,7 @@ def square_free(p: Polynomial) -> Polynomial:
 
 
 def odd_part(p: Polynomial) -> Polynomial:
-    """The product of (x - root) over roots of odd multiplicity (Yun); p not zero."""
+    """The product of (x - root) over the roots of odd multiplicity (Yun's scheme); p: not zero."""
     product = [Fraction(1)]
     common = greatest_common_divisor(p, derivative(p)) if len(p) > 1 else [Fraction(1)]
     rest, slope = divide(p, common)[0], divide(derivative(p), common)[0]
@@ -167,7 +169,7 @@ def odd_part(p: Polynomial) -> Polynomial:
 
 
 def is_non_negative(p: Polynomial) -> bool:
-    """Whether p(x) >= 0 for all x >= 0: no root of odd multiplicity at x > 0, and p > 0 far out."""
+    """Whether p(x) >= 0 for x >= 0: no root of odd multiplicity at x > 0, and p > 0 for large x."""
     if not p:
         return True
     g = without_zero(odd_part(p))
@@ -181,17 +183,17 @@ def without_zero(p: Polynomial) -> Polynomial:
 
 
 def signs_at_roots(f: Polynomial, g: Polynomial) -> tuple[int, int, int]:
-    """How many roots x > 0 of g (each once) have f < 0, f = 0, f > 0.
+    """How many roots x > 0 of g (each counted once) have f < 0, f = 0 and f > 0.
 
-    By the theorem of Sturm and Tarski: the variations of the signed remainders of (g, g' f) at the
-    two ends differ by the number of roots with f > 0 less that with f < 0.
+    By the theorem of Sturm and Tarski: the sign changes of the signed remainders of (g, g' f) at
+    the two ends differ by the number of roots with f > 0 less the number with f < 0.
     """
     surplus, nonzero, total = (_surplus(chain, None) for chain in _chains(f, g))
     return (nonzero - surplus) // 2, total - nonzero, (nonzero + surplus) // 2
 
 
 def _chains(f: Polynomial, g: Polynomial) -> list[list[Polynomial]]:
-    """The chains that count f, f^2 and 1 at the positive roots of g."""
+    """Chains of remainders that sum the signs of f, f^2 and 1 over the positive roots of g."""
     g = square_free(without_zero(g))
     if len(g) < 2:
         return [[], [], []]
@@ -200,7 +202,7 @@ def _chains(f: Polynomial, g: Polynomial) -> list[list[Polynomial]]:
 
 
 def _chain(f: Polynomial, g: Polynomial) -> list[Polynomial]:
-    """Signed remainders of (g, g' f); g(0) != 0, g free of squares and not constant."""
+    """Signed remainders of (g, g' f); g: g(0) != 0, simple roots, not constant."""
     chain = [small(g), small(divide(multiply(derivative(g), f), g)[1])]
     while chain[-1]:
         chain.append(small([-c for c in divide(chain[-2], chain[-1])[1]]))
@@ -208,13 +210,13 @@ def _chain(f: Polynomial, g: Polynomial) -> list[Polynomial]:
 
 
 def _surplus(chain: list[Polynomial], below: Fraction | None) -> int:
-    """Sum of the signs of f at the roots 0 < x < below of g, or x > 0 where `below` is None."""
+    """Sum of the signs of f over the roots of g with 0 < x < below; below None: all x > 0."""
     at_end = [p[-1] if below is None else value(p, below) for p in chain]
     return variations([p[0] for p in chain]) - variations(at_end)
 
 
 def first_root(f: Polynomial, g: Polynomial) -> float:
-    """About the least root x > 0 of g at which f < 0, to be shown to people; NaN where none is."""
+    """The least root x > 0 of g at which f < 0, approximate, for texts; NaN where there is none."""
     chains = _chains(f, g)[:2]
 
     def lies_below(x: Fraction | None) -> bool:

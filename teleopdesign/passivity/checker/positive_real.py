@@ -1,10 +1,13 @@
-"""Certificates of kind "positive real": a matrix of rational functions of s, decided from Z alone.
+"""Certificates of kind "positive real": the matrix Z of rational functions of s is positive real.
 
-Z = N/q. (Z + 1)^-1 has a common denominator with all zeros in Re s < 0 (Routh), so S = (Z - 1)/(Z +
-1) = 1 - 2 (Z + 1)^-1 is analytic there. The principal minors of H = N conj(q) + N^H q = abs(q)^2 (Z
-+ Z^H) are >= 0 on the axis (Sturm), so H is positive semidefinite there, and with it 1 - S^H S = 2
-(Z + 1)^-H (Z + Z^H) (Z + 1)^-1: by the maximum principle |S| <= 1 for Re s > 0. So Z is analytic
-for Re s > 0 with Z + Z^H >= 0.
+The certificate contains Z alone, and the checker decides. Write Z = N/q. The proof has three steps.
+
+1. (Z + 1)^-1 has a common denominator, and Routh's scheme shows that all its zeros have Re s < 0.
+   So S = (Z - 1)/(Z + 1) = 1 - 2 (Z + 1)^-1 is analytic for Re s >= 0.
+2. All principal minors of H = N conj(q) + N^H q = abs(q)^2 (Z + Z^H) are >= 0 on the imaginary
+   axis. So H is positive semidefinite there, and so is
+   1 - S^H S = 2 (Z + 1)^-H (Z + Z^H) (Z + 1)^-1.
+3. By the maximum principle |S| <= 1 for Re s > 0. So Z is analytic for Re s > 0 with Z + Z^H >= 0.
 """
 
 from __future__ import annotations
@@ -30,13 +33,13 @@ from .polynomials import (
     real_part,
 )
 
-#: rows of a matrix: the work for its principal minors doubles with each
+#: numbers of rows that are allowed: each further row doubles the number of principal minors
 SIZES = (1, 2, 3, 4, 5, 6)
 Matrix = list[list[Polynomial]]
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
-    """The statement of a certificate of this kind; refused where it is not true."""
+    """The statement that a certificate of this kind proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, z, text = read_matrix(c["impedance"], SIZES)
     below = {n: max(e.below.get(n, 0) for row in z for e in row) for n in algebra.bases}
@@ -49,7 +52,7 @@ def state_positive_real(c: dict[str, Any]) -> str:
 
 
 def _check_stable(above: Matrix, q: Polynomial) -> None:
-    """Refuse unless (Z + 1)^-1 = q adj(N + q)/det(N + q) is stable; Z = above/q."""
+    """Raise Refused unless (Z + 1)^-1 = q adj(N + q)/det(N + q) is stable; Z = above/q."""
     size = len(above)
     m = [[add(e, q) if i == j else e for j, e in enumerate(row)] for i, row in enumerate(above)]
     every = range(size)
@@ -64,7 +67,7 @@ def _check_stable(above: Matrix, q: Polynomial) -> None:
 
 
 def _check_resistive(above: Matrix, q: Polynomial) -> None:
-    """Refuse unless all principal minors of Z + Z^H are >= 0 on the axis; Z = above/q."""
+    """Raise Refused unless all principal minors of Z + Z^H are >= 0 on the axis; Z = above/q."""
     size, q_late = len(above), _mirror(q)
     h = [
         [add(multiply(above[i][j], q_late), multiply(_mirror(above[j][i]), q)) for j in range(size)]
@@ -80,12 +83,12 @@ def _check_resistive(above: Matrix, q: Polynomial) -> None:
 
 
 def _mirror(p: Polynomial) -> Polynomial:
-    """p(-s), which is its conjugate on the axis."""
+    """p(-s), which is the conjugate of p(s) on the imaginary axis."""
     return [(-1) ** k * c for k, c in enumerate(p)]
 
 
 def _divide_out(p: Polynomial, weight: Polynomial) -> Polynomial:
-    """p by a polynomial that is >= 0 on the axis, as often as that goes: the same signs."""
+    """p divided by `weight` as often as it divides p; weight >= 0 on the axis, so signs remain."""
     while p and len(weight) > 1:
         quotient, rest = divide(p, weight)
         if rest:
@@ -95,7 +98,7 @@ def _divide_out(p: Polynomial, weight: Polynomial) -> Polynomial:
 
 
 def minor(matrix: Matrix, rows: Sequence[int], columns: Sequence[int]) -> Polynomial:
-    """Determinant of these rows and columns, by the first row; 1 of none."""
+    """Determinant of the submatrix of these rows and columns, expanded along rows; 1 if empty."""
     known: dict[tuple[int, ...], Polynomial] = {(): polynomial([1])}
     for number in range(1, len(rows) + 1):
         row, smaller = matrix[rows[len(rows) - number]], known

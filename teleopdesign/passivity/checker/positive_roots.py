@@ -1,10 +1,11 @@
-"""Whether a polynomial has a positive root, and whether two share one: exact and cheap.
+"""Whether a polynomial has a positive root, and whether two polynomials are coprime; exact, cheap.
 
-Descartes: a polynomial has as many positive roots as its coefficients change sign, or fewer by an
-even number. In an interval that is 0 < x < 1 the same holds of (1 + x)^n p(1/(1 + x)). Intervals
-are halved until there is no change, or an odd number of them, which has a root. For roots that are
-simple that ends (Vincent; Collins, Akritas, SYMSAC 1976). Remainders, as in Sturm's chains, would
-have numbers whose length grows with the square of the degree.
+Rule of Descartes: a polynomial has as many positive roots as its coefficients change sign, or fewer
+by an even number. For the roots with 0 < x < 1 the same holds with the coefficients of
+(1 + x)^n p(1/(1 + x)). The interval is halved until each part has no change of sign, so no root, or
+some part has an odd number of changes, so a root. If all roots are simple, the halving ends
+(Vincent; Collins, Akritas, SYMSAC 1976). Remainders, as in Sturm's chains, would have numbers whose
+length grows with the square of the degree.
 """
 
 from __future__ import annotations
@@ -15,15 +16,15 @@ from math import lcm
 
 from .effort import spend
 
-#: 2^61 - 1, a prime: what is coprime modulo it is coprime
+#: a prime: polynomials that are coprime modulo this prime are coprime
 _PRIME = 2**61 - 1
 _ONE = (Fraction(1),)
 
 
 def has_positive_root(p: Sequence[Fraction]) -> bool:
-    """Whether p (lowest power first) has a root x > 0; p not constant, of simple roots, p(0) != 0.
+    """Whether p (lowest power first; not constant, simple roots, p(0) != 0) has a root x > 0.
 
-    All roots lie below 2^k times a unit, k from Cauchy's bound: that unit is made 1.
+    Cauchy's bound gives k with all roots below 2^k. With x = 2^k t the roots have t < 1.
     """
     changes = variations(p)
     if changes % 2 or not changes:
@@ -36,7 +37,7 @@ def has_positive_root(p: Sequence[Fraction]) -> bool:
 
 
 def _has_root_in_unit(first: list[int]) -> bool:
-    """Whether there is a root with 0 < x < 1."""
+    """Whether a polynomial of simple roots (lowest power first) has a root with 0 < x < 1."""
     waiting = [first]
     while waiting:
         p = waiting.pop()
@@ -55,7 +56,7 @@ def _has_root_in_unit(first: list[int]) -> bool:
 
 
 def _shift_by_one(p: Sequence[int]) -> list[int]:
-    """p(x + 1), by sums alone."""
+    """Coefficients of p(x + 1), by additions alone."""
     spend(len(p) * len(p) // 2, (Fraction(max(map(abs, p))),), _ONE)
     p = list(p)
     for start in range(len(p) - 1):
@@ -65,16 +66,16 @@ def _shift_by_one(p: Sequence[int]) -> list[int]:
 
 
 def variations(values: Sequence[Fraction] | Sequence[int]) -> int:
-    """How often the sign changes along them; zeros do not count."""
+    """How often the sign changes along a sequence of numbers; zeros are skipped."""
     signs = [v > 0 for v in values if v]
     return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
 
 
 def are_surely_coprime(p: Sequence[Fraction], q: Sequence[Fraction]) -> bool:
-    """Whether p and q have no common factor modulo a prime, and so none at all.
+    """Whether p and q are shown to have no common factor, by a computation modulo a prime.
 
     A common factor of polynomials with whole coefficients keeps its degree modulo a prime that does
-    not divide their leading ones. False says nothing.
+    not divide the leading coefficients. The answer False shows nothing.
     """
     spend(len(p) * len(q), _ONE, _ONE)
     a, b = _modulo_prime(p), _modulo_prime(q)
@@ -93,6 +94,6 @@ def are_surely_coprime(p: Sequence[Fraction], q: Sequence[Fraction]) -> bool:
 
 
 def _modulo_prime(p: Sequence[Fraction]) -> list[int]:
-    """A multiple of p with whole coefficients, modulo the prime."""
+    """Coefficients of a multiple of p that has whole coefficients, modulo the prime."""
     below = lcm(*(c.denominator for c in p))
     return [(c.numerator * (below // c.denominator)) % _PRIME for c in p]

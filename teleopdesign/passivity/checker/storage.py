@@ -1,26 +1,32 @@
-"""Certificates of kind "storage": a storage function, and an identity for each inequality.
+"""Certificates of kind "storage": a storage function V, and an identity for each inequality.
 
 Names are constants, signals (functions of time), states (with a rate each) and, for each x in
 `signs`, abs_x = |x| and sign_x (1 for x > 0, -1 for x < 0, either for x = 0).
 
-Theorem. Let constants and signals be such that every expression in `positive` is > 0 and every one
-in `nonnegative` >= 0 at all times, signals and rates of invariants locally bounded. Let the states
-be absolutely continuous with x' = rate at almost every time, and every invariant h >= 0 at the
-start. Then h >= 0 and V >= 0 at all times, and the integral of the supply is at least the change of
-the storage V, where V = 0 at rest. So it is never below -V(start), and from rest never below 0.
+Theorem. Assume that at all times every expression in `positive` is > 0 and every expression in
+`nonnegative` is >= 0; that signals and the rates of invariants are locally bounded; that the states
+are absolutely continuous, with x' = rate at almost every time; and that every invariant h is >= 0
+at the start. Then h >= 0 and V >= 0 at all times, and the integral of the supply is at least the
+change of V, with V = 0 at rest. So it is never below -V(start), and from rest never below 0.
 
-Proof. (1) V and h hold constants and states only; assumptions hold constants and signals only.
-Division is by products of `positive` expressions, so all is defined, V and h are locally Lipschitz,
-and t -> V, h is absolutely continuous. (2) In each combination of signs (x = s X, X = |x| >= 0)
-h' + rate h, V and supply - V' are identically sums of weight * factors^powers * square: weights are
-rational and >= 0; factors are |x|, assumptions and (not for the h) invariants; powers are integers,
-below 0 only for `positive`. So each is >= 0. (3) V and h may depend on |e| or sign_e of a state e
-where both sides agree at e = 0 and no rate depends on sign_e. At almost every time with e = 0 also
-e' = 0, so that both sides have the same V', the true one. (4) h' >= -rate h keeps h >= 0
-(multiply by the exponential of the integral of the rate); V' <= supply is integrated. (5) At x = 0
-the supply and all rates are affine in sign_x where the statement says so; then the inequalities
-hold for all values between as well (sticking friction), being affine between the two shown.
-The example meets all assumptions, as stated and at rest: the theorem is not about nothing.
+Proof.
+(1) V and h contain constants and states only; assumptions contain constants and signals only. All
+divisors are products of `positive` expressions. So all expressions are defined, V and h are locally
+Lipschitz, and along a motion V and h are absolutely continuous in time.
+(2) For each combination of signs (x = s X, X = |x| >= 0) the expressions h' + rate h, V and
+supply - V' are identically sums of terms weight * factors^powers * square. Weights are rational and
+>= 0. Factors are |x|, assumptions and invariants (no invariants in the terms of an h). Powers are
+integers, below 0 only for `positive`. So each sum is >= 0.
+(3) V and h may depend on |e| or sign_e of a state e, if both sides agree at e = 0 and no rate
+depends on sign_e. At almost every time with e = 0 also e' = 0. So both sides have the same V', and
+this is the true one.
+(4) From h' >= -rate h follows h >= 0: multiply by the exponential of the integral of the rate. From
+V' <= supply the bound follows by integration.
+(5) Where the statement allows sign_x "from -1 to 1" at x = 0 (sticking friction), the supply and
+all rates are affine in sign_x there. The inequalities are shown for -1 and 1, so they also hold for
+all values between.
+The example in the certificate meets all assumptions, as stated and at rest. So the assumptions do
+not contradict each other.
 """
 
 from __future__ import annotations
@@ -37,7 +43,11 @@ from .fields import expect, expect_fields, flat, read_number, read_words
 
 @dataclass(frozen=True)
 class Meaning:
-    """The expressions of a storage certificate, for fixed signs or in general."""
+    """The expressions of a storage certificate, for one combination of signs or in general.
+
+    assumed: expressions that are assumed to be > 0 or >= 0;  invariants: h, by name
+    decays: rate of each invariant;  rates: x' of each state;  signs: x -> 1 or -1
+    """
 
     algebra: Algebra
     assumed: dict[str, Quotient]
@@ -50,13 +60,13 @@ class Meaning:
 
     @property
     def factors(self) -> dict[str, Quotient]:
-        """What is >= 0: assumptions, invariants and sizes."""
+        """Expressions that are known to be >= 0: assumptions, invariants and sizes |x|."""
         sizes = {f"abs_{x}": Quotient(self.algebra.name(f"abs_{x}"), {}) for x in self.signs}
         return self.assumed | self.invariants | sizes
 
     @property
     def goals(self) -> dict[str, Quotient]:
-        """What has to be shown to be >= 0."""
+        """Expressions that the proofs have to show to be >= 0: V, supply - V', h' + rate h."""
         algebra = self.algebra
         goals = {"storage": self.storage}
         goals["supply"] = algebra.sum(self.supply, self._change(self.storage), -1)
@@ -65,7 +75,7 @@ class Meaning:
         return goals
 
     def _change(self, e: Quotient) -> Quotient:
-        """Rate of change: the sum of slope times rate over the states; none stands below."""
+        """Rate of change of e: sum over states of slope times rate; no state is in a divisor."""
         total = Quotient({}, {})
         for x, rate in self.rates.items():
             i = self.algebra.names.index(x)
@@ -79,7 +89,7 @@ class Meaning:
 
 
 class Storage:
-    """The content of a storage certificate, refused here for all but its identities."""
+    """The content of a storage certificate; all rules are checked here but the identities."""
 
     def __init__(self, c: dict[str, Any]) -> None:
         expect_fields(c, "kind", "title", "digest", "constants", "signals", "rates", "signs",
@@ -112,7 +122,10 @@ class Storage:
             self._check_example(case)
 
     def _meaning(self, signs: dict[str, int], zero: str = "") -> Meaning:
-        """With x = sign * X and X called x, for x in `signs`; with `zero` = 0."""
+        """Expressions with x = sign * |x| for x in `signs`, the name x standing for |x|.
+
+        zero: a name that is replaced by 0
+        """
         c, names = self.c, [*self.words, *(p + x for x in self.signs for p in ("abs_", "sign_"))]
         algebra = Algebra(names, self.left)
         for x, s in signs.items():
@@ -137,7 +150,7 @@ class Storage:
         )
 
     def _check_dependence(self) -> list[str]:
-        """(1) and (3) of the proof; returns the x for which (5) holds."""
+        """Check steps (1) and (3) of the proof; returns the names x for which step (5) holds."""
         general = self._meaning({})
         uses, inner = general.algebra.uses, [general.storage, *general.invariants.values()]
         free = {*self.constants, *self.signals, *(f"abs_{x}" for x in self.signs)}
@@ -159,14 +172,14 @@ class Storage:
         return [x for x in self.signs if self._is_affine(x)]
 
     def _is_affine(self, x: str) -> bool:
-        """Whether all that is integrated is affine in sign_x at x = 0."""
+        """Whether the supply and all rates are affine in sign_x at x = 0."""
         m = self._meaning({}, zero=x)
         i = m.algebra.names.index(f"sign_{x}")
         quotients = [m.supply, *m.rates.values(), *m.decays.values()]
         return all(k[i] < 2 for e in quotients for k in e.above)
 
     def _check_example(self, case: Meaning) -> None:
-        """It meets all that is assumed, as stated and at rest."""
+        """Raise Refused unless the example meets all assumptions, as stated and at rest."""
         example = {n: read_number(x, "example") for n, x in self.c["example"].items()}
         need({*example} <= {*self.words}, "example: an unknown name")
         need(all(example.get(x, 0) >= 0 for x in self.signs), "example: a size below 0")
@@ -179,7 +192,7 @@ class Storage:
             need(holds, f"example: {n} does not hold")
 
     def check_proofs(self) -> None:
-        """(2) of the proof: every inequality by an identity."""
+        """Check step (2) of the proof: each inequality by its identity; raises Refused if not."""
         proofs = self.c["proofs"]
         goals = {"storage", "supply", *self.c["invariant"]}
         need({*proofs} == goals, f"proofs: expected exactly {', '.join(sorted(goals))}")
@@ -193,7 +206,7 @@ class Storage:
                 need(not left.above, f"{goal}: no identity")
 
     def _term(self, case: Meaning, goal: str, term: Any) -> Quotient:
-        """weight * factors^powers * square >= 0."""
+        """A term >= 0, weight * factors^powers * e^2, from [weight, {factor: power}, text of e]."""
         need(type(term) is list and len(term) == 3, f"{goal}: expected weight, powers, square")
         algebra, weight = case.algebra, read_number(term[0], goal)
         need(weight >= 0, f"{goal}: a negative weight")
@@ -212,7 +225,7 @@ class Storage:
         return product
 
     def statement(self) -> str:
-        """What is proved, from the content alone."""
+        """The statement that the certificate proves, in words, made from its content alone."""
         c = self.c
         supply = flat(c["supply"])
         assumed = [f"{flat(e)} > 0" for _, e in sorted(c["positive"].items())]

@@ -1,1 +1,1 @@
-"""A claim and how it is known: certificates that prove it, motions that refute it, as files."""
+"""Claims with their verdicts: certificates that prove a claim, and motions that refute it."""

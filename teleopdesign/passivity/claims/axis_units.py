@@ -1,6 +1,6 @@
-"""Claims in the units of an axis: theorems are written for a prismatic one.
+"""Texts of claims in the units of a revolute axis; theorems write them for a prismatic axis.
 
-The numbers are the same on both; a force of 0.5 N reads 0.5 N m where the axis turns.
+The numbers are the same on both axes: 0.5 N becomes 0.5 N m on a revolute axis.
 """
 
 from __future__ import annotations
@@ -13,18 +13,21 @@ from ...quantity import unit_of
 from .claim import Claim, Evidence, Proof, Refutation, Unknown
 
 _QUANTITIES = ("damping", "stiffness", "force", "velocity", "inertia", "position")
-#: unit on a prismatic axis -> on a revolute one, as claims write them, longest first
+#: unit on a prismatic axis -> unit on a revolute axis, as claims write them
 _ROTARY = {
     unit_of(q, "prismatic").replace("*", " "): unit_of(q, "revolute").replace("*", " ")
     for q in _QUANTITIES
 }
 _UNIT = "|".join(sorted(map(re.escape, _ROTARY), key=len, reverse=True))
-#: a unit behind a number, and behind no other unit
+#: a unit that follows a number and is not a part of a longer unit
 _MEASURE = re.compile(rf"(?<=\d )({_UNIT})(?![\w/^*]| m\b| s/)")
 
 
 def use_units_of(axis: str, claim: Claim) -> Claim:
-    """The claim with all its texts in the units of that axis."""
+    """The claim with its statement and verdict in the units of an axis.
+
+    axis: "prismatic" or "revolute"
+    """
     if axis != "revolute":
         return claim
     verdict: Any = claim.verdict
@@ -43,5 +46,5 @@ def use_units_of(axis: str, claim: Claim) -> Claim:
 
 
 def use_rotary_units(text: str) -> str:
-    """The text with units behind numbers as on a revolute axis."""
+    """The text with the units after numbers changed to those of a revolute axis."""
     return _MEASURE.sub(lambda match: _ROTARY[match.group(1)], text)

@@ -1,7 +1,7 @@
-"""Certificates: what a proof rests on, in a form that a small program verifies.
+"""Certificates of proofs, in a form that a small separate program (`checker`) verifies.
 
-`checker` does not use this package. It reads the JSON file that is written here, and states in its
-own words what the file proves. A title is for readers only and proves nothing.
+`checker` does not use this package. It reads the JSON file of a certificate and makes the statement
+that the file proves from its contents. The title is for readers only and proves nothing.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from ...errors import ModelError
 from ...plain_data import write_text
 from ..checker import Refused, check, load
 
-#: weight * product of factor^power * square^2
+#: one term of an identity, (weight, factor -> power, e): weight * product of factor^power * e^2
 Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
 
 
 @check_types
 @dataclass(frozen=True, repr=False)
 class Certificate:
-    """What the checker reads; `content` is plain JSON data with a digest."""
+    """A certificate that the checker can verify; `content` is plain JSON data with a digest."""
 
     content: Mapping[str, Any]
 
     @property
     def kind(self) -> str:
-        """ "storage", "positive real", "absolute stability", or one "... over a box"."""
+        """Kind: "storage", "positive real", "absolute stability", or a kind "... over a box"."""
         return str(self.content.get("kind", "no kind"))
 
     def check(self) -> str:
-        """Verify with `checker`.
+        """Verify the certificate with `checker`.
 
         returns: the statement that is proved, which the checker makes from the content
-        raises ModelError: refused, and why
+        raises ModelError: the checker refuses the certificate; the message says why
         """
         try:
             return check(dict(self.content))
@@ -51,15 +51,15 @@ class Certificate:
         return f"Certificate ({self.kind}): {self.content.get('title', '')}"
 
     def write(self, path: str | Path) -> None:
-        """Write the JSON file that `python -m teleopdesign.passivity.checker PATH` verifies."""
+        """Write a JSON file, which `python -m teleopdesign.passivity.checker PATH` verifies."""
         text = json.dumps(self.content, indent=1, sort_keys=True)
         write_text(path, text + "\n")
 
 
 def read_certificate(path: str | Path) -> Certificate:
-    """Read a certificate; it proves nothing before `check` accepted it.
+    """Read a certificate from a JSON file; it proves nothing before `Certificate.check` accepts it.
 
-    path: a JSON file;  raises ModelError: not readable, or no certificate
+    path: the JSON file;  raises ModelError: not readable, or no certificate
     """
     try:
         content = load(str(path))
@@ -71,7 +71,10 @@ def read_certificate(path: str | Path) -> Certificate:
 
 
 def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
-    """That a matrix of rational functions of s (6x6 at most) is positive real."""
+    """Certificate that a matrix of rational functions of s is positive real; not yet checked.
+
+    impedance: 6x6 at most;  raises ModelError: an entry is not rational with exact numbers
+    """
     rows = [[checker_text(e) for e in row] for row in impedance]
     return seal({"kind": "positive real", "title": title, "impedance": rows})
 
@@ -79,7 +82,10 @@ def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]
 def absolute_stability_certificate(
     title: str, impedance: Sequence[Sequence[sp.Expr]]
 ) -> Certificate:
-    """That a 2x2 matrix of rational functions of s is absolutely stable, residues included."""
+    """Certificate that a 2x2 matrix of rational functions is absolutely stable; not yet checked.
+
+    raises ModelError: an entry is not rational with exact numbers
+    """
     rows = [[checker_text(e) for e in row] for row in impedance]
     return seal({"kind": "absolute stability", "title": title, "impedance": rows})
 
@@ -98,15 +104,19 @@ def storage_certificate(
     proofs: Mapping[str, Mapping[str, Sequence[Term]]],
     example: Mapping[str, sp.Expr | int],
 ) -> Certificate:
-    """That supply >= dV/dt with V >= 0 wherever the assumptions hold.
+    """Certificate that supply >= dV/dt with V >= 0 wherever the assumptions hold; not yet checked.
 
+    `checker/storage.py` contains the theorem and its proof.
+
+    supply: power that flows in;  storage: V
     rates: state -> rate of change;  constants: names that do not change; other names are signals
-    positive, nonnegative: name -> expression that is assumed to be > 0, >= 0
-    invariant: name -> (h, rate): h >= 0 at the start is kept, for h' + rate h >= 0
-    signs: signals and states x with sign_x and abs_x; `proofs` has an entry for each
-        combination of signs, "1 -1", or "" for all of them
-    proofs: "supply", "storage" or invariant -> signs -> terms (weight, factor -> power, square)
-    example: values that meet all assumptions (for `signs` the size)
+    positive, nonnegative: name -> expression that is assumed to be > 0, or >= 0
+    invariant: name -> (h, rate), with h' + rate h >= 0: h >= 0 at the start implies h >= 0 later
+    signs: signals and states x for which sign_x and abs_x are used
+    proofs: "supply", "storage" or name of an invariant -> signs -> terms of the identity (`Term`);
+        signs: one combination such as "1 -1", or "" for all combinations
+    example: values that meet all assumptions (for each x in `signs` its size)
+    raises ModelError: an expression is not rational with exact numbers
     """
     rates, invariant = rates or {}, invariant or {}
     positive, nonnegative = positive or {}, nonnegative or {}
@@ -155,7 +165,10 @@ def _terms(terms: Sequence[Term]) -> list[list[object]]:
 
 
 def checker_text(expression: sp.Expr | int) -> str:
-    """Text that the checker reads; ModelError for what is not rational, floats included."""
+    """An expression as the text that the checker reads.
+
+    raises ModelError: not rational with exact numbers; a float is refused, too
+    """
     e = sp.sympify(expression)
     for part in sp.preorder_traversal(e):
         rational = part.is_Rational or part.is_Symbol or part.is_Add or part.is_Mul
@@ -165,6 +178,6 @@ def checker_text(expression: sp.Expr | int) -> str:
 
 
 def seal(content: dict[str, Any]) -> Certificate:
-    """With the digest that `checker` expects."""
+    """A certificate from its content: adds the digest that `checker` expects."""
     text = json.dumps(content, sort_keys=True)
     return Certificate({**content, "digest": hashlib.sha256(text.encode()).hexdigest()})

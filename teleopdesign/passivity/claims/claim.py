@@ -29,7 +29,7 @@ class Counterexample(Protocol):
         ...
 
     def replay(self) -> float:
-        """That energy, J, computed anew along the motion."""
+        """The released energy, J, computed anew along the motion."""
         ...
 
     def as_dict(self) -> dict[str, object]:
@@ -39,11 +39,11 @@ class Counterexample(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Proof(ByValue):
-    """An exact proof.
+    """A verdict: the claim is proved, exactly.
 
-    method: in words;  certificates: what it rests on, each verified by `checker`
-    margin: distance of the statement from failing, in `unit`, NaN where none was computed
-    equality: where the inequality holds with equality, "" where nowhere or not computed
+    method: in words;  certificates: of the proof, each verified by `checker`
+    margin: distance of the statement from failing, in `unit`; NaN where no margin was computed
+    equality: where the inequality holds with equality; "" where nowhere, or not computed
     """
 
     method: str
@@ -67,9 +67,10 @@ class Proof(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Refutation(ByValue):
-    """A motion that releases `record.energy` > 0 J; `record.replay()` computes it anew.
+    """A verdict: the claim is refuted by a motion that releases energy.
 
-    replayed: energy that the replay released, J; without a valid replay a claim is not refuted
+    method: in words;  record: the motion, which releases `record.energy` > 0 J
+    replayed: energy that `record.replay()` released, J; a claim is refuted only if it is > 0
     """
 
     method: str
@@ -88,10 +89,11 @@ class Refutation(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Evidence(ByValue):
-    """A numerical result, for or against.
+    """A verdict: numbers speak for or against the claim, without a proof.
 
-    holds: what the numbers say;  searched: what was computed, and over which range
-    margin: distance from failing in `unit`, negative where it fails
+    holds: whether the numbers speak for the claim
+    searched: what was computed, and over which range
+    margin: distance of the statement from failing, in `unit`; negative where it fails
     """
 
     holds: bool
@@ -114,7 +116,10 @@ def prove_by_certificate(
     unit: str = "",
     equality: str = "",
 ) -> Proof | Evidence:
-    """A proof where the checker accepts its certificate, else what was computed exactly."""
+    """A proof, if the checker accepts its certificate; else the exact result as evidence.
+
+    method, margin, unit, equality: as in `Proof`;  certificate: makes the certificate
+    """
     try:
         made = certificate()
         made.check()
@@ -148,7 +153,7 @@ class Claim(ByValue):
 
     @property
     def heading(self) -> str:
-        """The status in words: of evidence, whether it speaks against the statement."""
+        """Status in words; "evidence against" where evidence speaks against the statement."""
         is_against = self.status == "evidence" and not self.holds
         return "evidence against" if is_against else self.status
 
@@ -163,12 +168,12 @@ class Claim(ByValue):
 
     @property
     def status(self) -> str:
-        """ "proved", "refuted", "evidence" or "unknown"."""
+        """Status: "proved", "refuted", "evidence" or "unknown"."""
         return self.verdict.status
 
     @property
     def holds(self) -> bool | None:
-        """True or False as the verdict says; None where it is unknown."""
+        """Whether the statement holds, as the verdict says; None where this is unknown."""
         return self.verdict.holds
 
     @property

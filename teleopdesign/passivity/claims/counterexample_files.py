@@ -1,4 +1,4 @@
-"""Refuting motions as files: written as JSON, read and replayed by anyone."""
+"""Files of motions that refute a claim: written as JSON, read and replayed by anyone."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ from ..two_port.termination import CLAMPED, Termination
 from .claim import Counterexample
 
 _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
-#: longer than any that a search writes, short enough to be read at once
+#: text of a fraction: longer than any that a search writes, short enough to be read at once
 _FRACTION = re.compile(r"-?[0-9]{1,2000}(/[0-9]{1,2000})?")
-#: strokes of a motion that are replayed: searches write at most 40 000, a million take seconds
+#: most strokes of a motion in a file: searches write at most 40 000, and a million take seconds
 MOST_STROKES = 1_000_000
 
 
 def write_record(record: Counterexample, path: str | Path) -> None:
     """Write a motion that refutes a claim as a JSON file; `read_record` reads the file.
 
-    The file holds the motion and its energy (J); reading replays the motion and compares.
+    record: `Claim.record`;  path: of the JSON file, which holds the motion and its energy (J)
     """
     write_json(path, record.as_dict())
 
 
 def read_record(path: str | Path) -> Counterexample:
-    """Read a refuting motion; `replay()` then computes what it releases, in J.
+    """Read a motion that refutes a claim, and replay it; `replay()` computes its energy, J, again.
 
-    raises ModelError: not such a file, or one whose stated energy its replay does not confirm
+    raises ModelError: no such file, or the replay does not confirm the energy that the file states
     """
     try:
         content = json.loads(read_whole(path).decode("utf-8"))
@@ -93,14 +93,17 @@ def _make_counterexample(c: dict[str, Any]) -> Counterexample:
 
 
 def _fraction(text: str) -> Fraction:
-    """A fraction such as "-3/4"; a power of ten would cost time and memory without end."""
+    """A fraction from a text such as "-3/4".
+
+    raises ValueError: any other text; a power of ten could cost time and memory without end
+    """
     if not (isinstance(text, str) and _FRACTION.fullmatch(text)):
         raise ValueError(f"expected a fraction such as 3/4, found {str(text)[:60]!r}")
     return Fraction(text)
 
 
 def _read(text: str, *names: sp.Symbol) -> sp.Expr:
-    """An expression of these names, read without running anything."""
+    """An expression of these names from its text; the text is parsed and never run."""
     try:
         e = read_expression(text, where="record")
     except ExperimentError as error:

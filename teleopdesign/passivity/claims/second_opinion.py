@@ -1,8 +1,8 @@
-"""The inequalities of a storage certificate tested by z3, without the identities that show them.
+"""A second test of a storage certificate: z3 tests its inequalities without its identities.
 
 z3 decides polynomial inequalities over the reals (extra `proof`). It searches for values that meet
-all assumptions of a certificate and violate its claim. The search finds none, finds some, or stops.
-The checker reads the meaning of the certificate, so its rules hold here too.
+all assumptions of a certificate and violate its claim. Either no such values exist, or z3 names
+some, or z3 stops without an answer. The checker reads the certificate, so its rules hold here, too.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ from .certificate import Certificate
 
 @dataclass(frozen=True)
 class SecondOpinion:
-    """What z3 says: "confirmed", "refuted" or "unknown".
+    """Result of z3 on a storage certificate.
 
+    verdict: "confirmed", "refuted" or "unknown"
     open: inequalities (with their signs) that are not confirmed
-    counterexample: values that break one of them, as text; "" where the search ends without one
+    counterexample: values that violate one of them, as text; "" where there is none
     """
 
     verdict: str
@@ -31,11 +32,11 @@ class SecondOpinion:
 
 
 def second_opinion(certificate: Certificate, *, seconds: float = 10.0) -> SecondOpinion:
-    """Whether the inequalities of a storage certificate hold, by z3.
+    """Test the inequalities of a storage certificate with z3.
 
-    seconds: for each inequality
-    raises ModelError: z3 (extra `proof`) is not installed, a certificate of another kind, or one
-        that the checker refuses for what it assumes, before any proof
+    seconds: most time for each inequality, s
+    raises ModelError: z3 (extra `proof`) is not installed, the certificate is of another kind, or
+        the checker refuses its content
     """
     try:
         _, storage = read(dict(certificate.content))

@@ -1,4 +1,4 @@
-"""A margin or a claim at points of a box: numbers, no proof."""
+"""Evaluation of a margin or a claim at points of a box; numerical, no proof over the box."""
 
 from __future__ import annotations
 
@@ -17,7 +17,11 @@ from .worst import search_worst
 def judge_at_points(
     middle: Diagram, box: ValueBox, claim: Callable[[Diagram], Any], points: int, seed: int
 ) -> Parts:
-    """A margin or a claim of the user's, at points."""
+    """Judge a user's margin or claim at the vertices, the middle and further points of a box.
+
+    claim: function of a diagram, which returns a margin (>= 0: it holds) or a `Claim`
+    points: number of further points;  seed: of these points
+    """
     unknown: list[str] = []
     units: list[str] = []
 

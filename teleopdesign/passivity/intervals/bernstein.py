@@ -24,17 +24,20 @@ import sympy as sp
 from ..linear.polynomials import fraction
 
 Ends = Sequence[tuple[Fraction, Fraction]]
-#: coefficients that all halvings may make: some 5 s on one core. More proves more, later
+#: most coefficients that all halvings may compute: some 5 s on one core. More would prove more
+#: claims, in more time
 MOST_WORK = 400_000
-#: coefficients of one polynomial: beyond, a single halving takes seconds
+#: most coefficients of one polynomial: with more, a single halving takes seconds
 MOST_COEFFICIENTS = 20_000
 
 
 @dataclass
 class ProofEffort:
-    """What the proofs of a claim may still cost; cells: parts of boxes that were looked at.
+    """Effort of the proofs of one claim.
 
-    squares: factors whose even powers were left out, in x and the values
+    left: coefficients that may still be computed;  cells: parts of boxes that were tested
+    polynomials: polynomials that were tested
+    squares: factors, in x and the values, whose even powers were left out
     """
 
     left: int = MOST_WORK
@@ -43,7 +46,7 @@ class ProofEffort:
     squares: list[sp.Poly] = field(default_factory=list)
 
     def spend(self, coefficients: int) -> bool:
-        """Whether that is still there; it is then gone."""
+        """Subtract the coefficients of one cell; returns whether the effort is sufficient."""
         self.cells += 1
         self.left -= coefficients
         return self.left >= 0
@@ -52,8 +55,11 @@ class ProofEffort:
 def is_non_negative_over(poly: sp.Poly, ends: Ends, scale: Fraction, effort: ProofEffort) -> bool:
     """Whether p(x, values) >= 0 is shown for all x >= 0 and all values in the box.
 
-    False: it is not so, or not shown. Factors of even multiplicity are left out.
-    poly: in x and the values, rational coefficients;  scale: x in the middle of t, > 0
+    Factors of even multiplicity are left out.
+
+    poly: p in x and the values, rational coefficients;  ends: intervals of the values
+    scale: x at t = 1/2, > 0;  effort: is spent
+    returns: False where p is negative somewhere, or where nothing is shown
     """
     if poly.is_zero:
         return True
@@ -74,13 +80,16 @@ def is_non_negative_over(poly: sp.Poly, ends: Ends, scale: Fraction, effort: Pro
 def excludes_zero_over(
     parts: Sequence[sp.Poly], ends: Ends, scale: Fraction, effort: ProofEffort
 ) -> bool:
-    """Whether it is shown that the polynomials are nowhere zero together; see above."""
+    """Whether it is shown that polynomials have no common zero for x >= 0 and values in the box.
+
+    ends, scale, effort: as in `is_non_negative_over`
+    """
     kept = [p for p in parts if not p.is_zero]
     return bool(kept) and _holds(kept, ends, scale, effort, _is_apart_from_zero)
 
 
 def _factors(poly: sp.Poly) -> tuple[sp.Rational, list[tuple[sp.Poly, int]]]:
-    """A number and factors with their multiplicity; large ones are not factored."""
+    """A number, and factors with their multiplicities; large polynomials are not factored."""
     if len(poly.terms()) > 600:  # beyond, factors take longer than the proof
         return sp.S(1), [(poly, 1)]
     number, factors = poly.factor_list()
@@ -123,12 +132,15 @@ def _non_negative(cell: list[Any]) -> Answer:
 
 
 def _corner_values(b: Any) -> list[int]:
-    """Values at all corners of the cell: there the coefficients are values."""
+    """Values of the polynomial at all corners of the cell, which are coefficients."""
     return [b[at] for at in product(*((0, n - 1) for n in b.shape))]
 
 
 def _is_apart_from_zero(cell: list[Any]) -> Answer:
-    """Whether a line through zero has all coefficients strictly on one side."""
+    """Whether polynomials have no common zero in this cell.
+
+    "yes" for two: the pairs of coefficients lie strictly on one side of a line through zero.
+    """
     if any((b > 0).all() or (b < 0).all() for b in cell):
         return "yes"
     if all(b[(0,) * b.ndim] == 0 for b in cell):
@@ -147,7 +159,7 @@ def _is_apart_from_zero(cell: list[Any]) -> Answer:
 
 
 def _round_coefficients(b: Any) -> np.ndarray:
-    """Coefficients over the largest of them, as floats: to choose by, never to decide by."""
+    """Coefficients relative to the largest one, as floats: for choices, never for decisions."""
     size = max(abs(x) for x in b.flat)
     shift = max(0, int(size).bit_length() - 60)
     floats = (b >> shift).astype(float)
@@ -155,7 +167,10 @@ def _round_coefficients(b: Any) -> np.ndarray:
 
 
 def _widest(cell: list[Any]) -> int | None:
-    """The variable along which coefficients differ most, against the size of each polynomial."""
+    """The variable along which coefficients differ most, relative to each polynomial's size.
+
+    None where all coefficients are equal.
+    """
     spread = np.zeros(cell[0].ndim)
     for f in map(_round_coefficients, cell):
         for axis in range(f.ndim):
@@ -165,7 +180,7 @@ def _widest(cell: list[Any]) -> int | None:
 
 
 def _halve(b: Any, axis: int) -> tuple[Any, Any]:
-    """Coefficients over both halves of that variable's range, times 2^d."""
+    """Coefficients over both halves of the range of one variable, times 2^d > 0."""
     row = np.moveaxis(b, axis, 0)
     d = len(row) - 1
     left, right = [row[0] << d], [row[-1] << d]
@@ -178,9 +193,10 @@ def _halve(b: Any, axis: int) -> tuple[Any, Any]:
 
 
 def _coefficients(poly: sp.Poly, degrees: Sequence[int], ends: Ends, scale: Fraction) -> Any:
-    """Bernstein coefficients of these degrees as integers, multiplied by a number > 0.
+    """Bernstein coefficients of these degrees, as integers, multiplied by a number > 0.
 
-    An axis for each variable, and one of length 1, so that numpy never makes plain numbers of them
+    returns: an array with an axis for each variable and one of length 1, so that numpy does not
+        turn a single coefficient into a plain number
     """
     b = np.full([d + 1 for d in degrees], Fraction(0), dtype=object)
     for powers, c in poly.terms():
@@ -197,7 +213,7 @@ def _coefficients(poly: sp.Poly, degrees: Sequence[int], ends: Ends, scale: Frac
 
 
 def _bernstein_coefficients(a: Any, low: Fraction, high: Fraction) -> Any:
-    """From powers of a variable to Bernstein coefficients over its range, along the first axis."""
+    """Bernstein coefficients over a variable's range from its powers, along the first axis."""
     d, width = len(a) - 1, high - low
     shifted = [
         sum((comb(k, i) * low ** (k - i) * width**i * a[k] for k in range(i, d + 1)), 0 * a[0])

@@ -1,4 +1,4 @@
-"""A box: an interval for each of some values of a diagram, and points in it."""
+"""A box: an interval for each of some values of a diagram, and points inside the box."""
 
 from __future__ import annotations
 
@@ -16,13 +16,17 @@ from ...errors import ModelError, did_you_mean
 from ...expectations import describe_value
 from ..ports import drop_absent_effects, nonlinear_parts
 
-#: vertices that are looked at: 2^8, eight intervals
+#: most vertices that are evaluated: all vertices of eight intervals, 2^8
 MOST_VERTICES = 256
 
 
 @dataclass(frozen=True)
 class ValueBox:
-    """Intervals by the names of values; low < high, as they are written (0.1 is 1/10)."""
+    """A box: intervals of values of a diagram.
+
+    names: of the values, (n);  low, high: ends of the intervals, low < high, (n) each. A float
+        stands for its shortest decimal (0.1 is 1/10)
+    """
 
     names: tuple[str, ...]
     low: tuple[float, ...]
@@ -42,13 +46,13 @@ class ValueBox:
         return np.asarray((np.array(self.low) + np.array(self.high)) / 2)
 
     def vertices(self) -> np.ndarray:
-        """Vertices, (m, n): all of them, or the first MOST_VERTICES."""
+        """Vertices of the box, (m, n): all of them, or the first MOST_VERTICES."""
         ends = zip(self.low, self.high, strict=True)
         listed = [v for v, _ in zip(product(*ends), range(MOST_VERTICES), strict=False)]
         return np.array(listed, dtype=float).reshape(len(listed), len(self.names))
 
     def inside(self, number: int, seed: int) -> np.ndarray:
-        """Points of a scrambled Sobol sequence, (number, n)."""
+        """Points inside the box, from a scrambled Sobol sequence, (number, n)."""
         from scipy.stats import qmc
 
         if not number or not self.names:
@@ -59,7 +63,7 @@ class ValueBox:
         return np.asarray(np.array(self.low) + unit[:number] * width)
 
     def named(self, point: np.ndarray) -> dict[str, float]:
-        """Value by name."""
+        """Values at a point, (n,), by their names."""
         return dict(zip(self.names, map(float, point), strict=True))
 
     def select(self, names: tuple[str, ...]) -> ValueBox:
@@ -72,10 +76,13 @@ class ValueBox:
 def box_of(
     diagram: Diagram, intervals: Mapping[str, tuple[float, float]]
 ) -> tuple[Diagram, ValueBox]:
-    """The diagram with its values in the middle of their intervals, and the box.
+    """The diagram with its values in the middle of their intervals, and the box of these intervals.
 
-    An interval without width is a value, and no part of the box.
-    raises ModelError: an unknown value, no pair of finite numbers, low above high
+    An interval without width sets the value and is no part of the box.
+
+    intervals: names of `diagram.values` -> (low, high)
+    raises ModelError: an unknown value, no pair of finite numbers, low above high, or values at a
+        vertex that a block refuses
     """
     known = diagram.values
     for name, ends in intervals.items():
@@ -97,9 +104,10 @@ def box_of(
 
 
 def nonlinear_within(diagram: Diagram, box: ValueBox) -> tuple[str, ...]:
-    """Names of what keeps the diagram from being linear somewhere in the box.
+    """Names of the parts of a diagram that are not linear somewhere in the box.
 
-    An effect may be absent at one value, such as the middle: at one end of its interval it is not.
+    The middle and two opposite vertices are tested, because an effect may be absent in the middle
+    and present at an end of its interval.
     """
     points = (box.centre, np.array(box.low), np.array(box.high))
     parts = (

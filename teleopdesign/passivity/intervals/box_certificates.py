@@ -1,4 +1,4 @@
-"""Certificates of claims over a box, in the form that `checker/over_a_box.py` decides alone."""
+"""Certificates of claims over a box, in the form that `checker/over_a_box.py` checks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..claims.certificate import Certificate, checker_text, seal
 from .box import ValueBox
 from .conditions import Conditions, size_of
 
-#: kinds of certificates by the claim
+#: claim -> kind of its certificate
 KINDS = {
     "passive": "positive real over a box",
     "absolutely stable": "absolute stability over a box",
@@ -22,7 +22,7 @@ KINDS = {
 def stability_certificate(
     ask: Conditions, box: ValueBox, polynomial: sp.Poly, title: str
 ) -> Certificate:
-    """That a polynomial in S and the values has no root with Re s >= 0.
+    """Certificate that a polynomial in S and the values has no root with Re s >= 0, over the box.
 
     raises ModelError: the checker does not accept it
     """
@@ -33,7 +33,7 @@ def stability_certificate(
 def impedance_certificate(
     ask: Conditions, box: ValueBox, z: sp.Matrix, claim: str, title: str
 ) -> Certificate:
-    """That an impedance of one or two ports is passive, or absolutely stable.
+    """Certificate that an impedance of one or two ports is passive, or absolutely stable.
 
     raises ModelError: the checker does not accept it
     """
@@ -73,7 +73,10 @@ def _certify(
 
 
 def _plain_names(ask: Conditions, box: ValueBox) -> dict[sp.Symbol, sp.Symbol]:
-    """Plain names for values: "Z_M.inertia" is Z_M_inertia where no other one is."""
+    """Plain names of the values for a certificate: "Z_M.inertia" becomes Z_M_inertia.
+
+    If such names are not plain words or not distinct, all become v1, v2, ...
+    """
     plain = [
         re.sub(r"_+", "_", re.sub(r"\W", "_", n, flags=re.ASCII)).strip("_") for n in box.names
     ]

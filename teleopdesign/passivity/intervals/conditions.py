@@ -1,14 +1,19 @@
 """Claims about a family of linear systems as signs of polynomials over a box.
 
-Hurwitz: a polynomial whose leading coefficient is nowhere zero, that is Hurwitz at one point of the
-box and nowhere zero on the axis, is Hurwitz everywhere: roots move continuously. With p(j w) = a +
-j w b that is: a at w = 0 is nowhere zero, and a and b are nowhere zero together.
+Hurwitz: a polynomial is Hurwitz in the whole box if its leading coefficient is nowhere zero, if it
+is Hurwitz at one point, and if it is nowhere zero on the axis, because roots move continuously.
+With p(j w) = a + j w b the last condition is: a at w = 0 is nowhere zero, and a and b have no
+common zero.
 
-Passive at one port: p/q is positive real if p + c q is Hurwitz for some c > 0, and Re p conj q >= 0
-on the axis. At two ports: no pole in the right half plane and none on the axis but at 0 and at
-infinity, where residues are symmetric and positive semidefinite, and the Hermitian part is positive
-semidefinite on the axis. Absolutely stable: the conditions of `checker/absolute_stability.py`, with
-the same poles. Families with other poles on the axis are not proved at two ports.
+Passive, one port: p/q is positive real if p + c q is Hurwitz for some c > 0, and Re p conj q >= 0
+on the axis.
+
+Passive, two ports: no pole lies in the right half plane, and none on the axis but at 0 and at
+infinity. The residues there are symmetric and positive semidefinite, and the Hermitian part is
+positive semidefinite on the axis.
+
+Absolutely stable: the conditions of `checker/absolute_stability.py`, with the same poles. For two
+ports, families with other poles on the axis are not proved.
 """
 
 from __future__ import annotations
@@ -28,7 +33,10 @@ from .box import ValueBox
 
 @dataclass
 class Conditions:
-    """Asks for signs over one box, of polynomials in S and the symbols of its values."""
+    """Tests of polynomials in S and the symbols of values, over one box.
+
+    symbols: of the values;  ends: their intervals;  effort: of the proofs
+    """
 
     symbols: Sequence[sp.Symbol]
     ends: Ends
@@ -36,15 +44,18 @@ class Conditions:
 
     @classmethod
     def over(cls, box: ValueBox, symbols: Mapping[str, sp.Symbol]) -> Conditions:
-        """For that box."""
+        """Tests over that box; symbols: name of a value -> its symbol."""
         return cls([symbols[n] for n in box.names], box.exact)
 
     def poly(self, expression: sp.Expr) -> sp.Poly:
-        """As polynomial in S and the symbols; PolynomialError where it is none."""
+        """The expression as a polynomial in S and the symbols.
+
+        raises PolynomialError: the expression is no such polynomial
+        """
         return sp.Poly(expression, S, *self.symbols, domain="QQ")
 
     def is_hurwitz(self, p: sp.Poly) -> bool:
-        """Whether all roots have a negative real part, everywhere in the box."""
+        """Whether it is shown that all roots have a negative real part, everywhere in the box."""
         if p.is_zero or not self.nonzero(leading_coefficient(p)):
             return False
         if not is_hurwitz(self.middle(p)) or not self.nonzero(_coefficient(p, 0)):
@@ -53,17 +64,20 @@ class Conditions:
         return p.degree() == 0 or excludes_zero_over(halves(p), self.ends, unit, self.effort)
 
     def middle(self, p: sp.Poly) -> sp.Poly:
-        """The polynomial in S in the middle of the box."""
+        """The polynomial in S at the middle of the box."""
         middle = [sp.Rational(str((a + b) / 2)) for a, b in self.ends]
         at_centre = p.as_expr().subs(dict(zip(self.symbols, middle, strict=True)))
         return sp.Poly(at_centre, S, domain="QQ")
 
     def nonzero(self, p: sp.Poly) -> bool:
-        """Whether a polynomial in the symbols is zero nowhere in the box."""
+        """Whether a polynomial in the symbols is shown to be zero nowhere in the box."""
         return excludes_zero_over((p,), self.ends, Fraction(1), self.effort)
 
     def non_negative(self, p: sp.Poly, unit: Fraction = Fraction(1)) -> bool:
-        """Whether p(x, values) >= 0 for all x >= 0, everywhere in the box; unit: of x."""
+        """Whether p(x, values) >= 0 is shown for all x >= 0, everywhere in the box.
+
+        unit: scale of x, any number > 0
+        """
         return is_non_negative_over(p, self.ends, unit, self.effort)
 
 
@@ -123,10 +137,10 @@ def _are_all_non_negative(
 def _common(
     ask: Conditions, z: sp.Matrix
 ) -> tuple[list[sp.Poly], sp.Poly, list[list[sp.Poly]]] | None:
-    """Numerators n_ij, one denominator d, and residues at 0 and infinity, times numbers > 0.
+    """Numerators n_ij, one denominator d, and residues at infinity and 0, times numbers > 0.
 
-    None where d has, or may have, another zero than one at s = 0 in the closed right half plane, or
-    an entry grows faster than s
+    returns: None where it is not shown that d has no zero in the closed right half plane but a
+        simple one at s = 0, or where an entry grows faster than s
     """
     parts = [tuple(map(ask.poly, sp.fraction(sp.cancel(e)))) for e in z]
     d = parts[0][1]
@@ -149,7 +163,7 @@ def _common(
 
 
 def _divide_out(p: sp.Poly, size: sp.Poly) -> sp.Poly:
-    """The polynomial divided by abs(d)^2 > 0 as often as that goes."""
+    """The polynomial divided by `size`, which is abs(d)^2 >= 0, as often as `size` divides it."""
     while size.degree() > 0 and not p.is_zero:
         quotient, rest = sp.div(p, size)
         if not rest.is_zero:
@@ -159,7 +173,7 @@ def _divide_out(p: sp.Poly, size: sp.Poly) -> sp.Poly:
 
 
 def leading_coefficient(p: sp.Poly) -> sp.Poly:
-    """Coefficient of the highest power of s, in x (not there) and the symbols."""
+    """Coefficient of the highest power of s: a polynomial in the symbols (formally also in x)."""
     return _coefficient(p, p.degree())
 
 
@@ -180,26 +194,29 @@ def halves(p: sp.Poly) -> tuple[sp.Poly, sp.Poly]:
 
 
 def cross(p: sp.Poly, q: sp.Poly) -> tuple[sp.Poly, sp.Poly]:
-    """(a, b) in x with p(j w) conj q(j w) = a + j w b."""
+    """(a, b) in x = w^2 and the symbols with p(j w) conj q(j w) = a + j w b."""
     (a, b), (c, d) = halves(p), halves(q)
     x = sp.Poly(X, *a.gens, domain="QQ")
     return a * c + x * b * d, b * c - a * d
 
 
 def real_part(p: sp.Poly, q: sp.Poly) -> sp.Poly:
-    """Re p(j w) conj q(j w) in x."""
+    """Re p(j w) conj q(j w) as a polynomial in x = w^2 and the symbols."""
     return cross(p, q)[0]
 
 
 def size_of(p: sp.Poly, q: sp.Poly) -> sp.Rational:
-    """A power of 2 near abs(p/q) on the axis: p and c q are alike then; any c > 0 would do."""
+    """A power of 2 near abs(p/q) on the axis, for the c > 0 of the proof; any c > 0 is correct.
+
+    p, q: in S alone
+    """
     w = float(scale(p + q)) ** 0.5
     above, below = (sum(abs(float(c)) * w**k for (k,), c in one.terms()) for one in (p, q))
     return sp.Rational(2) ** round(float(np.log2(above / below))) if above and below else sp.S(1)
 
 
 def scale(p: sp.Poly) -> Fraction:
-    """A power of 4 near the squared geometric mean of abs(roots): where x is halved first.
+    """A power of 4 near the squared geometric mean of abs(roots): the x of the first halving.
 
     p: in S alone
     """

@@ -1,4 +1,4 @@
-"""A linear diagram with some of its values as symbols: what it is at all points of a box."""
+"""Families of linear diagrams: a linear diagram with some of its values as symbols."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ from ..linear.in_full import effect_modes, stage_rows
 from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
-#: points inside the box at which the family is held against the diagram; each costs about 0.1 s
+#: points inside the box at which the family is compared with the diagram; each costs about 0.1 s
 _COMPARED = 2
 
 
 @dataclass(frozen=True)
 class Family:
-    """A diagram whose bodies with a structure are apart, and the symbols of its values.
+    """A linear diagram with some of its values as symbols.
 
-    linear: forms of all blocks in S and the symbols
+    diagram: with each body that has a structure separated into two bodies
+    symbols: name of a value -> its symbol;  linear: forms of all blocks in S and the symbols
     """
 
     diagram: Diagram
@@ -39,20 +40,20 @@ class Family:
 
     @property
     def is_rational(self) -> bool:
-        """Whether no dead time is in it."""
+        """Whether no block has a dead time."""
         linear = self.linear
         forms = (*linear.blocks.values(), *linear.along.values(), *linear.actuation.values())
         return not self.linear.dead_times and not any(sp.sympify(f).has(sp.exp) for f in forms)
 
     def impedance(self) -> sp.Matrix:
-        """Forces over velocities at the ports, in S and the symbols."""
+        """Impedance matrix at the ports, forces over velocities, in S and the symbols."""
         return impedance_matrix(self.diagram, ports(self.diagram), linear=self.linear)
 
     def characteristic(self) -> sp.Expr:
-        """Determinant of all equations, times the blocks' denominators: its zeros are the poles.
+        """Determinant of all equations, times the denominators of the blocks, in S and the symbols.
 
-        Those that no port sees are among them, and those that a zero of the same block cancels, of
-        blocks whose values are symbols as well. In S and the symbols
+        Its zeros are all poles. Poles that no port shows are included, and poles that a zero of the
+        same block cancels, also in blocks whose values are symbols.
         """
         free = set(self.diagram.outside)
         unknown = [s for s in self.diagram.signals if s not in free]
@@ -74,7 +75,7 @@ class Family:
         return whole * self._cancelled_by_effects()
 
     def _cancelled_by_effects(self) -> sp.Expr:
-        """Modes of states of effects that their bodies' forms do not show."""
+        """Modes of effects that the form of their body does not show: a polynomial in S."""
         hidden = sp.S(1)
         for part in self.diagram.bodies:
             if not isinstance(part.body, Body):
@@ -92,7 +93,7 @@ class Family:
         return hidden
 
     def _cancelled_within(self, part: Control) -> sp.Expr:
-        """What the denominators of its stages have more than the form of the whole controller."""
+        """Poles of a controller's stages that the form of the whole controller lacks."""
         assert isinstance(part.controller, Controller)
         symbols = {n.partition(".")[2]: s for n, s in self.symbols.items()
                    if n.startswith(f"{part.name}.")}  # fmt: skip
@@ -104,12 +105,12 @@ class Family:
 
 
 def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
-    """The diagram with the box's values as symbols.
+    """The diagram with the values of the box as symbols.
 
-    None where it has no such form: a value that a block does not show in its linear form (of a
-    body's structure, of a system of numbers), one whose form changes within the box, or one
-    of a law that takes the velocity of another motion than its input
-    raises ModelError: a block known by its name only
+    returns: None where there is no such form: a value is not in the linear form of its block (in a
+        body's structure, in a system of numbers), the form changes within the box, or a law takes
+        the velocity of another motion than its input
+    raises ModelError: a block without values
     """
     whole = _separate_structures(diagram)
     linear = linear_blocks(whole)
@@ -132,7 +133,7 @@ def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
 def _forms(
     diagram: Diagram, name: str, symbols: Mapping[str, sp.Symbol]
 ) -> tuple[sp.Expr, sp.Expr] | None:
-    """Forms of a block, and of its actuation, with these parameters as symbols; None: not there."""
+    """Forms of a block and of its actuation, with these parameters as symbols; None: none exist."""
     part = diagram.block(name)
     if isinstance(part, Control):
         law = part.controller
@@ -159,7 +160,7 @@ def _forms(
 
 
 def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
-    """Of one stage as stated, with its parameters that are symbols; nothing is cancelled."""
+    """Denominator of one stage without cancellation, with some of its parameters as symbols."""
 
     def placed(name: str, value: float) -> sp.Expr:
         return symbols.get(f"{stage.name}.{name}", exact_decimal(value))
@@ -179,7 +180,7 @@ def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Exp
 
 
 def _separate_structures(diagram: Diagram) -> Diagram:
-    """As `drop_absent_effects` has it, bodies with a structure apart; no linear form is made."""
+    """The diagram without absent effects, and with each structure as a separate body."""
     for part in diagram.bodies:
         if isinstance(part.body, Body):
             diagram = diagram.with_block(part.name, without_absent(part.body))
@@ -187,9 +188,10 @@ def _separate_structures(diagram: Diagram) -> Diagram:
 
 
 def _agrees(family: Family, diagram: Diagram, box: ValueBox) -> bool:
-    """Whether its blocks are exactly those of the diagram, inside and at two opposite vertices.
+    """Whether the blocks of a family are exactly those of the diagram at some points of the box.
 
-    An effect that its values make absent is so at an end of an interval.
+    The points are two inside the box and two opposite vertices, because values may make an effect
+    absent at an end of an interval.
     """
     varied = {n.partition(".")[0] for n in box.names}
     # a body that is parted at its structure is several blocks: all are compared then

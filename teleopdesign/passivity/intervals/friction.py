@@ -1,9 +1,9 @@
-"""Friction and its cancellation over a box: vertices decide where each condition is monotone.
+"""Claims over a box for friction with its cancellation: the vertices of the box decide.
 
 A Dahl or bounded cancellation (f_D, sigma_D) of Coulomb or Dahl friction (f_C, sigma_p) is passive
 if f_D <= f_C and sigma_D^2 f_C <= sigma_p^2 f_D (`theorems/dahl_compensation.py`). Written as
-f_C - f_D >= 0 and sigma_p^2 f_D - sigma_D^2 f_C >= 0, each side is monotone in each of the four
-positive values by itself, so its least value over a box is at a vertex. The linear part of the
+f_C - f_D >= 0 and sigma_p^2 f_D - sigma_D^2 f_C >= 0, each left side is monotone in each of the
+four positive values alone, so its least value over a box is at a vertex. The linear part of the
 diagram is judged over the whole box. Any other friction is judged only at the vertices and in the
 middle.
 """
@@ -27,12 +27,15 @@ from .conditions import Conditions, one_port_is_passive, two_port_is_passive
 from .family import family_of
 from .linear import hides_no_growth
 
-#: effects of which the conditions above are all that is asked, with their values
+#: effects that the two conditions cover completely, with their values
 _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
 
 
 def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]:
-    """What is known of the passivity of a diagram with friction over a box."""
+    """Judge the passivity (or absolute stability) of a diagram with friction over a box.
+
+    claim: "passive" or "absolutely stable";  returns: fields of an `IntervalClaim`
+    """
     points = [*box.vertices(), box.centre]
     answers = [(point, *_claims_at(middle.with_values(box.named(point)))) for point in points]
     made: dict[str, Any] = {
@@ -64,7 +67,7 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]
 
 
 def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
-    """The composed proof at a point, None where there is none, and claims on its friction."""
+    """The proof from the parts of a diagram (None: no such proof), and claims on its friction."""
     there = drop_absent_effects(diagram)
     pairs = friction_pairs(there)
     composed = composed_claim(there, ports(there), pairs)
@@ -73,7 +76,7 @@ def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
 
 
 def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
-    """Whether every varied value of friction stands in the two conditions alone."""
+    """Whether the two conditions, and so the vertices, decide for all values of friction."""
     for pair in friction_pairs(drop_absent_effects(middle)):
         body, law = pair.body.body, pair.cancellation
         assert isinstance(body, Body)
@@ -99,7 +102,7 @@ def _is_of(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
 
 
 def _belongs_to_friction(name: str, pairs: list[FrictionPair]) -> bool:
-    """Whether a value is one of friction or its cancellation, and not of the linear rest."""
+    """Whether a value belongs to friction or its cancellation, and not to the linear rest."""
     block, _, rest = name.partition(".")
     laws = [pair.cancellation.name for pair in pairs if pair.cancellation is not None]
     bodies = [pair.body.name for pair in pairs]
@@ -107,7 +110,7 @@ def _belongs_to_friction(name: str, pairs: list[FrictionPair]) -> bool:
 
 
 def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
-    """Whether what is left without friction and its cancellation is passive over its values."""
+    """Whether the diagram without friction and cancellation is passive over the whole box."""
     rest = drop_absent_effects(middle)
     pairs = friction_pairs(rest)
     for pair in pairs:

@@ -1,4 +1,4 @@
-"""A claim over intervals of values: what is known of it, where it is worst, and how it is known."""
+"""The result of a claim over intervals of values: its status, worst case, and method."""
 
 from __future__ import annotations
 
@@ -21,16 +21,18 @@ Status = Literal["proved", "refuted", "evidence", "unknown"]
 
 @dataclass(frozen=True, eq=False)
 class IntervalClaim(ByValue):
-    """A claim over intervals of values.
+    """A claim over intervals of values, with its status and worst case.
 
-    status: "proved" over the whole box; "refuted" at `worst`; "evidence": holds at all points that
-        were looked at; "unknown"
-    margin: the least one evaluated, at `worst`, in `unit`
-    proved_margin: what the margin is proved to be at least, over the whole box; NaN: none is
-    points: at which it was looked at;  how: in words;  at_worst: the claim at `worst` alone
-    time: of the controllers: "any" where no computer samples one
-    certificates: of what is proved of a linear diagram, each verified by `checker`: of the margin's
-        bound over the whole box, and of the modes that no port shows
+    status: "proved" over the whole box; "refuted" at `worst`; "evidence": the claim holds at all
+        points that were evaluated; "unknown"
+    intervals: value -> (low, high);  worst: the values at the least margin
+    margin: the least margin that was evaluated, at `worst`, in `unit`
+    proved_margin: lower bound of the margin that is proved over the whole box; NaN: none
+    points: number of points that were evaluated;  how: the method in words
+    units: of the values;  at_worst: the claim at `worst` alone
+    time: of the controllers: "any" where no controller is sampled
+    certificates: for a linear diagram, each verified by `checker`: one for the bound of the margin
+        over the whole box, one for the modes that no port shows
     """
 
     statement: str
@@ -49,17 +51,17 @@ class IntervalClaim(ByValue):
 
     @property
     def holds(self) -> bool | None:
-        """Whether it holds, as far as is known; None where it is unknown."""
+        """Whether the claim holds, as far as is known; None where the status is "unknown"."""
         return {"proved": True, "evidence": True, "refuted": False}.get(self.status)
 
     @property
     def limited(self) -> str:
-        """What a proof adds to its words where a computer samples some controller."""
+        """Words that limit a proof to continuous time; "" where no controller is sampled."""
         return " (in continuous time)" if self.time == "continuous" else ""
 
     @property
     def known(self) -> str:
-        """How it is known, in the words that every report of it has."""
+        """Status and method in words, as every report of the claim states them."""
         return {
             "proved": f"proved over the whole box{self.limited}",
             "refuted": "refuted at a point of the box",
@@ -88,14 +90,17 @@ class IntervalClaim(ByValue):
         return html_table(self.known, head, rows, note=note)
 
 
-#: what is made of a claim over a box before it has units and all its intervals
+#: fields of an `IntervalClaim` before units and all intervals are added
 Parts = dict[str, Any]
 
 
 def parts_of(
     statement: str, status: Status, worst: Worst, box: ValueBox, unit: str, how: str, **more: Any
 ) -> Parts:
-    """Status, worst point and words of a claim over a box."""
+    """Fields of an `IntervalClaim` from its status, its worst point and its words.
+
+    more: fields that differ from the defaults
+    """
     return {
         "statement": statement,
         "status": status,

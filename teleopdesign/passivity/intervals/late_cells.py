@@ -1,9 +1,9 @@
-"""Quasi-polynomials with dead times over a box: no zero on the axis, shown part by part.
+"""Show that a quasi-polynomial with dead times has no zero on the axis, for all values of a box.
 
-About the middle m of a part, with half widths r, a monomial moves by at most (abs(m) + r)^a -
-abs(m)^a, and e^(-j w tau) by at most the change of w tau. So f(jw) is not zero in a part where
-abs(f) in its middle is more than the sum of these. A part that does not satisfy this is halved,
-along the variable that changes f most.
+The box is divided into parts. Within a part with middle m and half widths r, a monomial changes by
+at most (abs(m) + r)^a - abs(m)^a, and e^(-j w tau) changes by at most the change of w tau. So f(jw)
+is not zero in a part where abs(f) in the middle is larger than the sum of these changes. A part for
+which this is not so is halved along the variable that changes f most.
 
 Parts are stored by their ends, so no gap remains between two halves. Each part is first tested in
 plain floats. A part that passes is tested again in floats that are rounded outward (`outward`),
@@ -21,21 +21,21 @@ import numpy as np
 from .late_terms import LateTerms
 from .outward import Outward, cosine_and_sine, least_size, most_size, next_above, stack, sum_above
 
-#: parts that are looked at in all: some ten seconds on one core
+#: most parts that are tested: some ten seconds on one core
 _MOST_PARTS = 400_000
-#: halves of the range of w that are made before any part is looked at
+#: parts of the range of w at the start
 _FIRST = 64
-#: numbers in one array of parts and terms, 8 MiB: more parts are looked at in turn
+#: most numbers in one array of parts and terms, 8 MiB: more parts are tested in several arrays
 _MOST_NUMBERS = 1_000_000
 
 
 @dataclass(frozen=True)
 class _Group:
-    """Terms with one late factor.
+    """Terms that share one late factor e^(-s sum b T).
 
     late: b;  powers: of s (of 1/w where `outside`) and of the values, (terms, 1 + values)
-    real, imaginary: which terms add to those parts of f on the axis
-    turned: their coefficients with the sign of j^k, without the j
+    real, imaginary: indices of the terms in the real and in the imaginary part of f(jw)
+    turned: coefficients with the sign of j^k, without the factor j
     """
 
     late: np.ndarray
@@ -46,9 +46,10 @@ class _Group:
 
 
 def is_zero_free(terms: LateTerms, *, most: int = _MOST_PARTS) -> int | None:
-    """How many parts show that f(jw) is nowhere zero, T from 0 on; None: it is not shown.
+    """Number of parts that show that f(jw) is nowhere zero, for all dead times from 0 on.
 
-    most: parts that are looked at
+    most: largest number of parts
+    returns: None where nothing is shown
     """
     if terms.groups()[0][0].any():
         return None  # every term is late: dead times may be taken off, which is not done here
@@ -94,7 +95,10 @@ def _groups(terms: LateTerms, outside: bool) -> list[_Group]:
 def _show(
     groups: Sequence[_Group], low: np.ndarray, high: np.ndarray, outside: bool, most: int
 ) -> int | None:
-    """Parts that it takes; outside: the first variable is 1/w."""
+    """Number of parts that show that f(jw) is not zero between `low` and `high`; None: not shown.
+
+    outside: whether the first variable is 1/w instead of w
+    """
     edges = np.linspace(low[0], high[0], _FIRST + 1)
     lows, highs = np.tile(low, (_FIRST, 1)), np.tile(high, (_FIRST, 1))
     lows[:, 0], highs[:, 0] = edges[:-1], edges[1:]
@@ -118,7 +122,7 @@ def _show(
 
 
 def _hold(groups: Sequence[_Group], low: np.ndarray, high: np.ndarray, outside: bool) -> np.ndarray:
-    """Where f is shown not to be zero, (parts,)."""
+    """Whether f is shown to have no zero in each part, (parts,)."""
     middle = low + (high - low) / 2
     value, moved = _in_floats(groups, middle, high - middle, outside)
     if outside:
@@ -136,7 +140,7 @@ def _hold(groups: Sequence[_Group], low: np.ndarray, high: np.ndarray, outside: 
 def _is_shown(
     groups: Sequence[_Group], low: np.ndarray, high: np.ndarray, outside: bool
 ) -> np.ndarray:
-    """As `_hold`, by intervals that are rounded outward."""
+    """As `_hold`, but with intervals that are rounded outward."""
     middle, half = Outward(low, high).middle()
     n = groups[0].powers.shape[1]
     values, moves = [], []
@@ -164,7 +168,7 @@ def _is_shown(
 def _polynomial(
     group: _Group, middle: np.ndarray, half: np.ndarray
 ) -> tuple[tuple[Outward, Outward], np.ndarray]:
-    """Real and imaginary part in the middle of parts, and how far it moves within at most."""
+    """Real and imaginary part of a group in the middle of parts, and a bound of their change."""
     exact = Outward.exactly(np.ones((len(middle), len(group.powers))))
     most = exact.high
     for i in range(middle.shape[1]):
@@ -185,7 +189,7 @@ def _polynomial(
 
 
 def _angle(late: np.ndarray, middle: np.ndarray, half: np.ndarray) -> tuple[Outward, np.ndarray]:
-    """w tau in the middle of parts, rad, and how much more it is within at most."""
+    """w tau in the middle of parts, rad, and a bound of its increase within the part."""
     first = middle.shape[1] - len(late)
     factors = Outward.exactly(late.astype(float))
     longest = next_above(middle[:, first:] + half[:, first:])
@@ -198,7 +202,7 @@ def _angle(late: np.ndarray, middle: np.ndarray, half: np.ndarray) -> tuple[Outw
 def _moves(
     groups: Sequence[_Group], middle: np.ndarray, half: np.ndarray, outside: bool
 ) -> np.ndarray:
-    """How much each variable alone moves f in each part, (parts, variables)."""
+    """Bound of the change of f by each variable alone in each part, (parts, variables)."""
     alone = [np.where(np.arange(half.shape[1]) == i, half, 0.0) for i in range(half.shape[1])]
     return np.stack(
         [_in_floats(groups, middle, one, outside)[1].sum(axis=0) for one in alone], axis=1
@@ -208,7 +212,7 @@ def _moves(
 def _in_floats(
     groups: Sequence[_Group], middle: np.ndarray, half: np.ndarray, outside: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Value and largest move of each late factor's share, (groups, parts); rounding left out.
+    """Value in the middle and bound of the change of each group, (groups, parts); in plain floats.
 
     outside: of f/w^n over 1/w, without the late factors
     """
@@ -233,7 +237,7 @@ def _in_floats(
 
 
 def _monomials(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
-    """(parts, terms)."""
+    """Values of monomials at points, (parts, terms)."""
     out = np.ones((len(points), len(powers)))
     for i in range(points.shape[1]):
         table = points[:, i, None] ** np.arange(powers[:, i].max() + 1)
@@ -242,7 +246,10 @@ def _monomials(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
 
 
 def _find_fastest(terms: LateTerms) -> float:
-    """A frequency beyond which the first polynomial outweighs the others, rad/s; by samples."""
+    """A frequency, rad/s, above which the first polynomial is larger than the others together.
+
+    The choice is by samples. `is_zero_free` then tests all frequencies above it.
+    """
     ends = np.array([[float(a), float(b)] for a, b in terms.values]).reshape(-1, 2)
     w = np.geomspace(1e-6, 1e9, 1501)
     fastest, far = 1e-6, w > 1e8
@@ -262,6 +269,6 @@ def _find_fastest(terms: LateTerms) -> float:
 
 
 def _on_axis(group: _Group, points: np.ndarray) -> np.ndarray:
-    """Of a group without its late factor, in floats; points: w and values."""
+    """Values of a group on the axis without its late factor, in floats; points: w and values."""
     here = _monomials(points, group.powers) * group.turned.high
     return np.asarray(here[:, group.real].sum(axis=1) + 1j * here[:, group.imaginary].sum(axis=1))

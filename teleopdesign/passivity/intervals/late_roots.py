@@ -1,6 +1,8 @@
-"""Roots of a quasi-polynomial with dead times: the rightmost one found, and a proof of one.
+"""Roots of a quasi-polynomial with dead times: a search for the rightmost one, and a proof of it.
 
-f(s) = sum_k p_k(s) e^(-s T_k),   as dead time (s) -> coefficients in s, highest first
+    f(s) = sum_k p_k(s) e^(-s T_k)
+
+It is stored as a mapping: dead time T_k (s) -> coefficients of p_k, highest power first.
 """
 
 from __future__ import annotations
@@ -17,16 +19,16 @@ from .late_terms import ExactTerms
 
 Terms = Mapping[float, np.ndarray]
 
-#: steps in which the dead times grow to their size, and of Newton's method in each
+#: steps in which the dead times grow from 0 to their values, and Newton steps in each of them
 _STEPS, _NEWTON = 20, 3
-#: minima of abs(f) along the axis from which zeros are sought
+#: most minima of abs(f) along the axis from which a search for zeros starts
 _LOWEST = 12
 
 
 def rightmost_root(terms: Terms) -> complex:
-    """Of the zeros that a search finds the one with the largest real part, 1/s; -inf: none.
+    """The zero with the largest real part that a search reaches, 1/s; -inf: none.
 
-    Followed from those without dead times, and from where abs(f) is small along the axis.
+    The search starts from the zeros without dead times, and from minima of abs(f) along the axis.
     """
     degree = max(map(len, terms.values())) - 1
     together = np.zeros(degree + 1)
@@ -53,8 +55,9 @@ def rightmost_root(terms: Terms) -> complex:
 def holds_root(terms: ExactTerms, at: complex) -> float | None:
     """Radius of a disc about `at` in which f has a zero, by Rouche's theorem; None: not shown.
 
-    On its edge f - f'(at) (s - at) is smaller than f'(at) (s - at): the rest of the series is
-    bounded by that of the same series with all its terms positive. In intervals, rounded outward.
+    On the edge of the disc f - f'(at) (s - at) is smaller than f'(at) (s - at). The rest of the
+    series is bounded by the same series with all terms positive. The bounds are intervals that are
+    rounded outward.
     """
     x, y = Fraction(at.real), Fraction(at.imag)
     # not below the size of `at`
@@ -74,7 +77,10 @@ def holds_root(terms: ExactTerms, at: complex) -> float | None:
 def _further(
     coefficients: Sequence[Fraction], time: Fraction, x: Fraction, base: Fraction, radius: Fraction
 ) -> sp.Expr:
-    """What p e^(-s T) may move beyond its tangent within a disc about a point not beyond `base`."""
+    """Bound of the deviation of p e^(-s T) from its tangent within a disc about a point.
+
+    x: real part of the point;  base: bound of its absolute value;  radius: of the disc
+    """
     sizes = [abs(c) for c in coefficients]
     first = _value(sizes, (base, Fraction(0)))[0]
     bent = _value(_slopes(sizes), (base, Fraction(0)))[0] + time * first
@@ -86,7 +92,7 @@ def _further(
 def _enclose_at(
     terms: ExactTerms, x: Fraction, y: Fraction
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Bounds of abs(f)^2 and of abs(f')^2 at x + j y."""
+    """Lower and upper bounds of abs(f)^2 and of abs(f')^2 at x + j y."""
     value, slope = [sp.S(0), sp.S(0)], [sp.S(0), sp.S(0)]
     for t, p in terms.items():
         a, b = _value(p, (x, y))
@@ -103,7 +109,7 @@ def _enclose_at(
 def _value(
     coefficients: Sequence[Fraction], at: tuple[Fraction, Fraction]
 ) -> tuple[Fraction, Fraction]:
-    """Real and imaginary part of a polynomial, exactly."""
+    """Real and imaginary part of a polynomial at a complex number, exactly."""
     a, b = Fraction(0), Fraction(0)
     for c in coefficients:
         a, b = a * at[0] - b * at[1] + c, a * at[1] + b * at[0]
@@ -111,7 +117,7 @@ def _value(
 
 
 def _slopes(coefficients: Sequence[Fraction]) -> list[Fraction]:
-    """Of the derivative."""
+    """Coefficients of the derivative of a polynomial, highest power first."""
     n = len(coefficients) - 1
     return [c * (n - i) for i, c in enumerate(coefficients[:-1])]
 
@@ -130,7 +136,7 @@ def _improve(terms: Terms, s: np.ndarray, steps: int) -> np.ndarray:
 
 
 def _values(terms: Terms, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """f, f' and the sum of the sizes of all its terms at points s."""
+    """f, f' and the sum of the absolute values of all terms, at points s, (n,) each."""
     value, slope, scale = 0 * s, 0 * s, np.zeros(len(s))
     with np.errstate(all="ignore"):
         for t, p in terms.items():

@@ -1,19 +1,22 @@
-"""Stability over intervals of dead times and other values: no pole crosses the axis anywhere.
+"""Stability over intervals of dead times and other values: no pole crosses the axis.
 
     f(s) = sum_b p_b(s, v) e^(-s tau_b),   tau_b = sum_k b_k T_k,   tau_0 = 0
 
 All zeros of f have Re s < 0, for all values v of a box and all dead times T_k from 0 to their
-largest, where
+largest values, if
 
 1. at one v, with all T_k = 0, f is Hurwitz;
 2. abs(p_0(jw, v)) > sum over b > 0 of abs(p_b(jw, v)) for w >= W, its limit included;
 3. f(jw) is not 0 for 0 <= w <= W, for all v and T_k.
 
-For in Re s >= 0 no e^(-s tau) is larger than 1, so that by 2 in its limit zeros there are bounded;
-they move continuously with v and T, and by 2 and 3 none is ever on the axis. Zero exclusion and
-continuity: Stepan, Retarded Dynamical Systems (1989); Gu, Kharitonov, Chen (2003), section 1.3.
-2 and 3 are shown part by part of the box (`late_cells`), by intervals of floats that are rounded
-outward; 1 is exact. f holds all modes, those that no signal shows included (`Family`).
+The reason: for Re s >= 0 no abs(e^(-s tau)) is larger than 1, so by 2 in its limit the zeros there
+are bounded. They move continuously with v and T, and by 2 and 3 no zero is ever on the axis. Zero
+exclusion and continuity: Stepan, Retarded Dynamical Systems (1989); Gu, Kharitonov, Chen (2003),
+section 1.3.
+
+Condition 1 is decided exactly. Conditions 2 and 3 are shown for each part of the box (`late_cells`)
+with intervals of floats that are rounded outward. f contains all modes, also those that no signal
+shows (`Family`).
 """
 
 from __future__ import annotations
@@ -42,8 +45,11 @@ _STATEMENT = "every pole has a negative real part"
 
 
 def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts | None:
-    """Whether all poles of a diagram with delay blocks lie left of the axis; None: it has another
-    dead time, or values that are not in its linear forms.
+    """Judge whether all poles of a diagram with delay blocks have a negative real part, over a box.
+
+    middle: the diagram with values in the middle of the box;  points, seed: of `search_worst`
+    returns: fields of an `IntervalClaim`; None where the diagram has no delay block, has another
+        dead time, or has values that are not in its linear forms
     """
     made = _late_terms(middle, box)
     if made is None:
@@ -77,7 +83,7 @@ def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int)
 
 
 def _late_terms(middle: Diagram, box: ValueBox) -> tuple[LateTerms, sp.Poly] | None:
-    """f over the box, and f without dead times in its middle."""
+    """f over the box, and f at the middle of the box without dead times; None: no such form."""
     plain, times = _with_marks(middle)
     if not times:
         return None
@@ -119,7 +125,7 @@ def _exact(value: float) -> Fraction:
 
 
 def _with_marks(diagram: Diagram) -> tuple[Diagram, dict[str, str]]:
-    """The diagram with gains in the place of delays; gain's name -> name of the dead time."""
+    """The diagram with each delay replaced by a gain, and: name of the gain -> its dead time."""
     gain = controller("gain", {"gain": 0.75}).stages[0]
     times: dict[str, str] = {}
 

@@ -1,4 +1,4 @@
-"""Quasi-polynomials with values and dead times in intervals, in exact numbers."""
+"""Characteristic functions of systems with dead times (quasi-polynomials), in exact numbers."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import numpy as np
 from ...controllers import exact_decimal
 
 ExactEnds = tuple[Fraction, Fraction]
-#: dead time (s) -> coefficients in s, highest first
+#: a quasi-polynomial at a point: dead time (s) -> coefficients of s, highest power first
 ExactTerms = Mapping[Fraction, Sequence[Fraction]]
 
 
 @dataclass(frozen=True)
 class LateTerms:
-    """f(s) = sum of coefficient * s^k * values^a * e^(-s sum b T).
+    """A quasi-polynomial: f(s) = sum of coefficient * s^k * values^a * e^(-s sum b T).
 
-    coefficients: (m,);  powers: (m, 1 + values + times), k, a and b
-    values, times: intervals; of times the end is the largest, s
-    places, late: where in a point of the box each value and time stands; -1: it is fixed
+    coefficients: (m);  powers: k, a and b of each term, (m, 1 + values + times)
+    values: intervals of the values;  times: of the dead times T, s; only the upper end is used
+    places, late: index of each value and of each time in a point of the box; -1: fixed
     """
 
     coefficients: tuple[Fraction, ...]
@@ -37,7 +37,7 @@ class LateTerms:
         return int(self.powers[:, 0].max())
 
     def exactly_at(self, point: np.ndarray) -> ExactTerms:
-        """At a point of the box, whose numbers count as they are written."""
+        """The quasi-polynomial at a point of the box, exactly; a float is its shortest decimal."""
         values = [_fraction(point[i]) for i in self.places]
         known = zip(self.late, self.times, strict=True)
         times = [_fraction(point[i]) if i >= 0 else longest for i, (_, longest) in known]
@@ -51,13 +51,13 @@ class LateTerms:
         return {t: p for t, p in ((t, _drop_zeros(p)) for t, p in sorted(made.items())) if p}
 
     def at(self, point: np.ndarray) -> dict[float, np.ndarray]:
-        """As `exactly_at`, in floats; all coefficients over the largest one."""
+        """As `exactly_at`, but in floats, with all coefficients divided by the largest one."""
         exact = self.exactly_at(point)
         most = max((abs(c) for p in exact.values() for c in p), default=Fraction(1))
         return {float(t): np.array([float(c / most) for c in p]) for t, p in exact.items()}
 
     def groups(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """(b, which terms) for each late factor; that without dead time first."""
+        """(b, indices of terms) for each late factor e^(-s sum b T); without dead time first."""
         late = self.powers[:, 1 + len(self.values) :]
         kinds = np.unique(late, axis=0)
         kinds = kinds[np.argsort(kinds.sum(axis=1), kind="stable")]
@@ -69,6 +69,6 @@ def _fraction(value: float) -> Fraction:
 
 
 def _drop_zeros(coefficients: Sequence[Fraction]) -> list[Fraction]:
-    """Without zeros in front."""
+    """The coefficients without leading zeros."""
     first = next((i for i, c in enumerate(coefficients) if c), len(coefficients))
     return list(coefficients[first:])

@@ -1,4 +1,4 @@
-"""Claims about linear diagrams over a box: exact where the diagram is rational, else at points."""
+"""Claims over a box about linear diagrams: exact for rational diagrams, else at points."""
 
 from __future__ import annotations
 
@@ -28,14 +28,19 @@ from .interval_claim import Parts, Status, parts_of
 from .late_stability import judge_late_stability
 from .worst import MarginFunction, pole_margin, port_margin, search_worst
 
-#: claims that the package knows, and the unit of their margins
+#: names of claims -> units of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
-#: shares of the worst margin that are tested as its proved bound, the best first
+#: shares of the worst margin that are tested as proved bounds of the margin, the best first
 _SHARES = (0.999, 0.9, 0.5)
 
 
 def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts:
-    """Whether every pole of the whole diagram lies left of the axis."""
+    """Judge whether every pole of the whole diagram has a negative real part, over a box.
+
+    middle: the diagram with values in the middle of the box;  points, seed: of `search_worst`
+    returns: fields of an `IntervalClaim`
+    raises ModelError: a part is not linear, or a value is not in the linear form of its block
+    """
     statement = "every pole has a negative real part"
     if bent := nonlinear_within(middle, box):
         raise ModelError(f"{middle.name}: stable: {', '.join(bent)} has no linear form")
@@ -75,7 +80,7 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
 
 
 def _shift_roots(polynomial: sp.Poly, left: Fraction) -> sp.Poly:
-    """The polynomial whose roots lie further right by that much."""
+    """The polynomial with all roots moved to the right by `left` (1/s)."""
     expression = polynomial.as_expr().subs(S, S - sp.Rational(str(left)))
     return sp.Poly(expression, *polynomial.gens, domain="QQ")
 
@@ -86,7 +91,11 @@ def _polynomial_at(polynomial: sp.Poly, ask: Conditions, point: np.ndarray) -> s
 
 
 def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: int) -> Parts:
-    """Passivity or absolute stability of a linear diagram at its ports."""
+    """Judge the passivity or absolute stability of a linear diagram at its ports, over a box.
+
+    alone: the diagram without hand and environment;  claim: "passive" or "absolutely stable"
+    points, seed: of `search_worst`;  returns: fields of an `IntervalClaim`
+    """
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     family = family_of(alone, box)
     if family is None:
@@ -137,7 +146,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
 
 
 def margin_over(family: Family, box: ValueBox, claim: str) -> MarginFunction:
-    """The margin of a claim as a function of the box's values; numerical, compiled once."""
+    """The margin of a claim as a function of a point of the box; numerical, compiled once."""
     if claim == "stable":
         ask = Conditions.over(box, family.symbols)
         return pole_margin(ask.poly(family.characteristic()), ask.symbols)
@@ -161,16 +170,16 @@ def _is_proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
 
 
 def hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
-    """Whether all modes that the ports, left free, do not show are shown to die out."""
+    """Whether it is shown that all modes which the free ports do not show decay."""
     hidden = modes_inside(ask, family, z)
     return hidden is not None and ask.is_hurwitz(hidden)
 
 
 def modes_inside(ask: Conditions, family: Family, z: sp.Matrix) -> sp.Poly | None:
-    """Polynomial of all modes that the ports, left free, do not show; None: Z is singular.
+    """Polynomial of all modes that the free ports do not show; None where Z is singular.
 
-    An impedance is what ports do from rest: what a zero cancels in it may grow by itself inside.
-    Shown are the poles of the ports' positions for their forces, a free mass among them.
+    An impedance describes the ports from rest. A mode that a zero cancels in it may grow by itself.
+    The ports show the poles of their positions for their forces, a free mass included.
     """
     if sp.cancel(z.det()) == 0:
         return None
@@ -182,7 +191,7 @@ def modes_inside(ask: Conditions, family: Family, z: sp.Matrix) -> sp.Poly | Non
 
 
 def _proof(made: Parts, certificates: Callable[[], tuple[Certificate, ...]]) -> Parts:
-    """A proof where the checker accepts its certificates, else what was computed exactly."""
+    """A proof, if the checker accepts its certificates; else the exact result as evidence."""
     try:
         accepted = certificates()
     except ModelError:
@@ -193,7 +202,7 @@ def _proof(made: Parts, certificates: Callable[[], tuple[Certificate, ...]]) -> 
 
 
 def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> Fraction:
-    """What Z may lose in damping at every port and is still proved to be passive, N s/m."""
+    """Damping that Z may lose at every port while it is still proved to be passive, N s/m."""
     if not 0 < margin < np.inf:
         return Fraction(0)
     show = one_port_is_passive if z.shape == (1, 1) else two_port_is_passive
@@ -206,7 +215,7 @@ def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> Fraction:
 
 
 def _settle(alone: Diagram, box: ValueBox, point: np.ndarray, claim: str) -> Claim:
-    """The claim at a point alone, by the exact tests."""
+    """The claim at a single point of the box, by the exact tests."""
     there = drop_absent_effects(alone.with_values(box.named(point)))
     try:
         claims = linear_claims(there, ports(there))
@@ -218,7 +227,7 @@ def _settle(alone: Diagram, box: ValueBox, point: np.ndarray, claim: str) -> Cla
 def _point_by_point(
     alone: Diagram, box: ValueBox, claim: str, points: int, seed: int, statement: str
 ) -> Parts:
-    """Where the values are not in the linear form as such: each point by itself."""
+    """Judge a claim at single points, for values that are not symbols in the linear forms."""
 
     def one(diagram: Diagram) -> Claim:
         there = drop_absent_effects(diagram)

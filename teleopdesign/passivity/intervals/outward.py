@@ -1,7 +1,7 @@
-"""Arrays of intervals of floats, every result rounded outward: no real value lies outside of them.
+"""Arrays of intervals of floats, rounded outward, so that each contains the true value.
 
 A sum, a difference, a product and a square root of floats are rounded to the nearest float (IEEE
-754). So the two neighbours of a result enclose the true value. Where a number is too large for a
+754). So the two neighbours of a result enclose the true value. If a number is too large for a
 float, an end is infinite or NaN. No comparison with NaN holds, so nothing is shown then. Sine and
 cosine are sums of their series, for the angle less its nearest multiple of a quarter turn; no
 library computes them.
@@ -17,16 +17,16 @@ from typing import Any
 
 import numpy as np
 
-#: of the series of sine and cosine, for |x| <= 1: what is left out is below 1/22!
+#: terms of the series of sine and cosine, for |x| <= 1: the rest is at most 1/22!, below _LEFT_OUT
 _TERMS = 11
 _LEFT_OUT = 1e-21
-#: relative error of a sum of n floats, each step rounded by 2^-53, is below n of this
+#: n times this bounds the relative error of a sum of n floats: each step is rounded by 2^-53
 _UNIT = 2.0**-52
 
 
 @dataclass(frozen=True, eq=False)
 class Outward:
-    """Intervals from low to high, arrays of one shape."""
+    """An array of intervals; low, high: their ends, arrays of one shape."""
 
     low: np.ndarray
     high: np.ndarray
@@ -69,65 +69,68 @@ class Outward:
         return Outward(next_below(least), next_above(most))
 
     def widen(self, by: np.ndarray) -> Outward:
-        """With ends that lie further out by that much, >= 0."""
+        """The intervals with both ends moved outward by that much, >= 0."""
         return Outward(next_below(self.low - by), next_above(self.high + by))
 
     def total(self) -> Outward:
-        """Sum over the last axis."""
+        """Intervals of the sums over the last axis."""
         return Outward(-sum_above(-self.low), sum_above(self.high))
 
     def largest(self) -> np.ndarray:
-        """Of the sizes of all their numbers."""
+        """Largest absolute value in each interval."""
         return np.asarray(np.maximum(np.abs(self.low), np.abs(self.high)))
 
     def smallest(self) -> np.ndarray:
-        """Of the sizes of all their numbers."""
+        """Smallest absolute value in each interval."""
         return np.asarray(np.maximum(np.maximum(self.low, -self.high), 0.0))
 
     def middle(self) -> tuple[np.ndarray, np.ndarray]:
-        """A float of each, and how far the ends lie from it at most."""
+        """A float inside each interval, and a bound of its distance from both ends."""
         at = self.low + (self.high - self.low) / 2
         return at, next_above(np.maximum(next_above(self.high - at), next_above(at - self.low)))
 
 
 def next_below(x: np.ndarray) -> np.ndarray:
-    """The floats before these."""
+    """The next smaller floats."""
     return np.asarray(np.nextafter(x, -np.inf))
 
 
 def next_above(x: np.ndarray) -> np.ndarray:
-    """The floats after these."""
+    """The next larger floats."""
     return np.asarray(np.nextafter(x, np.inf))
 
 
 def sum_above(x: np.ndarray) -> np.ndarray:
-    """Not less than the sum of floats over the last axis, in whatever order it is taken."""
+    """Upper bounds of the sums of floats over the last axis, for any order of summation."""
     wrong = (x.shape[-1] + 2) * _UNIT * np.abs(x).sum(axis=-1)
     return next_above(x.sum(axis=-1) + next_above(wrong))
 
 
 def stack(parts: Sequence[Outward]) -> Outward:
-    """Along a new last axis."""
+    """The arrays of intervals joined along a new last axis."""
     return Outward(
         np.stack([p.low for p in parts], axis=-1), np.stack([p.high for p in parts], axis=-1)
     )
 
 
 def least_size(real: Outward, imaginary: Outward) -> np.ndarray:
-    """Not more than the size of any complex number of these."""
+    """Lower bounds of the absolute values of all complex numbers in these intervals."""
     a, b = real.smallest(), imaginary.smallest()
     square = np.maximum(next_below(next_below(a * a) + next_below(b * b)), 0.0)
     return np.asarray(np.maximum(next_below(np.sqrt(square)), 0.0))
 
 
 def most_size(real: Outward, imaginary: Outward) -> np.ndarray:
-    """Not less than the size of any complex number of these."""
+    """Upper bounds of the absolute values of all complex numbers in these intervals."""
     a, b = real.largest(), imaginary.largest()
     return next_above(np.sqrt(next_above(next_above(a * a) + next_above(b * b))))
 
 
 def cosine_and_sine(angle: Outward) -> tuple[Outward, Outward]:
-    """Of angles in rad: the angle less its nearest multiple of a quarter turn, in the series."""
+    """Intervals of the cosine and the sine of angles (rad), from their series.
+
+    The series are for the angle less its nearest multiple of a quarter turn.
+    """
     at, spread = angle.middle()
     quarters = np.rint(at * (2 / np.pi))
     rest, more = (Outward.exactly(at) - Outward.exactly(quarters) * _QUARTER).middle()
@@ -141,7 +144,7 @@ def cosine_and_sine(angle: Outward) -> tuple[Outward, Outward]:
 
 
 def _turn_further(cosine: Outward, sine: Outward, quarters: np.ndarray) -> tuple[Outward, Outward]:
-    """Of the angle with so many quarter turns more: 0, 1, 2 or 3."""
+    """Cosine and sine of the angle plus 0, 1, 2 or 3 quarter turns."""
     turns = [(cosine, sine), (-sine, cosine), (-cosine, -sine), (sine, -cosine)]
     which = [quarters == k for k in range(4)]
     first, second = (
@@ -163,7 +166,7 @@ def _series(square: Outward, first: int) -> Outward:
 
 
 def _hold(value: Outward, known: np.ndarray) -> Outward:
-    """Within -1 and 1, which is all that is said where it is not known."""
+    """The intervals limited to -1..1; where `known` is False they are -1..1."""
     low, high = np.maximum(value.low, -1.0), np.minimum(value.high, 1.0)
     return Outward(np.where(known, low, -1.0), np.where(known, high, 1.0))
 
@@ -180,5 +183,5 @@ def _enclose(value: Fraction) -> tuple[float, float]:
     return float(np.nextafter(nearest, -np.inf)), nearest
 
 
-#: a quarter turn; pi/2 lies between this float and the next, as it is 1.5707963267948966 192...
+#: a quarter turn: pi/2 = 1.5707963267948966192... lies between this float and the next one
 _QUARTER = Outward(np.array(1.5707963267948966), np.nextafter(np.array(1.5707963267948966), np.inf))

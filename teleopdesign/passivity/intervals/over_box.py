@@ -1,4 +1,4 @@
-"""What is known of a claim over a box of values: the worst case, and how it is known."""
+"""Judge a claim over intervals of a diagram's values: status, worst case and method."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ def claim_over_intervals(
 ) -> IntervalClaim:
     """Does a claim hold for all values within intervals, and where is it worst?
 
-    intervals: names of `diagram.values` -> (low, high), SI; hand and environment as others
+    intervals: names of `diagram.values` -> (low, high), SI
     claim: "passive": at all ports together, hands and environments (`Z_H`, `Z_E`) left out;
         "absolutely stable": two ports between any passive terminations; "stable": every pole of the
-        whole diagram, hand and environment with it, has a negative real part, delay blocks and
-        intervals of their times included; or a function of a diagram that returns a margin (>= 0:
-        it holds) or a `Claim`
-    points: looked at beside the vertices and the middle;  seed: of these
-    returns: proved over the whole box where exact reasoning shows it (linear; with dead
-        times "stable" alone, from no dead time on, in floats that are rounded outward;
-        friction with its cancellation by the theorems on them), refuted at a point, or checked
-        numerically. Controllers act in continuous time
-    raises ModelError: an unknown value or claim, an interval that is none, no port
+        whole diagram, hand and environment included, has a negative real part; delay blocks and
+        intervals of their dead times are allowed. Or a function of a diagram that returns a margin
+        (>= 0: the claim holds) or a `Claim`
+    points: number of points that are evaluated besides the vertices and the middle;  seed: of these
+    returns: proved over the whole box, refuted at a point, or checked numerically. Proofs exist for
+        linear diagrams, for friction with its cancellation (by theorems), and, with dead times, for
+        "stable" alone: for all dead times from 0 on, in floats that are rounded outward.
+        Controllers act in continuous time
+    raises ModelError: an unknown value or claim, no valid interval, no port
     """
     middle, box = box_of(diagram, intervals)
     if callable(claim):
@@ -67,7 +67,7 @@ def claim_over_intervals(
 def _finish(
     diagram: Diagram, intervals: Mapping[str, tuple[float, float]], made: Parts
 ) -> IntervalClaim:
-    """With every value of the call, in units of the axis."""
+    """The result with all values of the call, in the units of the axis."""
     starts = {n: float(a) for n, (a, _) in intervals.items()}
     worst = {n: made["worst"].get(n, v) for n, v in starts.items()}
     within = ", ".join(f"{n} {float(a):g} to {float(b):g}" for n, (a, b) in intervals.items())

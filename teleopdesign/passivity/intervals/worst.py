@@ -1,4 +1,4 @@
-"""The least margin of a claim in a box, by search; no proof."""
+"""Search for the least margin of a claim in a box; numerical, no proof."""
 
 from __future__ import annotations
 
@@ -13,17 +13,20 @@ from ..two_port.two_port import passive_margin, stable_margin
 from .box import ValueBox
 from .family import Family
 
-#: a margin of a point of the box; -inf where the claim fails by more than a number can say
+#: margin at a point of the box, (n,); -inf where the claim fails and no number measures this
 MarginFunction = Callable[[np.ndarray], float]
-#: frequencies of a point's grid: some 40 a decade, then refined beside the lowest
+#: frequencies of the grid at each point of the box, then refined beside the lowest margin
 _FREQUENCIES = 501
-#: of the lowest points, the search goes down from so many, with so many evaluations a value
+#: number of points from which a descent starts, and evaluations of a descent for each value
 _STARTS, _STEPS = 3, 40
 
 
 @dataclass(frozen=True)
 class Worst:
-    """The lowest margin of all points that were looked at, and where; points: how many."""
+    """The least margin of all points that were evaluated.
+
+    point: where the margin is least, (n,);  points: number of points
+    """
 
     point: np.ndarray
     margin: float
@@ -33,7 +36,11 @@ class Worst:
 def search_worst(
     margin: MarginFunction, box: ValueBox, *, points: int, seed: int, downhill: bool = True
 ) -> Worst:
-    """Vertices, the middle, Sobol points, then downhill from the lowest of them; deterministic."""
+    """Least margin at the vertices, the middle and Sobol points, then by descent from the lowest.
+
+    points: number of Sobol points;  seed: of these; the same seed gives the same result
+    downhill: whether descents follow
+    """
     from scipy.optimize import minimize
 
     values: dict[tuple[float, ...], float] = {}
@@ -63,7 +70,7 @@ def search_worst(
 
 
 def pole_margin(polynomial: sp.Poly, symbols: Sequence[sp.Symbol]) -> MarginFunction:
-    """How far the rightmost root lies left of the axis, 1/s."""
+    """Margin of stability: distance of the rightmost root from the axis, 1/s; > 0: on the left."""
     coefficients = _coefficients(polynomial, symbols)
 
     def margin(point: np.ndarray) -> float:
@@ -76,10 +83,11 @@ def pole_margin(polynomial: sp.Poly, symbols: Sequence[sp.Symbol]) -> MarginFunc
 def port_margin(
     family: Family, z: sp.Matrix, *, stable: bool, poles: Sequence[sp.Poly], box: ValueBox
 ) -> MarginFunction:
-    """Least margin over frequency at one port or two, and -inf where a pole grows.
+    """Least margin over frequency at one port or two; -inf where a pole grows.
 
-    stable: Llewellyn's margin (1), else that of passivity (N s/m)
-    poles: polynomials in S and the symbols whose zeros are to have no positive real part
+    z: impedance matrix in S and the symbols, 1x1 or 2x2
+    stable: whether the margin is Llewellyn's (dimensionless) or that of passivity (N s/m)
+    poles: polynomials in S and the symbols; a zero with a positive real part is a growing pole
     """
     symbols = [family.symbols[n] for n in box.names]
     call = sp.lambdify([S, *symbols], [e for e in z], "numpy")
@@ -117,7 +125,7 @@ def port_margin(
 def _coefficients(
     polynomial: sp.Poly, symbols: Sequence[sp.Symbol]
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Coefficients in S at a point, highest first."""
+    """A function: the coefficients of S at a point of the box, highest power first."""
     listed = sp.Poly(polynomial.as_expr(), S).all_coeffs()
     call = sp.lambdify(list(symbols), [c.evalf(17) for c in listed], "math")
     return lambda point: np.array(call(*point), dtype=float)

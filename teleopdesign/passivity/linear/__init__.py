@@ -1,1 +1,1 @@
-"""Linear ports: impedances, the positive-real test and storage functions."""
+"""Linear one-ports: impedances, the positive-real test and storage functions."""

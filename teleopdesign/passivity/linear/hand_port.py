@@ -1,10 +1,10 @@
 """The impedance that a hand feels at a haptic interface, from its diagram, in exact numbers.
 
-With R_D = 0 the hand's force on the device is Zhat_M L, so force over velocity is Zhat_M/s. For a
-device with a compliant transmission the motion is that of the tip. Blocks are linear forms. An
-effect without a linear form, such as Coulomb friction, is left out and named. A mode that a zero
-cancels is not in the impedance either, and the hand does not feel it from rest; `diagram_claims`
-checks that no such mode grows.
+With R_D = 0 the force of the hand on the device is Zhat_M L, so force over velocity is Zhat_M/s.
+For a device with a compliant transmission the motion is that of the tip. Each block enters by its
+linear form. An effect without a linear form, such as Coulomb friction, is left out and named. A
+mode that a zero cancels is not in the impedance, and the hand does not feel this mode from rest.
+`diagram_claims` checks that no such mode grows.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ from .impedance import Impedance, impedance
 
 
 def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple[str, ...]]:
-    """Force over velocity at the hand (N s/m), and the names of what has no linear form.
+    """Impedance at the hand (N s/m), and the names of parts without a linear form.
 
-    What is declared linear and is not is among the names, its form in Z meaningless.
+    The names include parts that are declared linear and are not; their form in Z has no meaning.
 
-    diagram: a haptic interface without position loop;  speed: where smoothed friction and schedules
-    are frozen, m/s: what holds there is a statement about that linear system only
+    diagram: a haptic interface without position loop
+    speed: m/s, at which smoothed friction and schedules are linearised. A claim about the impedance
+        is then about this linear system only
     raises ModelError: a block without values, or with a dead time
     """
     apart, motion = linear_tips(diagram), led_motion(diagram, "L")

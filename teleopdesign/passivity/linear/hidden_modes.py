@@ -7,11 +7,11 @@ is passive only where no mode of all its equations grows: none with Re s > 0, an
 that another mode of the same s drives.
 
 Ranks decide the second condition. P(s) w = 0 are all equations (`in_full`), r(s) is a factor of det
-P with roots on the axis, m the multiplicity of r in det P, n the nullity of P at the roots of r.
-The elementary divisors of P there are n powers of r, whose exponents sum up to m. They contain
-those that the ports show: k divisors, whose exponents sum up to m - h. Where n = k + h each mode
-that no port shows is a separate divisor, of exponent 1, and keeps its size. Otherwise such a mode
-may grow as a power of time. The impedance judges all modes that the ports show, a free mass
+P with roots on the axis, m is the multiplicity of r in det P, and n is the nullity of P at the
+roots of r. The elementary divisors of P there are n powers of r, and their exponents sum up to m.
+The ports show k of these divisors, with exponents that sum up to m - h. If n = k + h, each mode
+that no port shows is a separate divisor of exponent 1, so its size stays the same. Otherwise such a
+mode may grow as a power of time. The impedance covers all modes that the ports show, a free mass
 included.
 """
 
@@ -50,17 +50,18 @@ from .in_full import (
 )
 from .polynomials import fraction, is_hurwitz
 
-#: why nothing is proved of a system for which `grows_unseen` holds
+#: the reason of an unknown claim about a system for which `grows_unseen` holds
 UNSEEN = "from rest its impedance is that of a passive port, but a mode that no port shows grows"
 _ONE = sp.Poly(1, S, domain="QQ")
 
 
 def growth_within(diagram: Diagram) -> float | None:
-    """Rate (1/s) of the fastest mode that grows by itself with free ports; None where none does.
+    """Rate (1/s) of the fastest mode that grows by itself with free ports; None: no mode grows.
 
-    0: one grows as a power of time;  NaN: not known, beside dead times or where the equations do
-        not determine all signals
     diagram: with values, linear
+    returns: 0 where a mode grows as a power of time; NaN where the answer is not known: with dead
+        times, where the equations do not determine all signals, or where a force does not show a
+        state of its effect that does not decay
     raises ModelError: no force from outside drives a body
     """
     at, diagram = ports(diagram), with_shared_states(with_tips(_drop_zero_delays(diagram)))
@@ -80,7 +81,7 @@ def growth_within(diagram: Diagram) -> float | None:
 
 
 def hides_growth(part: Control, linear: LinearBlocks) -> bool:
-    """Whether a mode grows within a controller that its linear form does not show."""
+    """Whether a controller has a growing mode that its linear form does not show."""
     forms = [linear.blocks[part.name], linear.along.get(part.name, sp.S(0))]
     whole = reduce(sp.Poly.mul, map(stage_denominator, stages_of(part)), _ONE)
     if not _is_free_of_growth(cancelled_poles(part, linear)):
@@ -91,16 +92,17 @@ def hides_growth(part: Control, linear: LinearBlocks) -> bool:
 
 
 def body_hides_growth(part: Moving, linear: LinearBlocks) -> bool:
-    """Whether effects of a body cancel a pole of one another that does not decay."""
+    """Whether an effect of a body cancels a pole of another effect that does not decay."""
     product = polynomial_in_s(effect_modes(part.body)[0])
     hidden = product.quo(ratio(linear.blocks[part.name])[1])
     return hidden.degree() > 0 and not is_hurwitz(hidden)
 
 
 def grows_unseen(system: Any) -> bool:
-    """Whether a system of python-control has a mode that grows and that its port does not show.
+    """Whether a system of python-control has a growing mode that its port does not show.
 
-    At rest such a mode stays at rest, so that it is in no impedance; the least disturbance grows.
+    From rest such a mode stays at rest, so the impedance does not contain it. The smallest
+    disturbance of it grows. False for any other kind of system.
     """
     if hasattr(system, "num"):
         states = [[sp.Add(*(exact(c) * S**k for k, c in enumerate(system.den[0][0][::-1])))]]
@@ -117,7 +119,7 @@ def grows_unseen(system: Any) -> bool:
 
 
 def cancelled_poles(part: Control, linear: LinearBlocks) -> sp.Poly:
-    """What the states of a controller's laws have more than its linear forms, in S."""
+    """Poles of the states of a controller's laws that its linear forms lack: a polynomial in S."""
     forms = (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
     whole = reduce(sp.Poly.mul, map(stage_denominator, stages_of(part)), _ONE)
     return whole.quo(reduce(sp.lcm, (ratio(form)[1] for form in forms), _ONE))
@@ -130,7 +132,10 @@ def _is_free_of_growth(p: sp.Poly) -> bool:
 def _whole_determinant(
     diagram: Diagram, forms: list[dict[str, sp.Expr]], at: Sequence[Port]
 ) -> tuple[sp.Poly, sp.Matrix]:
-    """det of all equations, with what blocks cancel; and motions of the ports for their forces."""
+    """Determinant of all equations, cancelled modes included; and port motions over port forces.
+
+    The determinant is 0 where the equations do not determine all signals.
+    """
     unknown = [n for n in diagram.signals if n not in diagram.outside]
     forces = [port.force for port in at]
     if len(forms) != len(unknown):
@@ -147,7 +152,7 @@ def _whole_determinant(
 
 
 def _drives_itself(whole: sp.Poly, shown: sp.Matrix, equations: list[Equation]) -> bool:
-    """Whether a mode on the axis may grow as a power of time that the forms do not show."""
+    """Whether a mode on the axis that the forms do not show may grow as a power of time."""
     mirror = whole.compose(sp.Poly(-S, S, domain="QQ"))
     for factor, _ in sp.gcd(whole, mirror).factor_list()[1]:
         order, divisors = _count_shown(shown, factor)
@@ -158,9 +163,12 @@ def _drives_itself(whole: sp.Poly, shown: sp.Matrix, equations: list[Equation]) 
 
 
 def _count_shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
-    """Sum of the exponents of its poles there, and how many divisors they are (Smith, McMillan).
+    """Elementary divisors that the forms show where `factor` is zero (Smith, McMillan).
 
-    Elimination by the entry of the highest pole: what it divides keeps no higher one.
+    Elimination with the entry whose pole is of the highest order as pivot; no entry of the rest
+    then has a pole of a higher order.
+
+    returns: sum of their exponents, and their number
     """
     field = sp.QQ.frac_field(S)
     prime = field.field.ring.from_expr(factor.as_expr())
@@ -181,7 +189,7 @@ def _count_shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
 
 
 def _order(entry: Any, prime: Any) -> int:
-    """Of the pole of a rational function where an irreducible polynomial is zero."""
+    """Order of the pole of a rational function where an irreducible polynomial is zero."""
     order, below = 0, entry.denom
     while not below.rem(prime):
         below, order = below.quo(prime), order + 1
@@ -199,7 +207,10 @@ def _multiplicity(p: sp.Poly, factor: sp.Poly) -> int:
 
 
 def _nullity(equations: list[Equation], factor: sp.Poly) -> int:
-    """Of the equations where an irreducible factor is zero: elimination in the field it makes."""
+    """Nullity of the equations where an irreducible factor is zero, by exact elimination.
+
+    The elimination computes with polynomials modulo the factor, which form a field.
+    """
     names = list(dict.fromkeys(n for row in equations for n in row))
     left = [{n: p.rem(factor) for n, p in row.items()} for row in equations]
     left = [{n: p for n, p in row.items() if not p.is_zero} for row in left]
@@ -224,10 +235,10 @@ def _nullity(equations: list[Equation], factor: sp.Poly) -> int:
 
 
 def controllers_grow(diagram: Diagram) -> bool:
-    """Whether laws beside dead times have a mode that grows while all bodies stand still.
+    """Whether control laws of a diagram with dead times grow while all bodies stand still.
 
-    Such a mode is a pole of the impedance in the right half plane, or no port shows it. False too
-    where a dead time lies within a loop of laws: nothing is known here of those
+    Such a mode is a pole of the impedance in the right half plane, or no port shows it. The answer
+    is False also where a dead time lies within a loop of laws: then nothing is known.
     """
     diagram = with_shared_states(with_tips(diagram))
     made = [_standing_still(diagram, factor) for factor in (1.0, 2.0, 0.0)]
@@ -241,14 +252,14 @@ def controllers_grow(diagram: Diagram) -> bool:
 
 
 def _drop_zero_delays(diagram: Diagram) -> Diagram:
-    """The diagram with gains of 1 in the place of dead times of 0."""
+    """The diagram with each dead time of 0 replaced by a gain of 1."""
     return _with_gains(diagram, 1.0, lambda stage: stage.value_of("dead_time") == 0)
 
 
 def _with_gains(
     diagram: Diagram, factor: float, chosen: Callable[[Stage], bool] = lambda stage: True
 ) -> Diagram:
-    """The diagram with gains in the place of dead times."""
+    """The diagram with the chosen dead times replaced by gains of this factor."""
     law = controller("gain", {"gain": factor}).stages[0]
 
     def without_delay(part: Block) -> Block:
@@ -261,9 +272,10 @@ def _with_gains(
 
 
 def _standing_still(diagram: Diagram, factor: float) -> tuple[sp.Poly, list[Equation]]:
-    """det of all equations but those of bodies, which do not move, and the equations.
+    """Determinant of the equations while all bodies stand still, and these equations.
 
-    factor: what a dead time does in them
+    The equations of bodies are left out.
+    factor: gain that replaces each dead time
     """
     still = {b.motion for b in diagram.blocks if isinstance(b, Moving)}
     equations = equations_in_full(_with_gains(diagram, factor), standing=True)

@@ -1,8 +1,8 @@
-"""Impedances as exact rational functions of s.
+"""Impedances of one-ports as exact rational functions of s.
 
-A float is read as the shortest decimal number that prints like it: 0.1 is 1/10. So the judged value
-is exactly the written value, and cases on the boundary stay on the boundary. Pi has the sixteen
-digits of a float.
+A float is read as the shortest decimal number that prints the same: 0.1 is 1/10. So a claim is
+about exactly the written value, and a case on the boundary stays on the boundary. The number pi is
+read as a float, with about sixteen digits.
 """
 
 from __future__ import annotations
@@ -21,14 +21,18 @@ from ...realise.lti import S
 from .polynomials import fraction
 
 MotionKind = Literal["velocity", "position"]
-_LONGEST = 9  # characters of a fraction that is printed as such
-#: in s; there exact tests of numbers of 16 digits take some 10 s, and grow with its fourth power
+_LONGEST = 9  # most characters of a fraction that a text contains as a fraction
+#: highest degree in s: exact tests of numbers of 16 digits then take some 10 s, and the time grows
+#: with the fourth power of the degree
 _HIGHEST = 40
 
 
 @dataclass(frozen=True)
 class Impedance:
-    """Force over velocity, p(s)/q(s), coprime, with rational coefficients; improper ones too."""
+    """Impedance of a one-port: force over velocity, p(s)/q(s), N s/m.
+
+    p, q: coprime, rational coefficients, q monic; the degree of p may be above that of q
+    """
 
     p: sp.Poly
     q: sp.Poly
@@ -39,7 +43,7 @@ class Impedance:
         return self.p.as_expr() / self.q.as_expr()
 
     def at(self, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction] | None:
-        """Exact real and imaginary part at s = rate + j frequency; None at a pole."""
+        """Exact real and imaginary part at s = rate + j frequency (1/s); None at a pole."""
         a, b = (gaussian(poly, rate, frequency) for poly in (self.p, self.q))
         size = b[0] ** 2 + b[1] ** 2
         if size == 0:
@@ -47,7 +51,7 @@ class Impedance:
         return (a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size
 
     def __call__(self, s: Any) -> Any:
-        """Numerical value at complex s (array or number)."""
+        """Numerical value, N s/m, at complex s (array or number, 1/s)."""
         p, q = ([float(c) for c in poly.all_coeffs()] for poly in (self.p, self.q))
         return np.polyval(p, s) / np.polyval(q, s)
 
@@ -66,9 +70,9 @@ def _impedance_of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Imp
 
 
 def decimal(number: sp.Expr) -> str:
-    """An exact number as text for people: a short fraction as it is, else up to twelve digits.
+    """An exact number as text: a short fraction as a fraction, else a decimal of up to 12 digits.
 
-    A claim is about this number exactly: what was measured is rounded before (`identified.DIGITS`).
+    Measured numbers in claims are rounded before (`identified.DIGITS`), so the text is exact there.
     """
     text = f"{float(number):.12g}"
     is_short = isinstance(number, sp.Rational) and len(str(number)) <= _LONGEST
@@ -76,13 +80,13 @@ def decimal(number: sp.Expr) -> str:
 
 
 def readable(expression: sp.Expr) -> str:
-    """The expression as text, fractions of many digits as decimals; only for people to read."""
+    """An expression as text for people: fractions of many digits become decimals of six digits."""
     long = {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
     return str(expression.xreplace({x: sp.Float(x, 6) for x in long}))
 
 
 def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction]:
-    """Exact value of a polynomial at rate + j frequency."""
+    """Exact real and imaginary part of a polynomial at s = rate + j frequency."""
     re, im = Fraction(0), Fraction(0)
     for c in poly.all_coeffs():
         re, im = re * rate - im * frequency + fraction(c), re * frequency + im * rate
@@ -90,13 +94,13 @@ def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fracti
 
 
 def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
-    """A one-port as an exact rational function.
+    """The impedance of a one-port as an exact rational function.
 
     system: sympy expression in s, number, python-control TransferFunction or StateSpace
         (continuous, one input, one output), or an Impedance
-    motion: what the force is divided by in `system`; with "position" (as the blocks of a diagram
-        are, N/m) it is divided by s
-    raises ModelError: anything else, which it names
+    motion: "velocity": `system` is force over velocity, N s/m; "position": `system` is force over
+        position, N/m, as the blocks of a diagram are, and is divided by s
+    raises ModelError: anything else, or a degree above 40
     """
     if motion not in ("velocity", "position"):
         raise ModelError(f'impedance: motion "velocity" or "position", found "{motion}"')
@@ -112,9 +116,9 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
 
 
 def exact(number: Any) -> sp.Rational:
-    """A number, or a text of one, as the rational that it is written as; floats as their shortest.
+    """A number, or its text, as an exact rational; a float as its shortest decimal.
 
-    raises ModelError: no finite real number; True is none
+    raises ModelError: no finite real number, or a truth value
     """
     if isinstance(number, sp.Expr) and number.is_Rational:
         return number
@@ -219,7 +223,7 @@ def _from_control(system: Any) -> Impedance:
 
 
 def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
-    """C (s I - A)^-1 B + D, exactly; modes that the port does not see drop out.
+    """C (s I - A)^-1 B + D as an exact impedance; modes that the port does not show cancel.
 
     a: (n, n), b: (n, 1), c: (1, n), d: (1, 1)
     """

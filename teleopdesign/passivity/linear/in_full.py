@@ -35,15 +35,18 @@ from ...effects import Effect
 from ...realise.lti import S
 from .polynomials import fraction
 
-#: unknown -> its polynomial in `S`; the sum over all is zero
+#: an equation: unknown -> its polynomial in `S`; the sum of polynomial times unknown is zero
 Equation = dict[str, sp.Poly]
 _ONE = sp.Poly(1, S, domain="QQ")
-#: what comes into a law, and the motion that it acts along
+#: input of a control law, and the motion along which its force acts
 _DRIVE, _MOVED = sp.Symbol("drive"), sp.Symbol("moved")
 
 
 def polynomial_in_s(expression: sp.Expr | int) -> sp.Poly:
-    """As polynomial in `S` with exact numbers; PolynomialError where it is none."""
+    """The expression as a polynomial in `S` with exact numbers.
+
+    raises PolynomialError: the expression is no polynomial in `S`
+    """
     return sp.Poly(make_exact(sp.sympify(expression)), S, domain="QQ")
 
 
@@ -56,11 +59,11 @@ def ratio(form: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
 def stage_rows(
     stage: Stage, symbols: Mapping[str, sp.Symbol] | None = None
 ) -> tuple[list[list[sp.Expr]], list[sp.Expr]]:
-    """A law in continuous time at speed 0, in exact numbers: rates of its states, and its output.
+    """Equations of a control law in continuous time at speed 0, in exact numbers.
 
-    symbols: of parameters that are no numbers
-    returns: rows (n, n + 2) of what each rate takes of the states, the input and the motion, and
-        one such row for the output; in `S` through velocities alone
+    symbols: parameters that remain symbols
+    returns: for the rate of each state a row of coefficients of the states, the input and the
+        motion, (n, n + 2); and one such row for the output. `S` enters through velocities only
     """
     if stage.law.dead_time:  # one of no time: another is no ratio of polynomials
         return [], [sp.S(1), sp.S(0)]
@@ -81,7 +84,7 @@ def stage_rows(
 
 
 def stage_denominator(stage: Stage) -> sp.Poly:
-    """det(s I - A) of a law: a root for each state, those that its output hides included."""
+    """det(s I - A) of a law: a root for each state, also where the output hides the state."""
     rates, _ = stage_rows(stage)
     n = len(rates)
     a = [[fraction(sp.Rational(x)) for x in row[:n]] for row in rates]
@@ -91,7 +94,7 @@ def stage_denominator(stage: Stage) -> sp.Poly:
 
 
 def effect_forms(part: object) -> tuple[list[sp.Expr], list[sp.Expr]]:
-    """Impedances that a body's effects add (N/m), and stages of its actuation, one by one."""
+    """Linear forms of a body's effects: impedances (N/m), and stages of the actuation."""
     body = getattr(part, "body", None)
     if not isinstance(body, Body):
         return [], []
@@ -108,10 +111,10 @@ def effect_forms(part: object) -> tuple[list[sp.Expr], list[sp.Expr]]:
 def effect_modes(
     body: object, numbers: Mapping[sp.Symbol, sp.Expr] | None = None
 ) -> tuple[sp.Expr, sp.Expr]:
-    """det(s I - A) of all linear effects that act, and of stages of the actuation.
+    """det(s I - A) of all linear effects of a body, and of the stages of its actuation.
 
-    A root for each state, those that no force shows included.
-    numbers: of the parameters; default: those of the body
+    Each has a root for each state, also where no force shows the state.
+    numbers: values of the parameters; default: those of the body
     """
     if not isinstance(body, Body):
         return sp.S(1), sp.S(1)
@@ -129,7 +132,7 @@ def effect_modes(
 
 
 def unshown_by_effects(diagram: Diagram) -> sp.Poly:
-    """Modes of states of effects that the force of that effect does not show."""
+    """Modes of effects that the force of the effect does not show: a polynomial in `S`."""
     whole, shown = _ONE, _ONE
     for part in diagram.blocks:
         if isinstance(part, Moving | Attached):
@@ -141,7 +144,7 @@ def unshown_by_effects(diagram: Diagram) -> sp.Poly:
 
 
 def denominators(diagram: Diagram) -> sp.Poly:
-    """Product of those of all laws and effects, each as often as it is there."""
+    """Product of the denominators of all laws and effects, each as often as it occurs."""
     product = _ONE
     for part in diagram.blocks:
         if isinstance(part, Control):
@@ -154,13 +157,13 @@ def denominators(diagram: Diagram) -> sp.Poly:
 
 
 def stages_of(part: Control) -> Sequence[Stage]:
-    """The laws of a controller that is known, in series."""
+    """The laws of a controller in series; the controller is known, with values."""
     assert isinstance(part.controller, Controller)
     return part.controller.stages
 
 
 class _Writer:
-    """Equations, and names for what blocks hold inside."""
+    """Collects equations, and makes names for the inner states of blocks."""
 
     def __init__(self) -> None:
         self.equations: list[Equation] = []
@@ -172,7 +175,7 @@ class _Writer:
         self.equations.append(equation)
 
     def through(self, form: sp.Expr, signal: str) -> tuple[str, sp.Poly]:
-        """What a ratio p/q makes of a signal: p w, with a separate state, q w = signal."""
+        """A signal passed through the ratio p/q: (w, p), with a new state w and q w = signal."""
         above, below = ratio(form)
         if below == _ONE:
             return signal, above
@@ -182,10 +185,10 @@ class _Writer:
 
 
 def equations_in_full(diagram: Diagram, *, standing: bool = False) -> list[Equation]:
-    """Equations of all signals and states with nothing from outside.
+    """Equations of all signals and states of a linear diagram, with all outside signals zero.
 
-    standing: without those of bodies that forces move
-    diagram: with values, linear, bodies with a structure apart, without dead times
+    diagram: with values, linear, without dead times; a body with a structure is two bodies
+    standing: leave out the equations of bodies that forces move
     raises PolynomialError: a form that is no ratio of polynomials
     """
     writer = _Writer()
@@ -230,7 +233,7 @@ def _slopes(part: Kinematics) -> dict[str, sp.Expr]:
 
 
 def equations_of(part: Control) -> list[Equation]:
-    """Equations of a controller alone; its input and motion are among the unknowns."""
+    """Equations of a controller alone; its input and its motion are among the unknowns."""
     writer = _Writer()
     _write_controller(writer, part)
     return writer.equations
@@ -246,7 +249,7 @@ def _impedance(
 
 
 def _write_controller(writer: _Writer, part: Control) -> None:
-    """The states and the output of each law, one after the other."""
+    """Add the equations of the states and the output of each law of a controller."""
     signal, last = part.input, len(stages_of(part)) - 1
     moved = part.motion or part.input
     for k, stage in enumerate(stages_of(part)):

@@ -1,10 +1,11 @@
-"""The inequality of Kalman, Yakubovich and Popov: a quadratic storage function, by semidefinite
-programming (extra `lmi`), and exactly where rounding it to fractions leaves it valid.
+"""Quadratic storage functions from the inequality of Kalman, Yakubovich and Popov (KYP).
 
     Z = m s + C (s I - A)^-1 B + D:    V = (m v^2 + x^T P x)/2,   P >= 0,   m >= 0,
     [[-A^T P - P A, C^T - P B], [C - B^T P, 2 D]] >= 0
 
-Controllable canonical form; time is scaled by a power of two so that the poles lie around 1.
+Semidefinite programming (extra `lmi`) solves the inequality. The solution is rounded to fractions.
+If the inequality still holds, exactly, the storage function is a proof. The realisation is the
+controllable canonical form, and time is scaled by a power of two so that the poles lie around 1.
 """
 
 from __future__ import annotations
@@ -28,14 +29,17 @@ from .polynomials import fraction
 from .squares import sum_of_squares
 
 FractionRows = list[list[Fraction]]
-#: a double pole on the axis is infeasible by so little that the solver goes on for ever; a shortage
-#: of this many times the size of Z is taken for it
+#: a double pole on the axis makes the inequality infeasible, but by so little that the solver does
+#: not say so. A shortage of damping of this many times the size of Z counts as infeasible
 _LARGEST_SHORTAGE = 1e4
 
 
 @dataclass(frozen=True)
 class Realisation:
-    """m, A, B, C, D of an impedance in exact numbers, in time scaled by `scale` (1/s)."""
+    """State-space realisation m, A, B, C, D of an impedance in exact numbers.
+
+    Time is scaled by `scale` (1/s). B is not stored: it is the last unit vector.
+    """
 
     mass: Fraction
     a: FractionRows
@@ -45,17 +49,17 @@ class Realisation:
 
     @property
     def order(self) -> int:
-        """Number of states; B is the last unit vector."""
+        """Number of states."""
         return len(self.a)
 
 
 @dataclass(frozen=True, eq=False)
 class Kyp(ByValue):
-    """Numerical solution of the inequality for Z - c with the largest c.
+    """Numerical solution of the KYP inequality for Z - c with the largest c.
 
-    damping_excess: that c, N s/m; -inf where the inequality has no solution for any
-    p: (n, n) of the scaled realisation, None where there is none
-    status: what the solver says
+    damping_excess: this largest c, N s/m; -inf where the inequality has a solution for no c
+    p: P of the scaled realisation, (n, n); None where there is no solution
+    status: of the solver, or "improper" or "infeasible"
     """
 
     damping_excess: float
@@ -64,7 +68,7 @@ class Kyp(ByValue):
 
 
 def realisation(z: Impedance) -> Realisation | None:
-    """Controllable canonical form; None where Z grows faster than s, or as -s."""
+    """Controllable canonical form of an impedance; None where Z grows faster than s, or as -s."""
     quotient, rest = z.p.div(z.q)
     if quotient.degree() > 1:
         return None
@@ -94,10 +98,10 @@ def _scale(q: sp.Poly) -> Fraction:
 
 
 def kyp(system: Any, *, motion: MotionKind = "velocity") -> Kyp:
-    """Solve the inequality for the largest c with which Z - c has a storage function.
+    """Largest c for which Z - c has a quadratic storage function, by the KYP inequality; numerical.
 
     system, motion: see `impedance`
-    raises ModelError: cvxpy (extra `lmi`) is not installed
+    raises ModelError: cvxpy (extra `lmi`) is not installed, or no impedance
     """
     made = realisation(impedance(system, motion=motion))
     if made is None:
@@ -113,7 +117,12 @@ def kyp(system: Any, *, motion: MotionKind = "velocity") -> Kyp:
 
 
 def _solve(made: Realisation, size: float, *, slack: bool) -> tuple[float, np.ndarray, str] | None:
-    """Largest c, or with `slack` the largest margin of the whole inequality at c = 0."""
+    """Solve the inequality: (value, P, status of the solver); None where the solver fails.
+
+    size: of Z, by which C and D are divided
+    slack: False: value is the largest c; True: value is the largest margin of the inequality at
+        c = 0
+    """
     try:
         cp: Any = import_module("cvxpy")
     except ModuleNotFoundError as missing:
@@ -145,10 +154,13 @@ def _solve(made: Realisation, size: float, *, slack: bool) -> tuple[float, np.nd
 
 
 def storage_function(system: Any, *, motion: MotionKind = "velocity") -> Claim:
-    """Prove passivity by a quadratic storage function in exact numbers.
+    """Is this impedance passive: a proof by a quadratic storage function in exact numbers.
 
-    returns: proved, with V in the certificate; unknown where no rounding of the numerical
-    solution stays valid (`positive_real` settles that case too, without a storage function)
+    system, motion: see `impedance`
+    returns: proved, with V in the certificate; or unknown, where no rounding of the numerical
+        solution satisfies the inequality exactly (`positive_real` decides this case, too, without a
+        storage function), or where a mode grows that the port does not show
+    raises ModelError: cvxpy (extra `lmi`) is not installed, or no impedance
     """
     z = impedance(system, motion=motion)
     statement = f"Z(s) = {z} is passive at its port (force, velocity)"
@@ -166,7 +178,7 @@ def storage_function(system: Any, *, motion: MotionKind = "velocity") -> Claim:
 
 
 def _candidates(made: Realisation) -> list[FractionRows]:
-    """P rounded to fractions, coarse first; where D = 0 its last column is C, exactly."""
+    """Matrices P rounded to fractions, the coarsest first; where D = 0 the last column is C."""
     n = made.order
     if n == 0:
         return [[]]
@@ -194,7 +206,7 @@ def _round_fraction(x: float, digits: int) -> Fraction:
 
 
 def _matrices(made: Realisation, p: FractionRows) -> tuple[FractionRows, FractionRows]:
-    """P, and the matrix of twice the power that is lost, in (x, v)."""
+    """P, and the matrix of the KYP inequality: a quadratic form in (x, v), twice the lost power."""
     n = made.order
     pa = [[sum((p[i][k] * made.a[k][j] for k in range(n)), Fraction(0)) for j in range(n)]
           for i in range(n)]  # fmt: skip
@@ -210,7 +222,10 @@ def _proof(
     stored: list[tuple[Fraction, list[Fraction]]],
     lost: list[tuple[Fraction, list[Fraction]]],
 ) -> Proof:
-    """The certificate, back in seconds: x' = scale (A x + B v)."""
+    """The proof with its certificate, in unscaled time: x' = scale (A x + B v).
+
+    stored, lost: sums of squares of P and of the matrix of the inequality
+    """
     n = made.order
     x = [sp.Symbol(f"x{k}", real=True) for k in range(n)]
     v, acceleration = sp.symbols("v acceleration", real=True)

@@ -1,4 +1,4 @@
-"""Exact statements about real polynomials with rational coefficients."""
+"""Exact tests and roots of real polynomials (sympy) with rational coefficients."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from math import gcd, lcm
 
 import sympy as sp
 
-#: stands for the square of the angular frequency, omega^2
+#: the symbol x, the square of the angular frequency, omega^2
 X = sp.Symbol("x")
 
 
 def is_hurwitz(polynomial: sp.Poly) -> bool:
-    """Whether every root has a negative real part (Routh's scheme; constants have no root)."""
+    """Whether every root has a negative real part (Routh's scheme); True for a constant not 0."""
     falling = [fraction(c) for c in polynomial.all_coeffs()]
     if falling[0] == 0:
         return False
@@ -34,8 +34,8 @@ def is_hurwitz(polynomial: sp.Poly) -> bool:
 def is_non_negative(polynomial: sp.Poly) -> bool:
     """Whether p(x) >= 0 for all x >= 0: no root of odd multiplicity at x > 0.
 
-    By isolating them with continued fractions (Descartes), not by Sturm's chain: seconds become
-    milliseconds at degree 20
+    Roots are isolated with continued fractions (Descartes). A Sturm chain would need seconds
+    instead of milliseconds at degree 20.
     """
     if polynomial.is_zero:
         return True
@@ -48,12 +48,12 @@ def is_non_negative(polynomial: sp.Poly) -> bool:
 
 
 def has_positive_root(polynomial: sp.Poly) -> bool:
-    """Whether a polynomial of simple roots has one at x > 0."""
+    """Whether a polynomial of simple roots has a root x > 0."""
     return any(high > 0 for _, high in _isolate(polynomial))
 
 
 def where_negative(polynomial: sp.Poly) -> list[Fraction]:
-    """Points x > 0 at which p(x) < 0, at least one in each gap between neighbouring roots."""
+    """Points x > 0 at which p(x) < 0, one in each gap between neighbouring roots with p < 0."""
     for bits in (20, 80, 1000):  # roots that agree in so many bits need more
         ends = [Fraction(0), *positive_roots(polynomial, bits=bits)]
         points = [(a + b) / 2 for a, b in zip(ends, ends[1:], strict=False)]
@@ -65,7 +65,10 @@ def where_negative(polynomial: sp.Poly) -> list[Fraction]:
 
 
 def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
-    """Roots x > 0, each once, by isolation and bisection; relative error 2^-bits."""
+    """Roots x > 0 of a polynomial, each once, by isolation and bisection.
+
+    bits: the relative error is 2^-bits
+    """
     if polynomial.degree() < 1:
         return []
     plain = polynomial.sqf_part()
@@ -91,17 +94,18 @@ def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
 
 
 def _isolate(polynomial: sp.Poly) -> list[tuple[Fraction, Fraction]]:
-    """Ends of intervals, each about one root x >= 0 of a polynomial of simple roots.
+    """Ends of intervals that each contain one root x >= 0 of a polynomial of simple roots.
 
-    fast: x is scaled by its lower bound at each step. Else roots of 1e10 beside pairs of size 1
-    are walked to by small steps: 24 s at degree 18, not 2 ms. All is exact either way
+    With sympy's `fast`, x is scaled by its lower bound at each step. Without it, sympy reaches a
+    root of 1e10 beside pairs of size 1 by small steps: 24 s at degree 18, not 2 ms. Both ways are
+    exact.
     """
     ends = polynomial.intervals(inf=0, sqf=True, fast=True)
     return [(fraction(a), fraction(b)) for a, b in ends]
 
 
 def _sign_of(polynomial: sp.Poly) -> Callable[[Fraction], int]:
-    """The sign of a polynomial at a rational point, in integers alone."""
+    """A function: the sign of the polynomial at a rational point, computed in integers alone."""
     falling = [fraction(c) for c in polynomial.all_coeffs()]
     below = lcm(*(c.denominator for c in falling))
     whole = [int(c * below) for c in falling]
@@ -117,7 +121,7 @@ def _sign_of(polynomial: sp.Poly) -> Callable[[Fraction], int]:
 
 
 def value(polynomial: sp.Poly, at: Fraction) -> Fraction:
-    """Exact value at a rational point."""
+    """Exact value of a polynomial at a rational point."""
     total = Fraction(0)
     for c in polynomial.all_coeffs():
         total = total * at + fraction(c)

@@ -1,8 +1,9 @@
-"""Positive-real test of an impedance, exact.
+"""Exact positive-real test of an impedance, and its excess of damping.
 
-Z = p/q (coprime, real) is positive real iff p + q has all its zeros in the open left half plane and
-Re p(j w) conj q(j w) >= 0 for every w: then (Z - 1)/(Z + 1) is bounded real. This covers improper
-impedances such as m s + b, and poles on the imaginary axis, without a separate condition.
+Z = p/q (coprime, real) is positive real if and only if p + q has all its zeros in the open left
+half plane and Re p(j w) conj q(j w) >= 0 for every w: then (Z - 1)/(Z + 1) is bounded real. The
+test covers improper impedances such as m s + b, and poles on the imaginary axis, without separate
+conditions.
 """
 
 from __future__ import annotations
@@ -29,16 +30,16 @@ from .polynomials import (
     value,
 )
 
-#: relative; coefficients are known no better than some operations on floats leave them, 2^-53 each
+#: relative change of a coefficient that may be rounding: some operations on floats, 2^-53 each
 NEARBY = 2.0**-50
 
 
-#: why nothing is said of an impedance whose waves all leave double precision
+#: the reason of an unknown claim, where the test fails and no wave is resolved in double precision
 NO_WAVE = "the positive-real test fails, but no wave that takes energy out was found"
 
 
 def is_positive_real(z: Impedance) -> bool:
-    """Whether Z is positive real, exactly; equality Re Z(j w) = 0 allowed."""
+    """Whether Z is positive real, decided exactly; Re Z(j w) = 0 is allowed."""
     total = z.p + z.q
     if total.is_zero or not is_hurwitz(total):
         return False
@@ -49,11 +50,12 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     """Is this impedance passive: does it never release more energy than it took in?
 
     system, motion: see `impedance`
-    returns: proved, with the excess of damping as margin (N s/m: what could be taken away); exact
-    evidence where the certificate asks for more work than its checker does (from degree 25 on); or
-    refuted by a growing wave; unknown where a mode of a python-control system grows that its port
-    does not show, where floats came in and the wave's sign rests on their last digits, or where so
-    little comes out that a replay in double precision does not show it
+    returns: proved, with the excess of damping as margin (N s/m: the damping that could be taken
+        away); exact evidence where a certificate would ask for more work than its checker does
+        (from degree 25 on); or refuted by a growing wave. Unknown where a python-control system has
+        a growing mode that its port does not show, where the sign of the wave rests on the last
+        digits of floats, or where the wave releases so little energy that a replay in double
+        precision does not show it
     raises ModelError: not a rational function of s with known coefficients
     """
     z = impedance(system, motion=motion)
@@ -86,14 +88,14 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
 
 
 def is_rounded(system: Any) -> bool:
-    """Whether a system is stated in floats, which operations on them have rounded."""
+    """Whether a system contains floats, which earlier operations may have rounded."""
     if isinstance(system, Impedance):
         return False
     return hasattr(system, "isdtime") or bool(sp.sympify(system).atoms(sp.Float))
 
 
 def _rests_on_rounding(z: Impedance, wave: GrowingWave) -> bool:
-    """Whether Re Z at the wave may turn its sign where each coefficient changes by NEARBY.
+    """Whether Re Z at the wave may change its sign if each coefficient changes by NEARBY.
 
     To first order abs(dZ) <= NEARBY (sum abs(p_k s^k) + abs(Z) sum abs(q_k s^k))/abs(q).
     """
@@ -107,7 +109,7 @@ def _rests_on_rounding(z: Impedance, wave: GrowingWave) -> bool:
 
 
 def _equality(z: Impedance, margin: Excess) -> str:
-    """Where Re Z = 0, decided exactly."""
+    """Text that says where Re Z = 0 on the axis, decided exactly; "" where nowhere."""
     real, size = real_part(z)
     if real.is_zero:
         return "at every frequency: it stores, and loses nothing"
@@ -118,10 +120,11 @@ def _equality(z: Impedance, margin: Excess) -> str:
 
 @dataclass(frozen=True)
 class Excess:
-    """Largest c for which Z - c is still passive, within exact bounds; negative: a shortage.
+    """Excess of passivity: the largest c for which Z - c is still passive; negative: a shortage.
 
-    frequency: rad/s, where the real part is smallest; inf where that is the limit. lower = upper =
-    -inf where no damping at the port helps (a pole that grows, a double pole on the axis).
+    lower, upper: exact bounds of c; both -inf where no damping at the port helps (a pole that
+        grows, a double pole on the axis)
+    frequency: rad/s, at which Re Z is smallest; inf where this is the limit of high frequency
     """
 
     lower: Fraction | float
@@ -133,10 +136,13 @@ class Excess:
 
 
 def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
-    """Excess of damping of a passive impedance, N s/m; < 0: damping that it lacks.
+    """Excess of damping of an impedance, N s/m; < 0: the damping that the impedance lacks.
 
-    This is the infimum of Re Z over frequency (the index of input passivity, velocity being the
-    input), or -inf. Its bounds are verified by the exact test and differ by 1e-12 of its size.
+    This is the infimum of Re Z over frequency (the index of input passivity, with the velocity as
+    input), or -inf. The exact test verifies its bounds. They differ by 1e-12 of its size; where the
+    test does not confirm bounds so narrow, by up to 2e-6.
+
+    system, motion: see `impedance`;  raises ModelError: no impedance
     """
     z = impedance(system, motion=motion)
     at, lowest = _infimum(*real_part(z))
@@ -145,10 +151,11 @@ def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
 
 
 def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
-    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0.
+    """Excess of the mobility 1/Z, m/(N s): the index of output passivity.
 
-    system: an impedance as `positive_real` takes it;  motion: what Z divides the force by
-    returns: the largest c for which 1/Z - c is still passive; < 0: that much is missing
+    system, motion: see `impedance`
+    returns: the largest c for which 1/Z - c is still passive; < 0: a shortage; +inf where Z = 0
+    raises ModelError: no impedance
     """
     z = impedance(system, motion=motion)
     if z.p.is_zero:
@@ -158,7 +165,10 @@ def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
 
 
 def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
-    """(x, value) where real/size is smallest over x >= 0, to rounding; inf for a limit."""
+    """(x, value) at the infimum of real/size over x >= 0, in floating point.
+
+    x is inf where the infimum is the limit of high frequency.
+    """
     slope = real.diff(X) * size - real * size.diff(X)
     extremes = []
     for x in (Fraction(0), *positive_roots(slope)):
@@ -174,7 +184,10 @@ def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
 
 
 def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:
-    """Bounds c- <= lowest <= c+ with Z - c- passive and Z - c+ not, by the exact test."""
+    """Bounds c- and c+ near `lowest`, by the exact test: Z - c- is passive, Z - c+ is not.
+
+    Both are -inf where no such bounds are close to `lowest`.
+    """
     infinite = float("-inf"), float("-inf")
     if not np.isfinite(lowest):
         return infinite

@@ -8,9 +8,11 @@ from fractions import Fraction
 def sum_of_squares(
     matrix: list[list[Fraction]],
 ) -> list[tuple[Fraction, list[Fraction]]] | None:
-    """(weight > 0, linear form) with x^T M x = sum of weight * (form . x)^2; None if indefinite.
+    """A quadratic form x^T M x as a sum of weight * (form . x)^2, in exact numbers.
 
-    matrix: symmetric, (n, n); semidefinite is enough
+    matrix: M, symmetric, (n, n)
+    returns: (weight > 0, coefficients of the linear form, (n,)) for each square; None where M is
+        not positive semidefinite
     """
     m = [list(row) for row in matrix]
     n = len(m)

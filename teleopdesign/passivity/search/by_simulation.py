@@ -1,8 +1,8 @@
 """Search a diagram for a motion over which a port releases energy, from rest back to rest.
 
 The motion of the port is prescribed, and the compiled kernel simulates the force for this motion.
-The released energy is the integral of force times velocity with a minus sign. A motion that
-releases energy refutes passivity; a search without result proves nothing.
+The released energy is minus the integral of force times velocity. A motion that releases energy
+refutes passivity; a search without result proves nothing.
 """
 
 from __future__ import annotations
@@ -22,22 +22,23 @@ from ..claims.claim import Claim, Evidence, Refutation, Unknown
 from .stroke_motion import Strokes, families
 
 Computer = Sampling | Literal["continuous"]
-#: steps in the shortest stroke, as long as one simulation has no more than so many
+#: steps in the shortest stroke; fewer where one simulation would then have more than _MOST steps
 _FINE, _MOST = 100, 40_000
-_LONGEST = 2_000_000  # steps of one simulation
-#: share of the energy turned over that came out and went in again, from which evidence names it:
-#: far above the error of a simulation, far below what a spring lends
+_LONGEST = 2_000_000  # most steps of one simulation
+#: evidence names energy that came out and went in again, if it is more than this share of the
+#: energy turned over: far above the error of a simulation, far below the energy that a spring lends
 _LENT = 1e-3
-_ROUNDS = 300  # at most, of a motion that is repeated until it releases what the first round took
+#: most rounds of a motion, repeated until it has released the energy that its start took
+_ROUNDS = 300
 
 
 @dataclass(frozen=True)
 class Given:
-    """Energy that one simulation released, J.
+    """Energies that the port released in one simulation, J.
 
-    total: from rest back to rest;  last_round: over its last closed round
+    total: from rest back to rest;  last_round: over the last closed round
     turned: integral of abs(force times velocity), the scale of both
-    most: released up to some moment on the way; more than `total` where some of it comes back
+    most: largest energy released up to some moment; above `total` where some energy comes back
     """
 
     total: float
@@ -50,7 +51,9 @@ class Given:
 class SimulatedMotion:
     """A motion of a port that releases energy; `replay()` simulates this motion anew.
 
-    port: (motion, force on the device that moves it);  computer, step, give: as in `simulate`
+    port: (motion, force ON the device along this motion);  strokes: the motion
+    computer: as in `simulate`;  give: m or rad, as in `simulate`
+    energy: released, J, from rest back to rest
     """
 
     diagram: Diagram = field(repr=False)
@@ -95,8 +98,9 @@ def released_energy(
 ) -> Given:
     """Energy that the port releases along these strokes; hidden states start at zero.
 
-    port: (motion, force ON the device along it);  finer: steps are shorter by this factor
-    raises ModelError: the port is not one whose motion can be prescribed, or a motion too long
+    port: (motion, force ON the device along it);  computer, give: as in `simulate`
+    finer: the step of the simulation is divided by this factor
+    raises ModelError: the motion of the port cannot be prescribed, or the motion is too long
     """
     shortest = float(np.diff(strokes.times).min())
     period = 1e-3 if isinstance(computer, str) else computer.period
@@ -142,8 +146,12 @@ def confirmed_motion(
 ) -> SimulatedMotion | None:
     """These strokes, repeated as needed, if they release more energy than the numerical error.
 
-    From rest, with hidden states at zero, to rest: so what comes out was never put in. It must come
-    out with half the step, and with a tenth of `give` too, and be thrice what these change.
+    The motion begins and ends at rest, with hidden states at zero at the start. So no stored energy
+    can have paid for the release. The energy must also come out with half the step, and with a
+    tenth of `give`, and must be more than three times the change between these simulations.
+
+    port, computer, give: as in `released_energy`
+    returns: None where the strokes release no energy, or not certainly
     """
 
     def run(strokes: Strokes, *, finer: int = 1, give: float = give) -> Given:
@@ -183,13 +191,15 @@ def search_counterexample(
 ) -> Claim:
     """Does any motion within stroke and speed, from rest back to its start, take energy out?
 
-    stroke: largest position, m or rad;  speed: largest speed, SI;  tries: how many motions
-    give: m or rad, of ideal Coulomb friction; the shortest motions simulated are a thousandth of
-        `stroke`, so keep it far below that and below any bristle length
+    stroke: largest position, m or rad;  speed: largest speed, m/s or rad/s
+    port, computer: as in `released_energy`;  tries: number of motions;  rng: draws the motions
+    give: m or rad, of ideal Coulomb friction. The shortest motions are a thousandth of `stroke`:
+        choose it far below this, and below any bristle length
     returns: refuted by a motion that was confirmed with half the step and a tenth of `give`;
-        else evidence, which is no proof, and says what came out on the way and went in again: what
-        it held from the start, such as a spring, supplies that to a motion that does not return.
-        Unknown where simulations leave the finite numbers
+        else evidence, which is no proof. The evidence names energy that came out on the way and
+        went in again; a stored energy, as of a spring, would supply it to a motion that does not
+        return. Unknown where simulated forces are not finite
+    raises ModelError: stroke or speed is not > 0, or the motion of the port cannot be prescribed
     """
     if stroke <= 0 or speed <= 0:
         raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")
@@ -229,7 +239,7 @@ def search_counterexample(
 def _refine(
     strokes: Strokes, score: Callable[[Strokes], float], *, stroke: float, speed: float
 ) -> Strokes:
-    """The strokes with size and speed changed so that a larger share comes out."""
+    """The strokes with size and speed changed so that they release a larger share of the energy."""
     from scipy.optimize import minimize
 
     largest = max(abs(x) for x in strokes.points)

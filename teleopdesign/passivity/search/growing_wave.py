@@ -1,10 +1,10 @@
-"""A motion that takes energy out of a linear system that is not passive: a growing wave.
+"""A growing wave: a motion that takes energy out of a linear system that is not passive.
 
     v(t) = Re(V e^(s t)) for t <= 0,   s = a + j w,   a > 0
 
-Along it the force is Re(Z(s) V e^(s t)), also with dead times. With V at its best phase the energy
-that flows in is (Re V^* Z V/a - abs(V^T Z V/s))/4: negative wherever Re V^* Z V < 0. The start lies
-arbitrarily near to rest, so no stored energy can have paid for it.
+Along this motion the force is Re(Z(s) V e^(s t)), also with dead times. With the best phase of V
+the energy that flows in is (Re V^* Z V/a - abs(V^T Z V/s))/4: negative wherever Re V^* Z V < 0. The
+motion starts arbitrarily near to rest, so no stored energy can have paid for the release.
 """
 
 from __future__ import annotations
@@ -25,21 +25,25 @@ from ...realise.lti import S
 from ..linear.impedance import Impedance
 from ..linear.polynomials import even_part, fraction, where_negative
 
-LONGEST = 500  # periods of a wave that are sampled; each of them releases energy
-_DIGITS = 40  # of numerical values to begin with
-#: share of abs(Z) below which the sum of a replay in double precision loses Re Z: 1e4 roundings
+LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
+_DIGITS = 40  # decimal digits of a first numerical value
+#: -Re Z as a share of abs(Z), below which a replay in double precision loses Re Z in its sum (about
+#: 1e4 roundings)
 _WEAKEST = 1e-11
-#: share of abs(Z) by which Re Z in double precision spares the digits of an exact look
+#: Re Z as a share of abs(Z), above which double precision shows that Re Z is positive
 _PLAIN = 1e-6
-#: share of a sum of energies in double precision that is rounding: sixteen last digits of each term
+#: a sum of energies in double precision that is below this share of the sizes of its terms may be
+#: rounding: 2^-48 is sixteen units in the last place (2^-52)
 ROUNDING = 2.0**-48
 
 
 @dataclass(frozen=True)
 class GrowingWave:
-    """A wave at s = rate + j frequency (1/s, rad/s; exact), velocities V at t = 0 (m/s, complex).
+    """A growing wave at the ports of an impedance: v(t) = Re(V e^(s t)) for t <= 0.
 
-    impedance: (n, n) forces over velocities, in `realise.lti.S`;  energy: released to t = 0, J
+    impedance: forces over velocities, N s/m, n by n, in `realise.lti.S`
+    rate, frequency: real and imaginary part of s, 1/s and rad/s, exact
+    velocity: V at t = 0, m/s, complex, one for each port
     """
 
     impedance: sp.ImmutableMatrix
@@ -49,7 +53,7 @@ class GrowingWave:
 
     @property
     def s(self) -> complex:
-        """rate + j frequency."""
+        """rate + j frequency, 1/s."""
         return complex(float(self.rate), float(self.frequency))
 
     @property
@@ -64,11 +68,13 @@ class GrowingWave:
         return float(-((v.conj() @ z @ v).real / self.s.real + (v @ z @ v / self.s).real) / 4)
 
     def samples(self, number: int = 20001) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Time (n,), s; velocities and forces (n, ports), over the last part of the wave.
+        """Samples of the last part of the wave: time, velocities and forces.
 
-        It spans twelve time constants of growth, or LONGEST periods where those are shorter. Where
-        all poles decay, or grow slower than the wave, this is also the force after a start
-        from rest, once its transient is gone.
+        The span is twelve time constants of growth, or LONGEST periods if they are shorter. If all
+        poles decay, or grow slower than the wave, the force is also that of a motion that started
+        from rest, after its transient.
+
+        returns: time (n,), s; velocities (n, ports), m/s; forces (n, ports), N
         """
         span = 12.0 / self.s.real
         if self.frequency:
@@ -80,7 +86,7 @@ class GrowingWave:
     def replay(self) -> float:
         """Energy released, J: minus the integral of force times velocity over `samples`.
 
-        0 where the sum is no more than the rounding of its terms: it shows nothing
+        0 where the sum is no larger than the rounding of its terms, because it then shows nothing.
         """
         periods = min(12.0 * self.s.imag / self.s.real / (2 * math.pi), LONGEST)
         t, v, f = self.samples(2 * int(500 * (1 + periods)) + 1)
@@ -102,13 +108,16 @@ class GrowingWave:
 
 
 def drop_rounding(terms: np.ndarray) -> float:
-    """Their sum; 0 where it is no more than what the rounding of the terms may come to."""
+    """Sum of the terms; 0 where the sum is no larger than the possible rounding of the terms."""
     total = float(terms.sum())
     return total if abs(total) > ROUNDING * float(np.abs(terms).sum()) else 0.0
 
 
 def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.ndarray:
-    """Z at rate + j frequency, (n, n), to double precision; NaN where more digits change that."""
+    """Z at rate + j frequency, N s/m, (n, n), to double precision.
+
+    NaN at a pole, and where even 320 decimal digits do not determine the value.
+    """
     # poles and zeros of badly scaled systems lie close together, and near s = 0 dead times leave
     # differences of numbers that agree in tens of digits
     few = _evaluate_precisely(z, rate, frequency, digits=_DIGITS)
@@ -123,7 +132,7 @@ def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.n
 def _evaluate_precisely(
     z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction, *, digits: int
 ) -> np.ndarray:
-    """Z there in so many digits, then rounded to complex numbers."""
+    """Z at rate + j frequency, computed in so many decimal digits, then rounded; NaN at a pole."""
     with mpmath.workdps(digits):
         s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
         try:
@@ -140,9 +149,13 @@ def _numerical(z: sp.ImmutableMatrix) -> Callable[[mpmath.mpc], list[list[mpmath
 
 
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
-    """The wave there that releases most energy; None where it releases none.
+    """The wave at s = rate + j frequency that releases most energy.
 
-    To double precision, with a dead time to 1e-9 of Z; `growing_wave` checks exactly.
+    The decision is in double precision, with a dead time within 1e-9 of abs(Z). `growing_wave`
+    decides exactly.
+
+    z: N s/m, (n, n);  rate: 1/s;  frequency: rad/s
+    returns: None where no wave at s releases energy
     """
     if z.has(sp.exp) and _is_plainly_passive(z, complex(float(rate), float(frequency))):
         return None
@@ -163,7 +176,7 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
 
 
 def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
-    """Whether Z + Z* is positive there by far more than rounding takes, in double precision."""
+    """Whether Z + Z^H at s is positive by far more than rounding, computed in double precision."""
     with np.errstate(all="ignore"):
         value = np.array(_compile_in_doubles(z)(np.complex128(s)), dtype=complex)
     if not np.all(np.isfinite(value)):
@@ -180,9 +193,9 @@ def _compile_in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list
 
 
 def growing_wave(z: Impedance) -> GrowingWave | None:
-    """A wave that takes energy out of an impedance; None only where it is positive real.
+    """A wave that takes energy out of an impedance, with Re Z < 0 at its s verified exactly.
 
-    Re Z < 0 at its s is verified exactly.
+    returns: None where z is positive real, or where the search does not resolve a wave
     """
     waves = [_find_beside_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
     growing = [w for w in waves if w is not None]
@@ -195,24 +208,27 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
 
 
 def _share(wave: GrowingWave) -> float:
-    """Part of abs(Z) that releases energy at the wave of a single port."""
+    """-Re Z over abs(Z) at the wave of a one-port: the share that releases energy."""
     z = complex(wave.value[0, 0])
     return -z.real / abs(z)
 
 
 def square_root(x: Fraction, digits: int) -> Fraction:
-    """A rational number within 10^-digits, relative, of the square root of x."""
+    """A rational number near the square root of x; relative error below 10^-digits."""
     ten = 10**digits
     return Fraction(math.isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
 
 
 def halvings(start: Fraction, number: int) -> Iterable[Fraction]:
-    """start/2, start/4, ..."""
+    """The numbers start/2, start/4, ...: so many of them."""
     return (start / 2**k for k in range(1, number + 1))
 
 
 def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
-    """At about sqrt(x), with the fastest growth of a halving sequence for which Re Z < 0."""
+    """A wave at the frequency sqrt(x) or close to it; None where none is resolved.
+
+    The rate of growth is halved until Re Z < 0.
+    """
     for digits in (20, 60, 200):  # enough for a dip in frequency that narrow, relative
         frequency = square_root(x, digits)
         for rate in halvings(frequency, 4 * digits):
@@ -223,9 +239,9 @@ def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
 
 
 def _find_at_growing_mode(z: Impedance) -> GrowingWave | None:
-    """Near a zero of Z + c in the right half plane: there Re Z = -c.
+    """A wave near a zero of Z + c in the right half plane: there Re Z = -c.
 
-    The port held by a damper c > 0 moves with that growing mode by itself.
+    With a damper c > 0 at the port, the system has this growing mode.
     """
     for c in (sp.Rational(10) ** k for k in (0, -2, 2, -4, 4, -6, 6)):
         closed = sp.Poly(z.p + z.q.mul_ground(c), S)
@@ -251,7 +267,7 @@ def _find_at_growing_mode(z: Impedance) -> GrowingWave | None:
 
 
 def _middle(polynomial: sp.Poly) -> sp.Rational:
-    """Power of ten near the geometric mean of the sizes of its roots but 0, 1/s."""
+    """Power of ten near the geometric mean of the sizes of all roots other than 0, 1/s."""
     sizes = [abs(x) for x in polynomial.all_coeffs() if x]
     powers = [k for k, x in enumerate(polynomial.all_coeffs()) if x]
     if len(sizes) < 2:
@@ -261,7 +277,7 @@ def _middle(polynomial: sp.Poly) -> sp.Rational:
 
 
 def _check_exactly(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
-    """The wave if Re Z < 0 there, exactly."""
+    """The wave at s = rate + j frequency if Re Z < 0 there, decided exactly; else None."""
     value = z.at(rate, frequency)
     if value is None or value[0] >= 0:
         return None

@@ -1,4 +1,4 @@
-"""Motions made of strokes between turning points: sinusoids, stops and reversals, random ones."""
+"""Motions made of strokes between turning points: sinusoids, stops with reversals, random paths."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Array = NDArray[np.float64]
 @check_types
 @dataclass(frozen=True)
 class Strokes:
-    """From rest at 0 through turning points, round after round, back to rest at 0.
+    """A motion from rest at 0 through turning points, round after round, back to rest at 0.
 
-    points: turning points of one round, m or rad;  speed: the peak of each stroke, m/s or rad/s
+    A stroke of length d is half a cosine and takes the time pi d/(2 speed). With two turning points
+    of opposite sign the motion is a sinusoid.
+
+    points: turning points of one round, m or rad;  speed: peak speed of each stroke, m/s or rad/s
     rounds: how often the points are visited;  pause: rest at each turning point, s
-
-    A stroke of length d is half a cosine and takes pi d/(2 speed): with two points of opposite sign
-    the motion is a sinusoid.
     """
 
     points: tuple[float, ...]
@@ -33,23 +33,23 @@ class Strokes:
 
     @property
     def path(self) -> Array:
-        """Every turning point from the first rest to the last, (n,)."""
+        """Position of every turning point from the first rest to the last, m or rad, (n,)."""
         return np.array([0.0, *(self.points * self.rounds), 0.0])
 
     @property
     def times(self) -> Array:
-        """When each turning point of `path` is reached, s, (n,)."""
+        """Time at which the motion leaves each turning point of `path`, s, (n,)."""
         lasting = np.pi * np.abs(np.diff(self.path)) / (2 * self.speed) + self.pause
         return np.concatenate([[0.0], np.cumsum(lasting)])
 
     @property
     def duration(self) -> float:
-        """s, to the last rest."""
+        """Time until the last rest, s."""
         return float(self.times[-1])
 
     @property
     def last_round(self) -> tuple[float, float]:
-        """Begin and end of the last closed round, s: from its turning point to the same one."""
+        """Begin and end of the last closed round, s: from a turning point back to the same one."""
         end = len(self.points) * self.rounds
         return float(self.times[end - len(self.points)]), float(self.times[end])
 
@@ -82,10 +82,12 @@ class _Along:
 def families(
     rng: np.random.Generator, *, stroke: float, speed: float, tries: int, decades: float = 3.0
 ) -> Iterator[tuple[str, Strokes]]:
-    """Motions to try: sinusoids on a grid, then stops and reversals, and random paths.
+    """Motions for a search: sinusoids on a grid, then stops with reversals, then random paths.
 
-    stroke, speed: largest position and largest speed, SI;  decades: how far below them to begin
-    tries: how many motions in all, a third of each family
+    stroke: largest position, m or rad;  speed: largest speed, m/s or rad/s
+    tries: number of motions in all, about a third for each family
+    decades: the smallest motions are smaller than `stroke` by so many powers of ten
+    yields: name of the family, and the motion
     """
     share = max(tries // 3, 1)
     across = max(int(np.sqrt(share)), 1)

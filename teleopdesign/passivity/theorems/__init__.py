@@ -1,8 +1,8 @@
-"""Theorems about friction, its cancellation and computers: one file each.
+"""Theorems about the passivity of friction, of its cancellation and of sampled controllers.
 
-Every file that does not begin with `_` states one as `THEOREM`: functions of numbers with their
-hypotheses, and what is asked about every device and diagram (`settle`). Adding a theorem is adding
-a file.
+Every file whose name does not begin with `_` states one theorem as `THEOREM`: functions of numbers
+with their hypotheses, and the questions about devices that the theorem answers. `settle` asks all
+theorems. A further theorem is a further file.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ THEOREMS: Mapping[str, Theorem] = _theorems()
 def settle(
     question: Question, *, simulated: bool = True, theorems: Iterable[Theorem] | None = None
 ) -> list[TopicClaim]:
-    """What all theorems say about a question, as claims about the whole device.
+    """Claims of all theorems about a question, restated for the whole device.
 
-    simulated: whether the motions of refutations are replayed in simulation
-    theorems: those that are asked; None: all of the folder
+    simulated: whether simulations replay the motions of refutations
+    theorems: theorems to ask; None: all of this folder
     """
     answers = []
     for theorem in THEOREMS.values() if theorems is None else theorems:
@@ -52,7 +52,7 @@ def settle(
 
 
 def _replay(theorem: Theorem, one: TopicClaim) -> TopicClaim:
-    """With the motion of its refutation in simulation, where the theorem has one."""
+    """A refuted claim with its motion replayed in simulation, if the theorem can simulate it."""
     if not isinstance(one.claim.verdict, Refutation):
         return one
     motion = theorem.simulate(one.claim.record)

@@ -1,4 +1,4 @@
-"""Cycles of friction and its cancellation, in the compiled simulation."""
+"""Replay of refuting cycles of friction and its cancellation in the compiled simulation."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from ..search.stroke_motion import Strokes
 
 
 def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
-    """A refuting cycle of one friction element, in the compiled simulation.
+    """Simulate a refuting cycle of one friction element with a Dahl compensator.
 
-    None where simulation does not confirm it, as next to a limit, or takes too long for it, for
-    several elements, or a motion of another kind.
+    returns: the confirmed motion. None where the simulation does not confirm a release of energy
+        (as close to a limit), would take too long, or where the counterexample is no cycle of one
+        element
     """
     if not isinstance(cycle, Cycle) or len(cycle.friction) != 1:
         return None

@@ -1,7 +1,7 @@
-"""Certificates of friction compensation: storage functions, for all parameters at once.
+"""Certificates of friction compensation: storage functions for all parameters at once.
 
-The rates of Dahl friction come from the effect `presliding`; v is the velocity, p the force of the
-plant's friction, d that of the compensator, so that supply is (p - d) v.
+The rate of Dahl friction comes from the effect `presliding`. v is the velocity, p the friction
+force of the plant, d the force of the compensator. So the supply is (p - d) v.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ Values = Mapping[str, sp.Expr]
 
 
 def dahl_rate(force: sp.Expr, level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
-    """df/dt of Dahl friction of this force (N/s), with abs_v for abs(v)."""
+    """Rate df/dt of the force f of Dahl friction (N/s), with abs_v for abs(v)."""
     now = {"velocity": v, "level": level, "bristle": force / stiffness}
     rates = EFFECTS["presliding"].rates(now, {"stiffness": stiffness})
     return sp.expand(stiffness * rates["bristle"].subs(sp.Abs(v), abs_v))
 
 
 def bounded_compensator(values: Values) -> Certificate:
-    """Coulomb friction f_C against any compensator with abs(d) <= f_D <= f_C: never energy out.
+    """Coulomb friction f_C with any compensator, abs(d) <= f_D <= f_C, releases no energy.
 
-    values: f_C and f_D, that the checker finds to meet what is assumed
+    values: f_C and f_D, an example that meets the assumptions
     """
     forward: list[Term] = [(1, {"abs_v": 1, "enough": 1}, 1)]
     return storage_certificate(
@@ -51,7 +51,7 @@ def bounded_compensator(values: Values) -> Certificate:
 
 
 def dahl_bound(values: Values) -> Certificate:
-    """The Dahl compensator keeps abs(d) <= f_D, so that Coulomb friction f_C >= f_D covers it.
+    """A Dahl compensator keeps abs(d) <= f_D, so Coulomb friction f_C >= f_D covers its force.
 
     values: f_C, f_D and sigma_D
     """
@@ -82,9 +82,9 @@ def dahl_bound(values: Values) -> Certificate:
 
 
 def sampled_bound(values: Values) -> Certificate:
-    """The exact step over a travel keeps abs(d) <= f_D: d' = s f_D + (d - s f_D) E, 0 <= E <= 1.
+    """The exact step of a Dahl compensator over a travel keeps abs(d) <= f_D.
 
-    values: f_D
+    d' = s f_D + (d - s f_D) E, 0 <= E <= 1;  values: f_D
     """
     e = sp.Symbol("E", real=True)
     after = sign_v * f_D + (d - sign_v * f_D) * e
@@ -107,7 +107,7 @@ def sampled_bound(values: Values) -> Certificate:
 
 
 def presliding_pair(values: Values) -> Certificate:
-    """Dahl friction sigma_p of any level F(t) in F_min..F_max against a Dahl compensator.
+    """Dahl friction (sigma_p, any level F(t) in F_min..F_max) with a Dahl compensator is passive.
 
         V = ((sigma_p + sigma_D) (p^2/sigma_p + d^2/sigma_D)/2 - 2 p d)/(sigma_p - sigma_D)
 
@@ -161,9 +161,10 @@ def presliding_pair(values: Values) -> Certificate:
 
 
 def identical_pair(values: Values) -> Certificate:
-    """Dahl friction against a compensator of the same level f and stiffness sigma.
+    """Dahl friction with a Dahl compensator of the same level f and stiffness sigma is passive.
 
-    The difference e = p - d only decays: V = f abs(e)/sigma.  values: f_D, sigma_D
+    The difference e = p - d only decays. Storage: V = f abs(e)/sigma
+    values: f_D, sigma_D
     """
     e, abs_e = sp.symbols("e abs_e", real=True)
     rate = sp.expand(dahl_rate(d + e, f_D, sigma_D) - dahl_rate(d, f_D, sigma_D))

@@ -1,4 +1,4 @@
-"""A discrete system of python-control as the rational function of z that theorems take."""
+"""Discrete systems of python-control as rational functions of z, for the theorems."""
 
 from __future__ import annotations
 
@@ -9,15 +9,18 @@ import sympy as sp
 from ...controllers import from_control
 from ...errors import ModelError
 
-#: relative; a period is written in decimals, 1e-3 for 0.001
+#: relative difference of two periods that counts as rounding of decimals
 _ROUNDING = 1e-9
 
 
 def discrete_transfer_function(controller: Any, *, sample_time: float, z: sp.Symbol) -> Any:
-    """The transfer function of a system from python-control; anything else as it is.
+    """The transfer function in z of a system of python-control; any other object unchanged.
 
-    Exact in the numbers as they came.  raises ModelError: continuous time, another period, several
-    inputs or outputs, or a mode that the transfer function does not show
+    The numbers of the system are kept exactly.
+
+    controller: the system;  sample_time: period that the system must have, s;  z: symbol of z
+    raises ModelError: continuous time, another period, several inputs or outputs, or a mode that
+        the transfer function does not show
     """
     if not (hasattr(controller, "dt") and hasattr(controller, "nstates")):
         return controller

@@ -1,6 +1,6 @@
 """Hypotheses of a theorem about its numbers: stated beside it, and checked at every call.
 
-    @under(damping=NOT_NEGATIVE, sample_time=POSITIVE, controller=FREE)
+    @require_hypotheses(damping=NOT_NEGATIVE, sample_time=POSITIVE, controller=FREE)
     def sampled_passivity(controller, *, damping, sample_time): ...
 
 A number outside of the hypotheses is refused in one line, because the theorem does not hold for it.
@@ -25,10 +25,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """What a theorem needs of one of its arguments.
+    """A condition on one argument of a theorem.
 
-    text: after "expected", such as "a number > 0";  holds: whether a value is so
-    outside: values that are not, for tests
+    text: for messages, such as "a number > 0";  holds: whether a value meets the condition
+    outside: values that violate the condition, for tests
     """
 
     text: str
@@ -36,7 +36,7 @@ class Hypothesis:
     outside: tuple[Any, ...]
 
     def or_none(self) -> Hypothesis:
-        """The same, or None."""
+        """The same condition, with None allowed as well."""
         return Hypothesis(
             f"{self.text} or None", lambda x: x is None or self.holds(x), self.outside
         )
@@ -47,10 +47,11 @@ def _is_whole(value: Any) -> bool:
     return bool(0 <= number <= _MOST and number == sp.floor(number))
 
 
-#: samples or paths: a thousand late samples are a second already, and each costs time
+#: most samples or paths: each costs time, and a thousand late samples already take a second
 _MOST = 10_000
-#: SI, sizes of what is not 0: no machine is near the ends, and products of five such numbers and
-#: their squares are still numbers of double precision, in which motions are sought and replayed
+#: smallest and largest size of a number that is not 0, SI: no machine is near these ends, and
+#: products of five such numbers, and their squares, still fit into double precision, in which
+#: motions are searched and replayed
 _SMALLEST, _LARGEST = Fraction(1, 10**30), Fraction(10**30)
 _SIZES = "of a size from 1e-30 to 1e30"
 _NO_NUMBER = (float("nan"), float("inf"), True, 1e-300, 1e300)
@@ -61,7 +62,7 @@ def _is_of_size(number: sp.Rational) -> bool:
 
 
 def _real(text: str, holds: Callable[[sp.Rational], bool], *outside: Any) -> Hypothesis:
-    """A number of a size that is computed with, and more."""
+    """A condition on a number: 0 or of a size from 1e-30 to 1e30, and `holds`."""
     return Hypothesis(
         text,
         lambda x: _is_of_size(exact(x)) and holds(exact(x)),
@@ -77,21 +78,21 @@ WHOLE = Hypothesis(
     _is_whole,
     (-1, 0.5, Fraction(3, 2), _MOST + 1, *_NO_NUMBER),
 )
-#: nothing that a number could violate: the function says what it needs
+#: no condition: the function itself checks the argument
 FREE = Hypothesis("anything", lambda x: True, ())
 
 
 def one_of(*values: Any) -> Hypothesis:
-    """One of these values."""
+    """The condition that an argument is one of these values."""
     text = " or ".join(map(str, values))
     return Hypothesis(text, lambda x: x in values, (max(values) + 1, min(values) - 1, 0.5))
 
 
 def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
-    """A theorem on numbers with its hypotheses, one for each argument, checked at every call.
+    """Decorator of a theorem on numbers: checks a hypothesis for each argument at every call.
 
-    raises ModelError: at the call, an argument that violates its hypothesis; where the theorem is
-        defined, an argument without one
+    raises ModelError: at a call, an argument that violates its hypothesis; at the definition, an
+        argument without a hypothesis
     """
 
     def with_hypotheses(function: Function) -> Function:
@@ -121,7 +122,10 @@ def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Function], Functio
 
 
 def hypotheses_of(function: Callable[..., Any]) -> Mapping[str, Hypothesis]:
-    """Argument -> what the theorem needs of it; ModelError where a function states none."""
+    """Hypotheses of a theorem: argument -> hypothesis.
+
+    raises ModelError: the function states no hypotheses
+    """
     stated = getattr(function, "hypotheses", None)
     if stated is None:
         raise ModelError(f"{function.__name__}: states no hypotheses: see `require_hypotheses`")

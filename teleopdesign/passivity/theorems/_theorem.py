@@ -1,8 +1,7 @@
-"""A theorem: which questions about a device it answers, and its claims.
+"""Types of a theorem, of a question about a device, and of the claims that answer the question.
 
-A file of this folder states its mathematics as functions of numbers, each with its hypotheses. Its
-`THEOREM` says which questions about a device or a diagram the theorem answers. Each file is one
-theorem.
+A file of this folder states the mathematics of one theorem as functions of numbers, each with its
+hypotheses. Its `THEOREM` says which questions about a device or a diagram the theorem answers.
 """
 
 from __future__ import annotations
@@ -22,7 +21,10 @@ from ._hypotheses import hypotheses_of
 
 @dataclass(frozen=True)
 class Wall:
-    """A virtual wall: K, N/m, and B, N s/m; cancelled: friction that a compensator takes, N."""
+    """A virtual wall.
+
+    stiffness: K, N/m;  damping: B, N s/m;  cancelled: friction that a compensator cancels, N
+    """
 
     stiffness: float
     damping: float
@@ -31,10 +33,11 @@ class Wall:
 
 @dataclass(frozen=True)
 class Question:
-    """What passivity is asked of: a device, alone, with a law that cancels friction, or a wall.
+    """A question about passivity: of a device alone, with a law that cancels friction, or a wall.
 
-    computer: period, delay (whole periods) and encoder of law and wall; None: continuous
-    estimates: whether also at the estimates, and not only for all values within the intervals
+    device: bounds of its friction;  cancellation: the law;  wall: the virtual wall
+    computer: period, delay (whole periods) and encoder of law and wall; None: continuous time
+    estimates: whether to ask at the estimates, too, or only for all values within the intervals
     """
 
     device: IdentifiedDevice
@@ -45,23 +48,26 @@ class Question:
 
     @property
     def bound(self) -> float | None:
-        """The most that the cancellation commands, N; None where no such bound is declared."""
+        """Largest force that the cancellation commands, N; None where it declares no bound."""
         return self.cancellation.value_of("bound") if self.cancellation else None
 
     @property
     def bristle_stiffness(self) -> float | None:
-        """Of a cancellation that is a Dahl bristle within its bound, N/m; None for all others."""
+        """Bristle stiffness of a cancellation that is a Dahl bristle, N/m; None for other laws."""
         return self.cancellation.value_of("bristle_stiffness") if self.cancellation else None
 
     @property
     def bristle(self) -> tuple[float, float] | None:
-        """(level, stiffness) of a cancellation that is a Dahl bristle, N and N/m."""
+        """(level, stiffness) of a cancellation that is a Dahl bristle, N and N/m; else None."""
         level, stiffness = self.bound, self.bristle_stiffness
         return None if level is None or stiffness is None else (level, stiffness)
 
     @property
     def late(self) -> int | None:
-        """Whole samples by which the computer is late; None where its delay is no such number."""
+        """Delay of the computer in whole samples; None where it is not a whole number of samples.
+
+        0 in continuous time.
+        """
         if self.computer is None:
             return 0
         samples = self.computer.delay / self.computer.period
@@ -74,10 +80,13 @@ Time = Literal["continuous", "sampled", "any"]
 
 @dataclass(frozen=True, eq=False)
 class TopicClaim(ByValue):
-    """A claim in its topic; replayed: energy (J) that its motion released in simulation, NaN where
-    none was replayed; motion: that simulated motion.
-    time: of the controllers in it: "sampled", "continuous", or "any" where it holds in both
-    spends_damping: whether its proof uses the device's viscous damping, which no other may then use
+    """A claim with its topic.
+
+    replayed: energy that the motion of a refutation released in simulation, J; NaN: not replayed
+    motion: the simulated motion
+    spends_damping: whether the proof uses the viscous damping of the device; no second proof of the
+        same sum of parts may then use it
+    time: of the controllers: "sampled", "continuous", or "any" where the claim holds for both
     """
 
     topic: str
@@ -89,42 +98,42 @@ class TopicClaim(ByValue):
 
     @property
     def heading(self) -> str:
-        """The status; of what is proved in continuous time alone, with these words."""
+        """Status of the claim in words; a proof for continuous time alone says so."""
         limited = self.claim.status == "proved" and self.time == "continuous"
         return f"{self.claim.heading}{' (in continuous time)' * limited}"
 
 
 def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
-    """No simulation: the motion of a refutation is replayed by its equations alone."""
+    """Default of `Theorem.simulate`: no simulation, equations alone replay a refuting motion."""
     return None
 
 
 def cover_nothing(question: Question) -> Sequence[str]:
-    """No effect beside those of friction."""
+    """Default of `Theorem.covers`: no effect besides those of friction."""
     return ()
 
 
 def ask_nothing(question: Question) -> bool:
-    """No question: a theorem on numbers alone."""
+    """Default of `Theorem.applies`: no question, the theorem is about numbers alone."""
     return False
 
 
 def claim_nothing(question: Question) -> Sequence[TopicClaim]:
-    """No claim."""
+    """Default of `Theorem.claims`: no claim."""
     return ()
 
 
 @dataclass(frozen=True)
 class Theorem:
-    """A theorem, on numbers, and as it is asked about devices and diagrams.
+    """A theorem: its functions of numbers, and the questions about devices that it answers.
 
-    mathematics: its functions of numbers, each with its hypotheses (`under`): what is claimed comes
-        from them, so that nothing is claimed outside of these
-    applies: whether it is about the question at all; by default it is about numbers alone
-    claims: about friction, walls and computers alone, each in its topic
-    order: where it stands among all: continuous time before computers, friction before walls
-    covers: effects of the device that it is about, though no claim about friction alone is
-    simulate: the motion of its refutations in the compiled simulation, as far as that confirms it
+    mathematics: functions of numbers with their hypotheses (`require_hypotheses`). All claims come
+        from these functions, so no claim is made outside of the hypotheses
+    order: place among all theorems: continuous time before computers, friction before walls
+    applies: whether the theorem answers a question; default: it is about numbers alone
+    claims: the claims that answer a question, about friction, walls and computers alone
+    covers: names of further effects of the device that the theorem covers
+    simulate: the motion of a refutation in the compiled simulation; None where not confirmed
     """
 
     mathematics: tuple[Callable[..., Claim], ...]

@@ -1,6 +1,7 @@
-"""Certificates for friction cancelled by velocity, for all parameters at once.
+"""Certificates for friction that is cancelled by a law of velocity.
 
-v is the velocity, c = f_D v/(a + abs(v)) the compensator, f_C or p the friction, B the damping.
+v is the velocity, c = f_D v/(a + abs(v)) the compensator, f_C or p the friction, B the damping. The
+proofs hold for all parameters that meet the stated inequalities.
 """
 
 from __future__ import annotations
@@ -15,7 +16,10 @@ _HELP = f_D * v**2 / (a + abs_v)
 
 
 def ideal_contact(*, f_c: sp.Expr, f_d: sp.Expr, smoothing: sp.Expr, b: sp.Expr) -> Certificate:
-    """(f_C + B abs(v)) (a + abs(v)) >= f_D abs(v): power is lost at every speed."""
+    """Coulomb friction and damping cover the law at every speed: no power comes out.
+
+    (f_C + B abs(v)) (a + abs(v)) >= f_D abs(v)
+    """
     if smoothing == 0:  # then c = f_D sgn v, and f_D <= f_C
         return _ideal_contact_unsmoothed({"f_C": f_c, "f_D": f_d, "B": b})
     gap = f_D - f_C - a * B
@@ -65,7 +69,10 @@ def _ideal_contact_unsmoothed(values: Values) -> Certificate:
 def yielding_contact(
     *, f_d: sp.Expr, smoothing: sp.Expr, b: sp.Expr, stiffness: sp.Expr
 ) -> Certificate:
-    """Dahl friction of any level F(t) and damping B with a B >= f_D: V = p^2/(2 sigma_p)."""
+    """Dahl friction of any level F(t) and damping B cover the law where f_D <= a B.
+
+    Storage: V = p^2/(2 sigma_p)
+    """
     lost: list[Term] = [
         (1, {"abs_v": 1, "F": -1}, p),
         (1, {"speed": -1, "enough": 1}, v),
@@ -89,9 +96,9 @@ def yielding_contact(
 
 
 def held_command(*, least: sp.Expr, b: sp.Expr) -> Certificate:
-    """A command c of an earlier sample, held over one: summed, no energy is released.
+    """A command c of an earlier sample, held over a sample, releases no energy in the sum.
 
-    u and w are the mean velocities of the sample and of that earlier one.
+    u and w are the mean velocities of the sample and of the earlier sample.
     """
     u, w, c, f_0, abs_u, abs_w = sp.symbols("u w c f_0 abs_u abs_w", real=True)
     bound = f_0 + B * abs_w

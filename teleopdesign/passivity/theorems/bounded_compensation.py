@@ -1,4 +1,4 @@
-"""Any compensator whose force is bounded by the level of ideal friction is passive with it.
+"""Ideal friction is passive with any compensator whose force is within the friction level.
 
 At any speed friction opposes the motion with at least f_C, and the compensator helps with at most
 f_D. So f_D <= f_C is sufficient. Above this bound a Dahl compensator of level f_D releases energy.
@@ -27,10 +27,14 @@ from ._theorem import Question, Theorem, TopicClaim
 
 @require_hypotheses(coulomb_level=POSITIVE, bound=POSITIVE)
 def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
-    """Is Coulomb friction passive beside any compensator whose force stays within `bound`?
+    """Is Coulomb friction passive together with any compensator whose force is within a bound?
 
-    It needs nothing but the bound: so it also holds for a compensator that is sampled, delayed,
-    quantised or driven by noise, whatever its stiffness. N.
+    The bound is the only condition, so the compensator may be sampled, delayed, quantised or driven
+    by noise, with any stiffness.
+
+    coulomb_level: f_C, N;  bound: f_D, N
+    returns: proved if and only if f_D <= f_C; else refuted by a Dahl compensator in a cycle
+    raises ModelError: an argument that is not > 0
     """
     f_c, f_d = positive_numbers(coulomb_level=coulomb_level, bound=bound)
     statement = (
@@ -49,10 +53,11 @@ def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
 
 
 def amplitude_beyond_onset(helps: Dahl, f_c: float) -> float:
-    """An amplitude at which cycles release energy, m: 1 - 1/u = f_C/f_D, doubled.
+    """An amplitude at which cycles release energy, m: twice the u with 1 - 1/u = f_C/f_D, about.
 
-    Levels that floats do not tell from each other count as one unit in the last place apart: what
-    such a cycle releases is then lost in rounding, and refutes nothing.
+    u is the amplitude in bristle lengths. Levels that are equal as floats count as one unit in the
+    last place apart. The energy of such a cycle is then lost in rounding, and refutes nothing.
+    helps: the Dahl compensator;  f_c: Coulomb level, N
     """
     length = helps.level / helps.stiffness
     return length + 2 * length / max(1 - f_c / helps.level, 2.0**-52)
@@ -61,14 +66,17 @@ def amplitude_beyond_onset(helps: Dahl, f_c: float) -> float:
 def proof_of_level(
     method: str, f_d: sp.Expr, f_c: sp.Expr, *certificates: Any, also: Sequence[str] = ()
 ) -> Proof:
-    """The margin is that of the level; equality also where small motion just stores."""
+    """A proof whose margin is f_C - f_D, N.
+
+    also: further motions in which the inequality holds with equality
+    """
     equality = " and ".join([*(["sliding"] if f_d == f_c else []), *also])
     text = f"in {equality}" if equality else ""
     return Proof(method, tuple(certificates), float(f_c - f_d), "N of level", text)
 
 
 def positive_numbers(**values: Any) -> list[sp.Expr]:
-    """The values as exact numbers; ModelError for one that is not > 0."""
+    """The values as exact numbers; raises ModelError for a value that is not > 0."""
     numbers = []
     for name, value in values.items():
         number = exact(value)
@@ -79,7 +87,10 @@ def positive_numbers(**values: Any) -> list[sp.Expr]:
 
 
 def _applies(question: Question) -> bool:
-    """To a bounded law beside ideal friction; no bound on the force alone covers presliding."""
+    """Whether the question is about a bounded law and ideal friction.
+
+    For friction that deflects before it slides, a bound of the force alone is not sufficient.
+    """
     return question.bound is not None and question.device.presliding is None
 
 
@@ -96,14 +107,14 @@ def _claims(question: Question) -> list[TopicClaim]:
 
 
 def _covers(question: Question) -> Sequence[str]:
-    """What makes a force of the command, where its bound is known."""
+    """Effects of the actuation, where the bound of the acting force is known."""
     bound = question.bound
     assert bound is not None
     return () if math.isinf(question.device.acting_force(bound)) else question.device.actuation
 
 
 def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
-    """Whether the friction level covers any law that acts with no more than that, N."""
+    """The claim that the friction level covers any law whose acting force is within `acting`, N."""
     if math.isinf(acting):
         why = "no bound is known of the force that the actuation makes of a command"
         return Claim("no law within the friction level drives a motion", Unknown(why))
@@ -111,7 +122,7 @@ def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
 
 
 def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
-    """Whether level and damping together cover a law that acts with no more than that, N."""
+    """The claim that level and damping together cover a law with a force within `acting`, N."""
     least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
     margin = least - acting
     statement = (

@@ -3,8 +3,8 @@
     m_1 x_1'' = u + f_dahl(x_1) - f_1 sgn x_1' - k (x_1 - x_2) - c (x_1' - x_2')     motor
     m_2 x_2'' = k (x_1 - x_2) + c (x_1' - x_2') - f_2 sgn x_2' + f_env               link
 
-There are two questions with two answers: passivity with any environment (also one that clamps the
-link), and no energy out of slow free motion, where friction f_2 alone holds the link.
+There are two questions with two answers: passivity with any environment, also one that clamps the
+link; and no release of energy in slow free motion, where friction f_2 alone holds the link.
 """
 
 from __future__ import annotations
@@ -46,10 +46,16 @@ def any_environment(
     link_inertia: Any = 1,
     transmission_damping: Any = 0,
 ) -> Claim:
-    """Is the joint passive for any environment and any stroke? Iff f_D <= f_1, for all k and f_2.
+    """Is the joint passive for any environment and any stroke: if and only if f_D <= f_1?
 
-    f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  kg, kg, N s/m
-    refuted, where it is, with the link clamped and the spring's force left to the environment
+    The limit does not depend on k and f_2.
+
+    motor_level, link_level: f_1, f_2, N;  transmission_stiffness: k, N/m
+    compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
+    motor_inertia, link_inertia: kg;  transmission_damping: c, N s/m
+    returns: proved; else refuted by a cycle of the motor, with the link clamped and the force of
+        the spring balanced by the environment
+    raises ModelError: an argument outside of its hypothesis
     """
     f_1, f_d = exact(motor_level), exact(compensator_level)
     statement = (
@@ -98,15 +104,19 @@ def free_motion(
     rng: np.random.Generator,
     paths: int = 2000,
 ) -> Claim:
-    """Does slow free motion never release energy?
+    """Does slow free motion of the joint never release energy?
 
-    For plain symmetric cycles of the motor exactly where f_D <= f_1 + f_2 and
-    f_D (1 - tanh(u)/u) <= f_1, u = sigma_D f_2/(k f_D). Where that fails, a cycle refutes. Where it
-    holds, cycles with a small step back and forth at each reversal, which release more (the
-    bristle forgets the last stroke, at the cost of little friction), and random closed paths are
-    searched: evidence, for these are not all motions.
+    Plain symmetric cycles of the motor release none if and only if f_D <= f_1 + f_2 and
+    f_D (1 - tanh(u)/u) <= f_1, u = sigma_D f_2/(k f_D). If this fails, a cycle refutes the claim.
+    If it holds, other closed paths are searched. Cycles with a small step back and forth at each
+    reversal release more, because the bristle forgets the last stroke at the cost of little
+    friction. Random paths follow.
 
-    f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  paths: how many are searched
+    motor_level, link_level: f_1, f_2, N;  transmission_stiffness: k, N/m
+    compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
+    rng: draws the random paths;  paths: number of random paths
+    returns: refuted by a closed path, or evidence, because the searched paths are not all motions
+    raises ModelError: an argument outside of its hypothesis
     """
     helps = Dahl(compensator_level, compensator_stiffness)
     against: list[Element] = [Coulomb(motor_level), Spring(link_level, transmission_stiffness)]
@@ -142,10 +152,13 @@ def free_motion_margin(
     compensator_level: float,
     compensator_stiffness: float,
 ) -> float:
-    """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0: no symmetric cycle releases.
+    """Margin of slow free motion, N; >= 0: no symmetric cycle of the motor releases energy.
 
-    motor_level, link_level, compensator_level: f_1, f_2, f_D, N;  stiffnesses: N/m
-    u = sigma_D f_2 / (k f_D): bristle lengths of spring deflection before the link slides (P53)
+    min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), with u = sigma_D f_2 / (k f_D): deflection of
+    the spring before the link slides, in bristle lengths (P53).
+
+    motor_level, link_level, compensator_level: f_1, f_2, f_D, N
+    transmission_stiffness, compensator_stiffness: k, sigma_D, N/m
     """
     stuck = compensator_level * lost_share(
         compensator_stiffness * link_level / (transmission_stiffness * compensator_level)
@@ -154,7 +167,7 @@ def free_motion_margin(
 
 
 def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
-    """The symmetric cycle that releases most per travel; sliding cycles get long strokes."""
+    """The symmetric cycle that releases most energy per travel, of a grid of amplitudes."""
     stuck = against[1]
     elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
     bristle = helps.level / helps.stiffness
@@ -168,7 +181,7 @@ def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
 def _search_cycle(
     helps: Dahl, against: Sequence[Element], rng: np.random.Generator, paths: int
 ) -> Cycle | None:
-    """The closed path that releases most, of those with steps and random ones; None if none."""
+    """The closed path that releases most, of cycles with steps and random paths; None if none."""
     lengths = [helps.level / helps.stiffness]
     lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
     best = _add_steps(helps, against, lengths)
@@ -182,9 +195,10 @@ def _search_cycle(
 
 
 def _add_steps(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
-    """The cycle with a step back and forth at each reversal that releases most; None if none does.
+    """Of cycles with a step back and forth at each reversal, the one that releases most.
 
     lengths: of the bristle and of the spring beside it, m
+    returns: None where none of them releases energy
     """
     best: Cycle | None = None
     for a in np.geomspace(0.3 * min(lengths), 3.0 * max(lengths), 24):
@@ -197,9 +211,11 @@ def _add_steps(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]
 
 
 def _certificate(values: Values) -> Certificate:
-    """Coulomb friction f_1 at the motor, f_2 at the link, spring k and damper c between them, and
-    any compensator at the motor with abs(d) <= f_D <= f_1; forces u on motor and f_env on link.
+    """Certificate that motor and link with a compensator at the motor are passive at both ends.
 
+    Coulomb friction f_1 acts at the motor and f_2 at the link, with spring k and damper c between
+    them. The compensator has abs(d) <= f_D <= f_1. The forces are u on the motor and f_env on the
+    link.
     values: f_1, f_2, k, c, m_1, m_2, f_D
     """
     v1, v2, stretch, u, f_env = sp.symbols("v1 v2 stretch u f_env", real=True)

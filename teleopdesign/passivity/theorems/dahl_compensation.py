@@ -1,8 +1,8 @@
-"""How much friction a Dahl compensator may cancel before the pair can release energy.
+"""How much friction a Dahl compensator may cancel before energy comes out.
 
-True friction: Coulomb, or Dahl with presliding stiffness sigma_p, its level within a range.
-Compensator: Dahl, level f_D, stiffness sigma_D, on the same position. Mahvash, Okamura, ICRA 2006
-prove f_D <= f_C for Coulomb friction.
+The true friction is Coulomb friction, or Dahl friction with presliding stiffness sigma_p and a
+level within a range. The compensator is a Dahl element of level f_D and stiffness sigma_D on the
+same position. Mahvash, Okamura, ICRA 2006 prove f_D <= f_C for Coulomb friction.
 """
 
 from __future__ import annotations
@@ -51,12 +51,14 @@ def dahl_compensation(
 ) -> Claim:
     """Is the pair of true friction and Dahl compensator passive?
 
-    coulomb_level: f_C, N; with `highest_level` the least level that can occur
-    compensator_level, compensator_stiffness: f_D, N, and sigma_D, N/m
-    presliding_stiffness: sigma_p, N/m, of true friction that is Dahl; None: ideal Coulomb friction
-    highest_level: where the true level changes in any way between f_C and this one, N
-    returns: proved iff f_D <= f_C and, with presliding, sigma_D^2/f_D <= sigma_p^2/f_max; else
-    refuted by a cycle. Decided in exact numbers, equality included
+    coulomb_level: f_C, N; with `highest_level` the lowest level that can occur
+    compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
+    presliding_stiffness: sigma_p of Dahl friction, N/m; None: ideal Coulomb friction
+    highest_level: f_max, N, if the true level changes in any way between f_C and f_max
+    returns: proved if and only if f_D <= f_C and, with presliding, sigma_D^2/f_D <=
+        sigma_p^2/f_max; decided in exact numbers, equality included. Else refuted by a cycle;
+        unknown where the condition fails by too little for double precision
+    raises ModelError: an argument outside of its hypothesis, or highest_level below coulomb_level
     """
     f_c, f_d, stiffness = positive_numbers(
         coulomb_level=coulomb_level,
@@ -89,10 +91,14 @@ def dahl_compensation(
 
 
 def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: float) -> float:
-    """Level f_D at which cycles of that amplitude neither release nor take energy, N.
+    """Level f_D, N, at which cycles of one amplitude neither release nor take energy.
 
-    f_D (1 - tanh(u)/u) = f_C, u = sigma_D A/f_D: above f_C for every amplitude, and the higher the
-    softer the compensator; inf where no level does. stiffness: sigma_D, N/m;  amplitude: m
+    It solves f_D (1 - tanh(u)/u) = f_C, u = sigma_D A/f_D. It is above f_C for every amplitude, and
+    higher for a softer compensator.
+
+    coulomb_level: f_C, N;  stiffness: sigma_D, N/m;  amplitude: A, m
+    returns: inf where no level releases energy
+    raises ModelError: an argument that is not > 0
     """
     from scipy.optimize import brentq
 
@@ -115,11 +121,13 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
 
 
 def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycles") -> float:
-    """Largest f_D/f_C that releases no energy within u = sigma_D A/f_D bristle lengths either way.
+    """Largest f_D/f_C with which motions within an amplitude release no energy.
 
-    motion: "cycles": exact for plain cycles of that amplitude, 1/(1 - tanh(u)/u);
-        "closed paths": enough for every closed path within it, 1/(1 - e^(-2 u))^2 (P56). A motion
-        that does not come back may release what the bristle holds, once: `largest_one_off_energy`
+    u: amplitude in bristle lengths, sigma_D A/f_D, either way
+    motion: "cycles": plain cycles of this amplitude, exact, 1/(1 - tanh(u)/u);
+        "closed paths": every closed path within it, sufficient, 1/(1 - e^(-2 u))^2 (P56). A motion
+        that does not return may release the energy of the bristle once: `largest_one_off_energy`
+    raises ModelError: u is not > 0
     """
     if u <= 0:
         raise ModelError(f"largest_ratio: expected an amplitude > 0, found u = {u:g}")
@@ -127,10 +135,13 @@ def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycl
 
 
 def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float:
-    """Most energy that a motion within u bristle lengths releases once, from rest, J (P56).
+    """Most energy that a motion within an amplitude can release once, from rest, J (P56).
 
-    f_D^2 (1 - e^(-2 u))^2/(2 sigma_D), what the compensator's bristle holds, wherever
-    f_D <= largest_ratio(u, motion="closed paths") f_C. level: f_D, N;  stiffness: sigma_D, N/m
+    It is the energy of the compensator's bristle, f_D^2 (1 - e^(-2 u))^2/(2 sigma_D), wherever
+    f_D <= largest_ratio(u, motion="closed paths") f_C.
+
+    level: f_D, N;  stiffness: sigma_D, N/m;  u: amplitude in bristle lengths, either way
+    raises ModelError: an argument that is not > 0
     """
     if min(level, stiffness, u) <= 0:
         raise ModelError(
@@ -143,10 +154,11 @@ def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float
 def onset_amplitude(
     *, coulomb_level: float, compensator_level: float, compensator_stiffness: float
 ) -> float:
-    """Amplitude from which a cycle releases energy, m; inf where none does.
+    """Amplitude, m, from which on symmetric cycles release energy; inf where f_D <= f_C.
 
-    Searched: bisection on the energy of one period, integrated exactly along the path, to 1e-9.
-    N and N/m
+    By bisection, to a relative 1e-9, on the energy of one period, which is integrated exactly.
+
+    coulomb_level: f_C, N;  compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
     """
     f_c, f_d, stiffness = map(float, (coulomb_level, compensator_level, compensator_stiffness))
     if f_d <= f_c:
@@ -165,9 +177,13 @@ def onset_amplitude(
 
 
 def self_motion_speed(*, coulomb_level: float, compensator_level: float, damping: float) -> float:
-    """Speed at which motion driven by over-compensation settles, m/s: (f_D - f_C)/B; 0 if none.
+    """Steady speed of a motion that over-compensation drives, m/s: (f_D - f_C)/B, or 0.
 
-    N and N s/m: viscous damping bounds the speed, the pair is not passive all the same.
+    Viscous damping B bounds the speed, but the pair of friction and compensator is still not
+    passive.
+
+    coulomb_level: f_C, N;  compensator_level: f_D, N;  damping: B, N s/m
+    returns: inf with over-compensation and without damping
     """
     excess = max(compensator_level - coulomb_level, 0.0)
     if damping <= 0:
@@ -204,9 +220,9 @@ def _pair_proof(
 
 
 def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
-    """A symmetric cycle that releases a good share of what the compensator can release.
+    """A symmetric cycle that releases at least half of the largest share of energy; else None.
 
-    The one nearest to the bristle lengths among those with half of the largest share.
+    Of all such cycles the one with the amplitude nearest to the bristle lengths.
     """
     lengths = [e.level / e.stiffness for e in (helps, against)]
     middle = math.sqrt(lengths[0] * lengths[1])
@@ -227,9 +243,10 @@ def _share(helps: Dahl, against: Dahl, amplitude: float) -> float:
 def dahl_claim(
     device: IdentifiedDevice, level: float, stiffness: float, *, certain: bool = True
 ) -> Claim:
-    """Friction of the device, bristle damping counted, with a Dahl compensator (N, N/m).
+    """The claim about a device's friction with a Dahl compensator, bristle damping counted.
 
-    certain: for all levels within the intervals, else at the estimates
+    level: f_D, N;  stiffness: sigma_D, N/m
+    certain: for all values within the intervals; else at the estimates
     """
     presliding = device.presliding
     low = device.lowest.low if certain else device.lowest.estimate
@@ -250,7 +267,7 @@ def dahl_claim(
 
 
 def _claims(question: Question) -> list[TopicClaim]:
-    """At the estimates, and for all levels within the intervals; in continuous time."""
+    """Claims at the estimates, and for all values within the intervals; in continuous time."""
     assert question.bristle is not None
     device, (level, stiffness) = question.device, question.bristle
     sampled = question.computer is not None and device.presliding is not None

@@ -1,12 +1,12 @@
 """A delayed compensator: the energy that it releases, and when small motion stays passive.
 
-Along x = A sin(w t) a Dahl compensator of describing function N that sees the position tau late
-releases
+Along x = A sin(w t) a Dahl compensator of describing function N, whose position input is late by
+tau, releases
 
     W = pi A^2 Im(N e^(-j w tau))
 
-per cycle: for w tau < pi less than without delay. A delayed cancellation of inertia releases
-energy for any delay with w tau < pi.
+per cycle. For w tau < pi this is less than without delay. A delayed cancellation of inertia
+releases energy for any delay with w tau < pi.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from ._dahl_certificates import Values, sigma_D
 from ._hypotheses import NOT_NEGATIVE, require_hypotheses
 from ._theorem import Theorem
 
-#: just above 0.2172336, minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
+#: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
 
 
 def released_by_delay(*, level: float, stiffness: float, amplitude: float, phase: float) -> float:
     """Energy that a delayed Dahl compensator releases per cycle, J.
 
-    N, N/m, m;  phase: w tau, rad
+    level: N;  stiffness: N/m;  amplitude: of x = A sin(w t), m;  phase: w tau, rad
     """
     # in numbers of any size: I_1(u)/cosh(u) overflows in those of the machine
     first = complex(sp.N(dahl(level, stiffness, amplitude)))
@@ -44,7 +44,9 @@ def released_by_delay(*, level: float, stiffness: float, amplitude: float, phase
 def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, delay: float) -> float:
     """Energy that a delayed cancellation of inertia releases per cycle, J.
 
-    pi m A^2 w^2 sin(w tau);  kg, m, Hz, s
+    pi m A^2 w^2 sin(w tau)
+
+    inertia: m, cancelled, kg;  amplitude: A, m;  frequency: Hz;  delay: tau, s
     """
     w = 2 * np.pi * frequency
     return float(np.pi * inertia * amplitude**2 * w**2 * np.sin(w * delay))
@@ -59,12 +61,17 @@ def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, del
 def delayed_small_motion(
     *, damping: Any, compensator_stiffness: Any, delay: Any, presliding_stiffness: Any
 ) -> Claim:
-    """Is small motion passive, where friction is a spring and the compensator a late negative one?
+    """Is small motion passive: friction is then a spring, the compensator a late negative spring.
 
         Z = B + (sigma_p - sigma_D e^(-s tau))/s
 
-    passive iff sigma_D <= sigma_p and B >= 0.21723.. sigma_D tau (minus the least sin(y)/y).
-    N s/m, N/m, s
+    It is passive if and only if sigma_D <= sigma_p and B >= 0.21723.. sigma_D tau. This factor is
+    minus the least value of sin(y)/y.
+
+    damping: B, N s/m;  compensator_stiffness: sigma_D, N/m;  delay: tau, s
+    presliding_stiffness: sigma_p, N/m
+    returns: proved, or refuted by a growing wave; unknown where the search has no wave
+    raises ModelError: an argument outside of its hypothesis
     """
     b, tau = exact(damping), exact(delay)
     sigma_d, sigma_p = exact(compensator_stiffness), exact(presliding_stiffness)
@@ -87,7 +94,7 @@ def delayed_small_motion(
 
 
 def _wave(z: sp.ImmutableMatrix, tau: float) -> GrowingWave | None:
-    """A wave near the first dip of sin(w tau)/(w tau), or a slow exponential."""
+    """A growing wave near the first minimum of sin(w tau)/(w tau), or an exponential."""
     for y in (4.4934, 4.0, 5.0, 3.5, 5.5):
         if tau:
             w = Fraction(y / tau)
@@ -103,7 +110,7 @@ def _wave(z: sp.ImmutableMatrix, tau: float) -> GrowingWave | None:
 
 
 def _certificate(values: Values) -> Certificate:
-    """B + sigma_D tau q >= 0 for q = sin(y)/y: small motion with a delayed compensator.
+    """Certificate that Re Z = B + sigma_D tau q >= 0 for q = sin(y)/y.
 
     values: B, sigma_D, tau
     """

@@ -1,10 +1,12 @@
-"""A spring between master and slave with a delay each way: the limit of absolute stability.
+"""Absolute stability of a teleoperator whose master and slave are coupled by a late spring.
 
-With dampings b_m, b_s of master and slave, stiffness P and one-way delay T the criterion of
-Llewellyn reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.
-The other conditions (`checker/absolute_stability.py`) hold for every coupling: the entries have no
-pole but s = 0, with residues P, P and -P, for e^(-s T) is 1 there, so k11 k22 = k12 k21; at
-infinity the masses grow like s and nothing between the ports does; z12 z21 is bounded far out.
+With dampings b_m, b_s of master and slave, stiffness P and one-way delay T, Llewellyn's criterion
+reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.
+
+The other conditions (`checker/absolute_stability.py`) hold for every such coupling. The entries
+have no pole but s = 0, where e^(-s T) = 1. The residues there are P, P and -P, so that
+k11 k22 = k12 k21. At infinity the masses grow like s, and the coupling between the ports does not.
+The product z12 z21 is bounded at high frequency.
 """
 
 from __future__ import annotations
@@ -40,10 +42,13 @@ def delayed_spring(
     stiffness: Any,
     delay: Any,
 ) -> Claim:
-    """Is the teleoperator absolutely stable: iff b_m b_s >= (P T)^2.
+    """Is the teleoperator absolutely stable: if and only if b_m, b_s >= 0 and b_m b_s >= (P T)^2?
 
-    inertias: kg;  dampings: N s/m, at each side;  stiffness: P, N/m;  delay: one way, s
-    returns: proved (equality allowed), or refuted by a wave with port 2 held by a spring or mass
+    master_inertia, slave_inertia: kg;  master_damping, slave_damping: b_m, b_s, N s/m
+    stiffness: P, N/m;  delay: T, one way, s
+    returns: proved (equality allowed); else the verdict of `absolutely_stable`, which refutes by a
+        wave with a passive termination at one port
+    raises ModelError: an argument outside of its hypothesis
     """
     b_m, b_s, k, late = map(exact, (master_damping, slave_damping, stiffness, delay))
     master, slave = (
@@ -69,7 +74,7 @@ def delayed_spring(
 
 
 def _certificate(values: Values) -> Certificate:
-    """Llewellyn's inequality; values: b_m, b_s, P, T."""
+    """Certificate of Llewellyn's inequality for this coupling; values: b_m, b_s, P, T."""
     b_m, b_s, k, late, q = sp.symbols("b_m b_s P T q", real=True)
     enough = b_m * b_s - (k * late) ** 2
     return storage_certificate(

@@ -1,4 +1,4 @@
-"""How much inertia may be cancelled with a delayed and low-passed acceleration.
+"""How much inertia may be cancelled with an acceleration that is delayed and low-passed.
 
     Z = m s + B - mhat s F(s) e^(-s tau),   F = 1/(T s + 1)^r
 
@@ -7,9 +7,9 @@ pi B A^2 w:
 
     g = Re[j w F(j w) e^(-j w tau)] = w abs(F) sin(lag),   lag = w tau + r atan(w T)
 
-Without low-pass g = w sin(w tau) (P48) has no bound: no damping is enough. With one,
-abs(g) < 1/T for r = 1, approached at high frequency whatever the delay; abs(g) <= 1/(2 T) for
-r = 2, reached at w T = 1 without delay.
+Without a low-pass g = w sin(w tau) (P48) has no bound, so no damping is sufficient. With a
+low-pass, abs(g) < 1/T for r = 1, approached at high frequency for any delay; and
+abs(g) <= 1/(2 T) for r = 2, reached at w T = 1 without delay.
 """
 
 from __future__ import annotations
@@ -31,17 +31,18 @@ from ._hypotheses import NOT_NEGATIVE, one_of, require_hypotheses
 from ._theorem import Theorem
 
 Order = Literal[1, 2]
-#: time constants that a delay may have where a maximum is searched: 2.5 million samples of g
+#: longest delay, in time constants, for which the maximum of g is searched: 2.5 million samples
 _LATEST = 10_000
-_PER_TURN = 200  # samples of g per turn of its phase: its maxima within 1e-4, then refined
+_PER_TURN = 200  # samples of g per turn of its phase: maxima within 1e-4, then refined
 
 
 def damping_given_out(
     frequency: np.ndarray, *, delay: float, time_constant: float = 0.0, order: Order = 2
 ) -> np.ndarray:
-    """g at each frequency (Hz): negative damping for each kg that is cancelled, N s/m/kg.
+    """Negative damping for each kg of cancelled inertia, g, N s/m/kg, at each frequency.
 
-    delay: tau, s;  time_constant: T of the low-pass, s, 0: none;  order: r
+    frequency: Hz, (n,);  delay: tau, s
+    time_constant: T of the low-pass, s; 0: no low-pass;  order: r of the low-pass
     """
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
     return np.asarray((s * np.exp(-s * delay) / (1 + s * time_constant) ** order).real)
@@ -50,10 +51,13 @@ def damping_given_out(
 def largest_passive_inertia(
     *, damping: float, delay: float, time_constant: float = 0.0, order: Order = 2
 ) -> float:
-    """Largest cancelled inertia (kg) that damping B covers at every frequency.
+    """Largest inertia (kg) that may be cancelled so that damping covers it at every frequency.
 
-    B T for r = 1; for r = 2 B over the maximum of g, at least 2 B T; without low-pass 0 with
-    any delay, and without delay inf (the device's inertia is then the bound)
+    It is B T for r = 1, and B over the maximum of g, at least 2 B T, for r = 2. Without a low-pass
+    it is 0 with any delay, and inf without delay (the inertia of the device is then the limit).
+
+    damping: B, N s/m;  delay: tau, s;  time_constant: T of the low-pass, s; 0: no low-pass
+    order: r of the low-pass;  raises ModelError: a negative argument, or another order
     """
     _check(damping, 0.0, delay, time_constant, order)
     if time_constant == 0:
@@ -82,12 +86,15 @@ def cancelled_inertia(
     time_constant: Any = 0,
     order: int = 2,
 ) -> Claim:
-    """Is a device passive where part of its inertia is cancelled, late and low-passed?
+    """Is a device passive if a part of its inertia is cancelled, delayed and low-passed?
 
     inertia: m, kg;  damping: B, N s/m;  cancelled: mhat, kg;  delay: tau, s
-    time_constant: T of the low-pass, s, 0: none;  order: r, 1 or 2
-    returns: proved where mhat <= r B T, for any delay, g <= 1/(r T) being taken as known; without
-    delay exact; refuted by a growing wave; between 2 B T and the limit of a late r = 2, evidence
+    time_constant: T of the low-pass, s; 0: no low-pass;  order: r, 1 or 2
+    returns: proved where mhat <= r B T, for any delay (the certificate assumes g <= 1/(r T));
+        without delay decided exactly; else refuted by a growing wave, or, for r = 2 with delay
+        between 2 B T and the limit, evidence; unknown where no wave is available, or for a delay of
+        more than 10000 time constants
+    raises ModelError: an argument outside of its hypothesis
     """
     m, b, c = exact(inertia), exact(damping), exact(cancelled)
     tau, t = exact(delay), exact(time_constant)
@@ -135,7 +142,10 @@ def _check(damping: Any, cancelled: Any, delay: Any, time_constant: Any, order: 
 
 
 def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
-    """(w, g) where g of order 2 is largest, looked for until its bound w/(1 + (w T)^2) is below."""
+    """(w, g) at the maximum of g of order 2, rad/s and N s/m/kg.
+
+    Beyond the searched range the bound w/(1 + (w T)^2) of g is below the maximum.
+    """
     from scipy.optimize import minimize_scalar
 
     def g(w: Any) -> np.ndarray:
@@ -167,9 +177,9 @@ def _wave(z: sp.ImmutableMatrix, where: list[float]) -> GrowingWave | None:
 
 
 def _certificate(order: int, values: dict[str, sp.Expr]) -> Certificate:
-    """T times Re Z = B - mhat g >= 0 where g <= 1/(r T) and mhat <= r B T.
+    """Certificate that r T Re Z = r T (B - m g) >= 0 where g <= 1/(r T) and m <= r B T.
 
-    values: B, T, m
+    values: B, T, and m, the cancelled inertia
     """
     b, t, m, g = sp.symbols("B T m g", real=True)
     return storage_certificate(

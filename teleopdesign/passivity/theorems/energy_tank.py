@@ -1,10 +1,11 @@
-"""Energy tanks at the ends of a channel: they are never overdrawn, however the channel behaves.
+"""Energy tanks at the ends of a channel: never overdrawn, whatever the channel does.
 
-Before a sample a tank holds W = E_0 + arrived - supplied, and the held force f obeys abs(f) d <= W,
-or f = 0 where W < 0. Over a travel x with abs(x) <= d it supplies f x <= abs(f) d <= W. So supplied
-is never above E_0 + the largest count that has arrived, late, in any order, held or interpolated,
-and that is at most what is taken at the other end by now, for a count that only grows. The sum over
-both ends: what the computers supply to the bodies, less what they take from them, is at most 2 E_0.
+Before a sample a tank contains W = E_0 + arrived - supplied. The held force f obeys abs(f) d <= W,
+and f = 0 where W < 0. Over a travel x with abs(x) <= d the tank supplies f x <= abs(f) d <= W. So
+the supplied energy is never above E_0 plus the largest count that has arrived: late, in any order,
+held or interpolated. A count only grows, so the count that has arrived is at most the energy that
+the other end has taken by now. Summed over both ends: the energy that the computers supply to the
+bodies, less the energy that they take from the bodies, is at most 2 E_0.
 """
 
 from __future__ import annotations
@@ -22,11 +23,13 @@ from ._theorem import Theorem
 
 @require_hypotheses(reserve=NOT_NEGATIVE, travel=POSITIVE)
 def energy_tank(*, reserve: Any, travel: Any) -> Claim:
-    """What do two ends with energy tanks (`energy_tanks`) release at most?
+    """Bound of the energy that two ends with energy tanks (`energy_tanks`) release.
 
-    reserve: E_0, J, in each;  travel: d, m or rad, largest of any sample
-    returns: proved, for exact positions, forces that act as commanded and at their sample, and
-        counts of energy that arrive no larger than they were sent: late, jittered, lost and held
+    reserve: E_0 in each tank, J;  travel: d, largest travel of any sample, m or rad
+    returns: proved, if positions are exact, forces act as commanded and from their sample on, and
+        counts of energy arrive no larger than they were sent; they may be late, jittered, lost or
+        held
+    raises ModelError: an argument outside of its hypothesis
     """
     reserve, travel = exact(reserve), exact(travel)
     statement = (

@@ -1,11 +1,11 @@
-"""LuGre friction alone: passive iff its viscous damping outweighs the bristle's.
+"""LuGre friction alone: passive if and only if s2 >= s1 (F_S/F_C - 1).
 
     y = sigma_0 z,   z' = v - abs(v) y/g,   F = y + s1 z' + s2 v
     g = F_C + (F_S - F_C) e^-(v/v_S)^2
 
-s2 >= s1 (F_S/F_C - 1) is sufficient, with the storage V = y^2/(2 sigma_0). The condition is also
-necessary: slow motion loads the bristle to F_S, and after a jump to high speed the bristle recoils,
-against the damping of the motion. Barabanov and Ortega, IEEE TAC 45 (2000) 830.
+s1 is the damping of the bristle and s2 the viscous damping. The condition is sufficient, with the
+storage V = y^2/(2 sigma_0). It is also necessary: slow motion loads the bristle to F_S, and after a
+jump to high speed the bristle recoils. Barabanov and Ortega, IEEE TAC 45 (2000) 830.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 
 _STRIBECK = EFFECTS["stribeck"]
-#: (velocity, F_S - F_C, v_S) -> extra level: the law of the effect `stribeck`
+#: extra friction level (N) of the effect `stribeck`, a function of velocity, F_S - F_C, v_S
 _EXTRA = sp.lambdify(
     [
         SIGNALS["velocity"],
@@ -45,8 +45,9 @@ _EXTRA = sp.lambdify(
 class Jumps:
     """A closed path in legs of constant speed that takes energy out of LuGre friction.
 
-    levels: F_C, F_S, N;  stiffness: sigma_0, N/m;  dampings: s1, s2, N s/m;  stribeck_velocity: m/s
-    legs: (velocity m/s, travel m > 0) of one round, travelled `rounds` times; the last one counts
+    levels: F_C, F_S, N;  stiffness: sigma_0, N/m;  dampings: s1, s2, N s/m
+    stribeck_velocity: v_S, m/s
+    legs: (velocity, m/s; travel, m, > 0) of one round;  rounds: number; the last one counts
     """
 
     levels: tuple[float, float]
@@ -57,7 +58,7 @@ class Jumps:
     rounds: int = 4
 
     def level(self, velocity: float) -> float:
-        """g(v), N."""
+        """Friction level g at a constant velocity (m/s), N."""
         low, high = self.levels
         return low + float(_EXTRA(velocity, high - low, self.stribeck_velocity))
 
@@ -67,7 +68,7 @@ class Jumps:
         return self.replay()
 
     def replay(self) -> float:
-        """Energy released in the last round, J: each leg has an exact solution."""
+        """Energy released in the last round, J, with an exact solution for each leg."""
         y, out = 0.0, 0.0
         s1, s2 = self.dampings
         for _ in range(self.rounds):
@@ -101,9 +102,12 @@ def lugre_passivity(
     viscous_damping: Any,
     stribeck_velocity: Any,
 ) -> Claim:
-    """Is LuGre friction passive: iff s2 >= s1 (F_S/F_C - 1), in exact numbers, equality included.
+    """Is LuGre friction passive: if and only if s2 >= s1 (F_S/F_C - 1)?
 
-    F_C and F_S, N;  sigma_0, N/m;  s1 and s2, N s/m;  v_S, m/s
+    coulomb_level, static_level: F_C, F_S, N;  stiffness: sigma_0, N/m
+    bristle_damping, viscous_damping: s1, s2, N s/m;  stribeck_velocity: v_S, m/s
+    returns: proved, equality included; else refuted by jumps of velocity, or unknown
+    raises ModelError: F_S below F_C, or an argument outside of its hypothesis
     """
     f_c, f_s, sigma = exact(coulomb_level), exact(static_level), exact(stiffness)
     s1, s2, v_s = exact(bristle_damping), exact(viscous_damping), exact(stribeck_velocity)
@@ -136,13 +140,15 @@ def add_bristle_damping(
     bristle_damping: Any,
     viscous_damping: Any,
 ) -> Claim:
-    """A claim about Dahl friction and its compensator, bristle and viscous damping counted.
+    """A claim about Dahl friction and its compensator, with bristle and viscous damping added.
 
-    Energies add, and both dampings together take some at every instant where s2 F_min >= s1 (F_max
-    - F_min): then what is proved without them holds with them. Without it nothing is known: a jump
-    of speed at a level that fell lets the bristle recoil. A motion that refutes the pair does so as
-    slowly as one likes, so that dampings take nothing; it stays.
-    coulomb_level, highest_level: F_min and F_max, N, as in the pair;  s1, s2: N s/m
+    Energies add. Both dampings together take energy at every instant where s2 F_min >= s1 (F_max -
+    F_min), and then a proof without them holds with them. Otherwise nothing is known: the bristle
+    may recoil after a jump of speed at a lower level. A refuting motion of the pair can be as slow
+    as one likes, so that the dampings take nothing, and the refutation stays.
+
+    coulomb_level, highest_level: F_min and F_max, N;  stiffness: sigma_0, N/m
+    bristle_damping, viscous_damping: s1, s2, N s/m
     """
     low, high, sigma = exact(coulomb_level), exact(highest_level), exact(stiffness)
     s1, s2 = exact(bristle_damping), exact(viscous_damping)
@@ -167,7 +173,7 @@ def add_bristle_damping(
 def _recoil(
     levels: tuple[float, float], stiffness: float, dampings: tuple[float, float], v_s: float
 ) -> Jumps | None:
-    """Of a grid of jumps, the slowest fast leg that releases energy."""
+    """Slow motion and jumps to a high speed that release energy, at the least such high speed."""
     length = levels[1] / stiffness
     for fast in v_s * np.geomspace(1.0, 1e9, 91):
         best: Jumps | None = None
@@ -183,7 +189,7 @@ def _recoil(
 
 
 def _certificate(values: Values) -> Certificate:
-    """LuGre friction with a level g anywhere within F_C..F_S: V = y^2/(2 sigma_0), y = sigma_0 z.
+    """Certificate of LuGre friction with a level g within F_C..F_S: V = y^2/(2 sigma_0).
 
     values: sigma_0, s1 (bristle damping), s2 (viscous damping), F_C, F_S
     """
@@ -196,7 +202,7 @@ def _certificate(values: Values) -> Certificate:
 
 
 def _damping_certificate(values: Values) -> Certificate:
-    """Bristle and viscous damping of LuGre friction alone: power is lost at every instant."""
+    """Certificate that bristle and viscous damping together take energy at every instant."""
     return _level_within(
         "bristle and viscous damping of LuGre friction, level within F_C..F_S, take energy at "
         "every instant where s2 F_C >= s1 (F_S - F_C), from any start with abs(y) <= F_S",
@@ -206,7 +212,7 @@ def _damping_certificate(values: Values) -> Certificate:
 
 
 def _level_within(claim: str, values: Values, *, spring: bool) -> Certificate:
-    """Dampings of LuGre friction, and with `spring` the force y of the bristle as well."""
+    """Certificate of the dampings of LuGre friction; spring: the bristle's force y included."""
     y, g, sigma_0, s1, s2 = sp.symbols("y g sigma_0 s1 s2", real=True)
     low, high = sp.symbols("F_C F_S", real=True)
     rate = dahl_rate(y, g, sigma_0)
@@ -251,7 +257,7 @@ def _level_within(claim: str, values: Values, *, spring: bool) -> Certificate:
 
 
 def _applies(question: Question) -> bool:
-    """To a device alone with LuGre friction, all of whose parts were identified."""
+    """Whether the question is about a device alone with all parts of LuGre friction identified."""
     alone = question.cancellation is None and question.wall is None
     has_parts = "stribeck.extra_static_level" in question.device.body.parameters
     return alone and has_parts and question.device.presliding is not None

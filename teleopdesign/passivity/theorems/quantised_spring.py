@@ -1,14 +1,14 @@
 """A sampled virtual spring on an encoder with steps, and its limit with friction compensation.
 
-The position is rounded to steps Delta (error q within h = Delta/2) each T, the force -K (x + q) is
-held; the body has damping b and Coulomb friction f_C, of which up to f_D is cancelled. Over a
-sample of travel d the energy put in, less the change of K x^2/2, is at least
+Each sample time T the position is rounded to steps Delta (error q within h = Delta/2), and the
+force -K (x + q) is held. The body has damping b and Coulomb friction f_C, of which up to f_D is
+cancelled. Over a sample of travel d the energy put in, less the change of K x^2/2, is at least
 
     (b/T - K/2) d^2 + (f_C - f_D - K h) abs(d)
 
-so K <= min(2 b/T, 2 (f_C - f_D)/Delta) is passive. Beyond it two positions in turn, close to the
-edge of a step or far apart, release energy. Without compensation these are the limits of Abbott
-and Okamura, IEEE Trans. Robotics 21 (2005) 952.
+So K <= min(2 b/T, 2 (f_C - f_D)/Delta) is passive. Above this limit a motion that alternates
+between two positions, close to the edge of a step or far apart, releases energy. Without
+compensation these are the limits of Abbott and Okamura, IEEE Trans. Robotics 21 (2005) 952.
 """
 
 from __future__ import annotations
@@ -29,10 +29,11 @@ from ._theorem import Question, Theorem, TopicClaim
 
 @dataclass(frozen=True)
 class Flip:
-    """Positions step/2 + distance and step/2 - distance at alternate samples (m).
+    """A motion that alternates between the positions step/2 + distance and step/2 - distance.
 
-    stiffness: K, N/m;  step: Delta, m;  sample_time: s;  damping: b, N s/m
-    friction: what is left of Coulomb friction, f_C - f_D, N (may be negative: over-compensated)
+    stiffness: K, N/m;  step: Delta, m;  sample_time: T, s;  damping: b, N s/m
+    friction: Coulomb friction that is not cancelled, f_C - f_D, N; negative if over-compensated
+    distance: of both positions from the edge of a step, m
     """
 
     stiffness: float
@@ -44,18 +45,18 @@ class Flip:
 
     @property
     def energy(self) -> float:
-        """Energy released in each two samples, J."""
+        """Energy released in two samples, J."""
         return self.replay()
 
     def replay(self) -> float:
-        """Energy released in two samples, J, each at constant speed."""
+        """Energy released in two samples, J, each with constant speed."""
         edge, a = self.step / 2, self.distance
         high, low = (self._spring_force(edge + side * a) for side in (1, -1))
         lost = 2 * (self.damping / self.sample_time * (2 * a) ** 2 + self.friction * 2 * a)
         return (high - low) * 2 * a - lost
 
     def _spring_force(self, position: float) -> float:
-        """Force of the spring at that sample, from the rounded position, N."""
+        """Force of the spring at a sample, N, from the rounded position."""
         if self.step == 0:
             return self.stiffness * position
         return self.stiffness * self.step * math.floor(position / self.step + 0.5)
@@ -82,11 +83,14 @@ def quantised_spring(
     coulomb_level: Any,
     compensator_level: Any = 0,
 ) -> Claim:
-    """Is the virtual spring passive: iff K <= min(2 b/T, 2 (f_C - f_D)/Delta)?
+    """Is the virtual spring passive: if and only if K <= min(2 b/T, 2 (f_C - f_D)/Delta)?
 
-    K, N/m;  b, N s/m;  T, s;  encoder step Delta, m;  f_C, N;  f_D, N: any compensator within it
-    returns: proved, equality included, or refuted by two positions in turn. With f_D > 0 the
-    refutation is for a compensator that pushes with f_D along the motion
+    stiffness: K, N/m;  damping: b, N s/m;  sample_time: T, s;  step: Delta of the encoder, m
+    coulomb_level: f_C, N;  compensator_level: f_D, N, bound of any compensator
+    returns: proved, equality included, or refuted by a motion between two positions. With f_D > 0
+        the refutation is for a compensator that pushes with f_D along the motion. Unknown where the
+        condition fails by too little for the search
+    raises ModelError: an argument outside of its hypothesis
     """
     k, b, late = exact(stiffness), exact(damping), exact(sample_time)
     delta, f_c, f_d = exact(step), exact(coulomb_level), exact(compensator_level)
@@ -123,9 +127,9 @@ def stiffest_spring(
     coulomb_level: float,
     compensator_level: float = 0.0,
 ) -> float:
-    """Stiffest spring that is passive, N/m: min(2 b/T, 2 (f_C - f_D)/Delta), 0 where none is.
+    """Stiffness of the stiffest passive spring, N/m: min(2 b/T, 2 (f_C - f_D)/Delta), or 0.
 
-    Arguments as in `quantised_spring`, which proves or refutes it.
+    Arguments as in `quantised_spring`, which proves or refutes a single stiffness.
     """
     by_steps = 2 * (coulomb_level - compensator_level) / step if step else math.inf
     return max(min(2 * damping / sample_time, by_steps), 0.0)
@@ -187,7 +191,7 @@ def _certificate(
 
 
 def _applies(question: Question) -> bool:
-    """To a wall without damping, in time, on encoder steps."""
+    """Whether the question is about a wall without damping and delay, on encoder steps."""
     wall, computer = question.wall, question.computer
     if wall is None or computer is None:
         return False

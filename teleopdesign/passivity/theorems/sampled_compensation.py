@@ -1,10 +1,10 @@
-"""A Dahl compensator in a computer, beside friction that deflects before it slides.
+"""A Dahl compensator in a computer, with friction that deflects before it slides.
 
 In continuous time the pair is passive for a wedge of parameters (`dahl_compensation`). In a
-computer it is passive for none. Dahl friction relaxes under small motion back and forth: over n
-small strokes of length L about one position its force falls by e^(-n L/lambda), at almost no work.
-Let a hand tremble once per sample and drift by a share r of its path. The mean friction is then r
-f_C. The compensator sees only the drift, and helps with f_D. So
+computer it is passive for no parameters. Dahl friction relaxes under small motion back and forth:
+over n small strokes of length L about one position its force falls by e^(-n L/lambda), at almost no
+work. Let a hand tremble once per sample and drift by a share r of its path. The mean friction is
+then r f_C. The compensator reads only the drift, and helps with f_D. So
 
     energy released per sample  ->  r L (f_D - r f_C) - B L^2/T,    r < f_D/f_C, L small,
 
@@ -30,17 +30,20 @@ from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 from .bounded_compensation import bounded_compensation
 
-#: most samples one way of a motion that is written down
+#: most samples, one way, of a motion that refutes a claim
 LONGEST = 10_000_000
 
 
 @dataclass(frozen=True)
 class Trembling:
-    """To and fro along a drift, a stroke forth and one back each sample; then the same way back.
+    """A trembling motion: in each sample a stroke forth and a shorter stroke back.
 
-    compensator: its law, which sees the drift alone;  friction: what resists;  damping: B, N s/m
-    sample_time: s;  forth, back: m, the two strokes of a sample at one speed;  samples: one way
-    late: samples by which the compensator's force is late
+    The motion drifts forth for a number of samples, and then in the same way back to its start.
+
+    compensator: the sampled law, which reads the drift alone;  friction: the element that resists
+    damping: B, N s/m;  sample_time: T, s
+    forth, back: the two strokes of a sample, at one speed, m;  samples: number, one way
+    late: delay of the compensator's force in samples
     """
 
     compensator: Dahl
@@ -54,21 +57,21 @@ class Trembling:
 
     @property
     def energy(self) -> float:
-        """Energy released, J, from rest without preload to the same place."""
+        """Energy released, J, from rest without preload back to the start."""
         return self.replay()
 
     @property
     def power(self) -> float:
-        """Power released while it drifts on, W."""
+        """Power released during the drift, after its transient, W."""
         return self._steady_sample()[0] / self.sample_time
 
     @property
     def path(self) -> float:
-        """Length of the way of one sample, m."""
+        """Length of the path in one sample, m."""
         return self.forth + self.back
 
     def replay(self) -> float:
-        """Energy released, J, each stroke exactly, summed over all samples."""
+        """Energy released, J, with exact formulas for each stroke, summed over all samples."""
         force, read, out = 0.0, [0.0] * (self.late + 1), 0.0
         for _ in range(2):  # the way back is the way there with all signs turned
             steady, forgets, by_force = self._steady_sample()[1:]
@@ -86,7 +89,7 @@ class Trembling:
         return out
 
     def strokes(self) -> Strokes:
-        """The motion with strokes that begin and end at rest, in step with the samples."""
+        """The motion as strokes that begin and end at rest, in step with the samples."""
         there = np.cumsum(np.tile([self.forth, -self.back], self.samples))
         points = np.concatenate([there, there[-1] - there])[:-1]
         speed = math.pi * self.path / (2 * self.sample_time)
@@ -98,8 +101,10 @@ class Trembling:
         return {"kind": "trembling", **vars(self), **pair, "energy": self.energy}
 
     def _steady_sample(self) -> tuple[float, float, float, float]:
-        """Energy of a sample in the long run; force at its begin; what is left of a force after it;
-        and work for each newton of that force.
+        """Properties of a sample after the transient.
+
+        returns: energy released, J; friction force at the begin, N; share of a force at the begin
+            that remains at the end; and work of friction per newton of force at the begin, m
         """
         length, level = self.friction.level / self.friction.stiffness, self.friction.level
         forth, back = -math.expm1(-self.forth / length), -math.expm1(-self.back / length)
@@ -112,7 +117,7 @@ class Trembling:
         return energy, force, 1 - lost, by_force
 
     def _work(self, force: float) -> float:
-        """Work that friction takes over one sample, J."""
+        """Work that friction takes over one sample, J; force: of friction at the begin, N."""
         there, first = self.friction.leg(force, self.forth)
         return first + self.friction.leg(there, -self.back)[1]
 
@@ -136,16 +141,18 @@ def sampled_compensation(
     viscous_damping: Any = 0,
     late: int = 0,
 ) -> Claim:
-    """Is friction passive beside a Dahl compensator in a computer?
+    """Is friction passive together with a Dahl compensator in a computer?
 
-    coulomb_level: f_C, N: of ideal friction the lowest that can occur, of Dahl friction the highest
-    compensator_level, compensator_stiffness: f_D, N, and sigma_D, N/m
+    coulomb_level: f_C, N: of ideal friction the lowest level that can occur, of Dahl friction the
+        highest
+    compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
     sample_time: T, s;  viscous_damping: B, N s/m
-    presliding_stiffness: N/m, of Dahl friction; None: ideal Coulomb friction
-    late: whole samples by which the compensator's force is late
-    returns: for ideal friction proved iff f_D <= f_C; beside Dahl friction refuted by a motion
-        that trembles once a sample, whatever the numbers; unknown where that motion would take more
-        than `LONGEST` samples to release what its start takes
+    presliding_stiffness: of Dahl friction, N/m; None: ideal Coulomb friction
+    late: delay of the compensator's force in whole samples
+    returns: for ideal friction proved if and only if f_D <= f_C. For Dahl friction refuted, for all
+        numbers, by a motion that trembles once a sample; unknown where this motion would need more
+        than `LONGEST` samples to release the energy that its start takes
+    raises ModelError: an argument outside of its hypothesis
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
@@ -173,7 +180,7 @@ def sampled_compensation(
 def _find_best(
     helps: Dahl, against: Dahl, damping: float, period: float, late: int
 ) -> Trembling | None:
-    """The trembling that releases most power, of a length that can be written down."""
+    """The trembling motion that releases most power with at most LONGEST samples; None if none."""
     bristle = against.level / against.stiffness
     longest = bristle
     if damping:
@@ -195,13 +202,13 @@ def _find_best(
 
 
 def _applies(question: Question) -> bool:
-    """To a Dahl bristle in a computer beside friction that deflects before it slides."""
+    """Whether the question is about a Dahl bristle in a computer, and presliding friction."""
     sampled = question.computer is not None and question.device.presliding is not None
     return sampled and question.bristle is not None and question.late is not None
 
 
 def _claims(question: Question) -> list[TopicClaim]:
-    """The pair at the estimates in a computer, whatever the motion."""
+    """The claim about friction and compensator in a computer, at the estimates, for any motion."""
     device, computer = question.device, question.computer
     assert computer is not None and question.bristle is not None and question.late is not None
     level, stiffness = question.bristle

@@ -1,8 +1,9 @@
 """Passivity of a body driven by a sampled controller through a zero-order hold.
 
-The position is sampled with period T; the force -H(z) times it is held until the next sample. Over
-a sample of travel d the held force takes f d, and the damping b at least b d^2/T (least at constant
-speed); a spring K_0 of the body adds K_0 (x d + d^2/2). So the body is passive iff the operator
+The position is sampled with period T. The force -H(z) times this position is held until the next
+sample. Over a sample of travel d the held force takes f d, and the damping b takes at least b d^2/T
+(least at constant speed). A spring K_0 of the body adds K_0 (x d + d^2/2). So the body is passive
+if and only if the operator
 
     G(z) = (H(z) + K_0)/(z - 1) + K_0/2 + b/T      from travel to force
 
@@ -36,12 +37,13 @@ from ._discrete_system import discrete_transfer_function
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim
 
-#: forward shift by one sample
+#: z, the forward shift by one sample
 Z = sp.Symbol("z")
-#: of a replayed motion, at most: a second of computing; one that is cut off does not begin at rest
+#: most samples of a replayed motion, a second of computing; a longer wave is cut off, and then does
+#: not start at rest
 _SAMPLES = 1_000_000
 _LONGEST_WAIT = (
-    4096  # samples between two steps: a controller that grows by 1 % a sample needs 1000
+    4096  # most samples between two steps: a controller that grows by 1 % a sample needs 1000
 )
 
 
@@ -53,9 +55,10 @@ def sampled_passivity(
 
     controller: H(z), rational in z: held force against the motion (N) over position (m); delays
         are factors z^-1; or a discrete system of python-control
-    damping: b of the body, N s/m: >= 0, for between two samples nothing holds one that drives
+    damping: b of the body, N s/m, >= 0: no controller can stop a negative damper between samples
     sample_time: T, s;  stiffness: spring K_0 of the body, N/m
-    raises ModelError: not rational in z, or a sample time that is not positive
+    returns: proved, refuted by a motion at the samples, or unknown
+    raises ModelError: not rational in z, or an argument outside of its hypothesis
     """
     late = _positive(sample_time)
     law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
@@ -86,7 +89,7 @@ def sampled_passivity(
 
 
 def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -> float:
-    """Least damping (N s/m, >= 0) with which the body is passive; inf where none is enough.
+    """Least damping (N s/m, >= 0) with which the body is passive; inf where none is sufficient.
 
     Arguments as in `sampled_passivity`.
     """
@@ -104,7 +107,10 @@ def sampled_coupling(
 ) -> Claim:
     """Is a teleoperator passive whose equal and opposite forces -H(z) (x_m - x_s) are sampled?
 
-    Of all ways to share a travel of x_m - x_s the cheapest has the damping b_m b_s/(b_m + b_s).
+    The least loss over a travel of x_m - x_s is that of a damping b_m b_s/(b_m + b_s).
+
+    coupling: H(z), N/m, as in `sampled_passivity`
+    master_damping, slave_damping: b_m, b_s, N s/m;  sample_time: s
     """
     b_m, b_s = exact(master_damping), exact(slave_damping)
     both = b_m * b_s / (b_m + b_s) if b_m + b_s else sp.S(0)
@@ -149,11 +155,11 @@ def _law(controller: Any) -> sp.Expr:
 
 @dataclass(frozen=True, eq=False)
 class SampledWave(ByValue):
-    """Positions at the samples that take energy out: the travel grows as Re(V z^k), k <= 0.
+    """A motion at the samples that takes energy out: the travel grows as Re(V z^k), k <= 0.
 
     law: H(z);  damping, sample_time, stiffness: as in `sampled_passivity`
     rate, frequency: s = rate + j frequency with z = (1 + s)/(1 - s)
-    travel: m over each sample, (n,), from (almost) rest on; the last ones are the largest
+    travel: over each sample, m, (n,), from (almost) rest
     """
 
     law: sp.Expr
@@ -166,7 +172,7 @@ class SampledWave(ByValue):
 
     @property
     def factor(self) -> complex:
-        """z: factor of the travel from one sample to the next, abs(z) > 1."""
+        """z, the factor of the travel from one sample to the next; abs(z) > 1."""
         return _factor(self.rate, self.frequency)
 
     @property
@@ -175,7 +181,7 @@ class SampledWave(ByValue):
         return self.replay()
 
     def replay(self) -> float:
-        """Energy released, J, simulated from rest by the controller's difference equation."""
+        """Energy released, J, computed from rest with the controller's difference equation."""
         system = self.law, self.damping, self.sample_time, self.stiffness
         return float(_released_energy(self.travel, *system))
 
@@ -201,10 +207,10 @@ def sampled_wave(
     rate: Fraction,
     frequency: Fraction,
 ) -> SampledWave:
-    """The growing travel at s = rate + j frequency, with the phase that releases most.
+    """The motion with growing travel at s = rate + j frequency, in the phase that releases most.
 
-    Where the controller itself grows faster than that travel: a step, and a second one along the
-    force that it has led to.
+    Where the controller itself grows faster than this travel, the motion is a step, and a second
+    step along the force that the first one has caused.
     """
     system = law, damping, sample_time, stiffness
     z = _factor(rate, frequency)
@@ -225,7 +231,7 @@ def _largest(
 ) -> tuple[float, np.ndarray]:
     """Of all mixtures of two travels (n,), the one that releases most: its energy, J, and travel.
 
-    Energy is quadratic in the travel, so that its largest eigenvector is the best mixture.
+    The energy is a quadratic form of the mixture. The best mixture is its largest eigenvector.
     """
     out = _released_energy(np.array([one, other, one + other]), *system)
     if not np.isfinite(out).all():
@@ -244,9 +250,9 @@ def _factor(rate: Fraction, frequency: Fraction) -> complex:
 def _released_energy(
     travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
 ) -> np.ndarray:
-    """Energy released, J, by each of the motions (..., n).
+    """Energy released, J, by each of the motions, travel (..., n).
 
-    0 where it is no more than rounding; not finite where the controller leaves double precision
+    0 where it may be rounding; not finite where the controller leaves double precision
     """
     from scipy.signal import lfilter
 
@@ -266,7 +272,10 @@ def _released_energy(
 
 
 def _claims(question: Question) -> list[TopicClaim]:
-    """A virtual wall beside damping alone; a Dahl bristle in small motion, where it is a spring."""
+    """Claims about a virtual wall with damping alone, and about a Dahl bristle in small motion.
+
+    In small motion the bristle is a negative spring.
+    """
     device, computer, wall = question.device, question.computer, question.wall
     assert computer is not None and question.late is not None
     period, claims = computer.period, []

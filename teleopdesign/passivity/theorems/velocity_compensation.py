@@ -1,20 +1,24 @@
-"""Friction cancelled by velocity: how much may be added before the pair can release energy.
+"""Friction cancelled by a law of velocity: how much may be cancelled before energy comes out.
+
+With the cancelling force
 
     c(v) = f_D v/(a + abs(v)),    a = 0: f_D sgn(v)
 
-beside viscous damping B, the pair is passive if and only if
+and viscous damping B, friction and cancellation together are passive if and only if
 
     sqrt(f_D) <= sqrt(f_0) + sqrt(a B)
 
-with f_0 = f_C for ideal Coulomb friction, whose contact is rigid, and f_0 = 0 where it deflects
-before it slides: there small motion meets a spring, which loses less than any negative damper adds,
-whatever the levels. The condition says abs(c(w)) <= f_0 + B abs(w) at every speed w, so it also
-covers a computer: over a sample of travel d, with the command of an earlier travel e,
+Here f_0 = f_C for ideal Coulomb friction, whose contact is rigid, and f_0 = 0 for friction that
+deflects before it slides. In small motion such friction is a spring, and it loses less energy than
+any negative damper adds, whatever the levels.
+
+The condition says abs(c(w)) <= f_0 + B abs(w) at every speed w. So it also covers a sampled law:
+over a sample of travel d, with the command of an earlier travel e,
 
     f_0 abs(d) + B d^2/T - c d >= B (d^2 - e^2)/(2 T)
 
-by 2 abs(d e) <= d^2 + e^2, and the sum over all samples is not negative. Velocity is then the
-difference of readings, without a filter, and the delay a whole number of samples.
+by 2 abs(d e) <= d^2 + e^2, and the sum over all samples is not negative. The velocity of a sampled
+law is the difference of readings, without a filter, and its delay is a whole number of samples.
 """
 
 from __future__ import annotations
@@ -38,7 +42,7 @@ _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
 
 
 def _law() -> Any:
-    """(velocity, level, smoothing velocity) -> force of the control law that is smoothed so."""
+    """Force of the catalogue's smoothed law: a function of velocity, level, smoothing velocity."""
     v, level, smoothing = _SYMBOLS
     made = laws_that_declare("smoothing")[0]
     now = SimpleNamespace(velocity=v, speed=sp.Abs(v))
@@ -51,11 +55,12 @@ _COMMAND = _law()
 
 @dataclass(frozen=True)
 class SteadyStrokes:
-    """To and fro at one speed, from rest: a motion over which a law of velocity releases energy.
+    """Strokes back and forth at one speed, from rest, over which a law of velocity releases energy.
 
-    level, smoothing: of the law, N and m/s (0: f_D sgn v);  damping: B, N s/m
-    friction: what resists beside it;  speed: m/s;  travel: of each stroke, m
-    sample_time: s, 0 in continuous time;  late: samples by which the force is late
+    level, smoothing: f_D, N, and a, m/s, of the law (a = 0: f_D sgn v);  damping: B, N s/m
+    friction: the element that resists;  speed: m/s;  travel: of each stroke, m
+    sample_time: s, 0 in continuous time;  late: delay of the force in samples
+    strokes: number of strokes
     """
 
     level: float
@@ -74,9 +79,9 @@ class SteadyStrokes:
         return self.replay()
 
     def replay(self) -> float:
-        """Energy released, J, each stroke exactly.
+        """Energy released, J, with an exact formula for each stroke.
 
-        In a computer the first samples of a stroke are still driven by the velocity before it.
+        With a sampled law, the velocity of the stroke before still drives the first samples.
         """
         command = _COMMAND(self.speed, self.level, self.smoothing)
         behind = min((1 + self.late) * self.sample_time * self.speed, self.travel)
@@ -118,16 +123,19 @@ def velocity_compensation(
     sample_time: Any = None,
     late: int = 0,
 ) -> Claim:
-    """Is friction passive beside a law that cancels it by velocity?
+    """Is friction passive together with a law of velocity that cancels it?
 
-    coulomb_level: f_C, N, the lowest that can occur;  compensator_level: f_D, N
-    smoothing_velocity: a of `smoothed_coulomb`, m/s; 0: the law `coulomb`
-    viscous_damping: B, N s/m;  presliding_stiffness: N/m, of a contact that deflects before it
-        slides (Dahl friction); None: ideal Coulomb friction
-    sample_time: s, of a computer that takes differences of readings; None: continuous time
-    late: whole samples by which its force is late
-    returns: proved iff sqrt(f_D) <= sqrt(f_0) + sqrt(a B), f_0 = f_C or, with presliding, 0; else
-        refuted by strokes at one speed. Decided in exact numbers, equality included
+    coulomb_level: f_C, N, the lowest level that can occur;  compensator_level: f_D, N
+    smoothing_velocity: a of the law `smoothed_coulomb`, m/s; 0: the law `coulomb`
+    viscous_damping: B, N s/m
+    presliding_stiffness: of friction that deflects before it slides (Dahl friction), N/m; None:
+        ideal Coulomb friction
+    sample_time: of a computer that takes differences of readings, s; None: continuous time
+    late: delay of the force in whole samples
+    returns: proved if and only if sqrt(f_D) <= sqrt(f_0) + sqrt(a B), with f_0 = f_C, or 0 with
+        presliding; decided in exact numbers, equality included. Else refuted by strokes at one
+        speed; unknown where the condition fails by too little for double precision
+    raises ModelError: an argument outside of its hypothesis
     """
     f_c, f_d = exact(coulomb_level), exact(compensator_level)
     a, b = exact(smoothing_velocity), exact(viscous_damping)
@@ -176,7 +184,11 @@ def _proof(
 def _strokes(
     law: tuple[float, float], friction: Coulomb | Dahl, b: float, period: float, late: int
 ) -> SteadyStrokes | None:
-    """Strokes that release energy; slower and slower ones where the contact deflects."""
+    """Strokes that release energy; None where double precision does not resolve any.
+
+    law: f_D, N, and a, m/s. For a contact that deflects the speed is halved until strokes are short
+    enough.
+    """
     f_d, a = law
     least = friction.level if isinstance(friction, Coulomb) else 0.0
     speed = _fastest_gain(f_d, a, least, b)
@@ -203,7 +215,10 @@ def _strokes(
 
 
 def _fastest_gain(f_d: float, a: float, least: float, b: float) -> float:
-    """The speed at which c(v) - f_0 - B v is largest; half way to its bound where there is none."""
+    """The speed at which c(v) - f_0 - B v is largest, m/s.
+
+    Where c(v) - f_0 - B v has no maximum: a speed at which it is half of its upper bound.
+    """
     if a and b:
         return math.sqrt(a * f_d / b) - a
     if a:
@@ -212,7 +227,10 @@ def _fastest_gain(f_d: float, a: float, least: float, b: float) -> float:
 
 
 def _applies(question: Question) -> bool:
-    """To a law smoothed by its velocity; in a computer only where that is the plain difference."""
+    """Whether the cancellation is a law of velocity.
+
+    In a computer its velocity must be the plain difference of readings without steps.
+    """
     computer, law = question.computer, question.cancellation
     if law is None or law.value_of("smoothing") is None or question.bound is None:
         return False
@@ -223,7 +241,7 @@ def _applies(question: Question) -> bool:
 
 
 def _claims(question: Question) -> list[TopicClaim]:
-    """With the damping that is there at every speed, for all values within the intervals."""
+    """The claim for all values within the intervals, with the damping present at every speed."""
     device, law, computer = question.device, question.cancellation, question.computer
     assert law is not None and question.late is not None
     topic = "law of velocity, damping counted"

@@ -1,16 +1,18 @@
-"""Wave variables: a channel that is passive at its ends, for any delay that grows slowly.
+"""Wave variables: a channel that is passive at both ends together, for slowly growing delays.
 
-With W_1 = b v_m + F_c, W_2 = b v_d - F_P at the ends and f W_1(t - T_1), f W_2(t - T_2) as they
-arrive, the power into the channel is
+At the ends the waves are W_1 = b v_m + F_c and W_2 = b v_d - F_P. They arrive as f W_1(t - T_1) and
+f W_2(t - T_2). The power into the channel is
 
     F_c v_m - F_P v_d = (W_1^2 - f^2 W_2(t - T_2)^2 + W_2^2 - f^2 W_1(t - T_1)^2)/(4 b)
 
-On its way is E = 1/(4 b) (integral of W_1^2 over t - T_1 to t, of W_2^2 over t - T_2 to t) >= 0,
-whose rate has (1 - dT/dt) W(t - T)^2 for what arrives (Leibniz). So the power is at least dE/dt,
-with waves at rest before the start, where f^2 <= 1 - dT/dt: f = 1 for constant delays, of any
-length, known to nobody (Niemeyer, Slotine, IEEE J. Oceanic Eng. 16 (1991) 145), and a scale below 1
-for delays that grow no faster than d (Lozano, Chopra, Spong, Mechatronics 2002). Waves that arrive
-at a jump of T, or that are lost and made up from others, are outside of it.
+The energy of the waves on their way is E = 1/(4 b) (integral of W_1^2 over t - T_1 to t, of W_2^2
+over t - T_2 to t) >= 0. Its rate contains (1 - dT/dt) W(t - T)^2 for an arriving wave (Leibniz). So
+the power is at least dE/dt where f^2 <= 1 - dT/dt, with waves at rest before the start.
+
+For constant delays of any length, which may be unknown, f = 1 is sufficient (Niemeyer, Slotine,
+IEEE J. Oceanic Eng. 16 (1991) 145). Delays that grow no faster than d need a scale below 1 (Lozano,
+Chopra, Spong, Mechatronics 2002). The theorem does not cover waves that arrive at a jump of T, or
+that are lost and replaced by others.
 """
 
 from __future__ import annotations
@@ -36,11 +38,12 @@ from ._theorem import Theorem
 
 @require_hypotheses(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
 def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) -> Claim:
-    """Does a channel of waves release no more energy than came in, at both ends together?
+    """Is a channel of waves passive: does it release no more energy than came in at both ends?
 
-    wave_impedance: b, N s/m;  scale: f, of waves as they arrive
-    delay_growth: d, most that a delay grows in a second, s/s; delays are continuous, of any length
-    returns: proved where f^2 <= 1 - d, else unknown: no refuting motion is searched
+    wave_impedance: b, N s/m;  scale: f, factor of arriving waves
+    delay_growth: d, largest growth rate of a delay, s/s; delays are continuous, of any length
+    returns: proved where f^2 <= 1 - d; else unknown, because no refuting motion is searched
+    raises ModelError: an argument outside of its hypothesis
     """
     b, f, d = map(exact, (wave_impedance, scale, delay_growth))
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
@@ -57,7 +60,7 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
 
 
 def _certificate(values: dict[str, sp.Expr]) -> Certificate:
-    """Power at both ends, less the rate of the energy on its way, is not negative.
+    """Certificate that the power at both ends is at least the rate of the energy on its way.
 
     values: b, f, d;  late_1, late_2: W_1(t - T_1) and W_2(t - T_2);  g_1, g_2: dT_1/dt, dT_2/dt
     """
@@ -87,10 +90,14 @@ def _certificate(values: dict[str, sp.Expr]) -> Certificate:
 def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance: Any) -> Claim:
     """Is the teleoperator passive at hand and environment, for constant delays of any length?
 
-    master, slave: impedances, force over velocity;  coupling: of the slave's controller, too, from
-        v_d - v_s to F_P;  wave_impedance: b, N s/m
-    Energies add: F_m v_m + F_s v_s is what goes into master, slave, controller and channel.
-    returns: proved where each part is positive real, else unknown: the whole may still be passive
+    Energies add: F_m v_m + F_s v_s is the power into master, slave, controller and channel.
+
+    master, slave: impedances, force over velocity, N s/m
+    coupling: impedance of the slave's controller, from v_d - v_s to F_P, N s/m
+    wave_impedance: b, N s/m
+    returns: proved where each part is positive real; else unknown, for the whole may still be
+        passive
+    raises ModelError: an impedance that is not rational, or a wave impedance that is not > 0
     """
     channel = wave_channel(wave_impedance=wave_impedance)
     statement = (
@@ -108,10 +115,12 @@ def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance:
 
 
 def wave_claim(diagram: Diagram) -> Claim:
-    """`wave_teleoperator` of a diagram wired by `wave_variables`, controllers in continuous time.
+    """The claim `wave_teleoperator` for a diagram that is wired by `wave_variables`.
 
-    Hand and environment are not judged. Coulomb friction may act in addition to the impedances: its
-    force opposes the velocity, so it dissipates energy.
+    Controllers are in continuous time. Hand and environment are left out. Coulomb friction may act
+    in addition to the impedances, because its force opposes the velocity and dissipates energy.
+
+    returns: unknown where some part is not in the impedances, or hides a growing mode
     raises ModelError: another wiring, a block without values, two wave impedances that differ, a
         slave's controller that is not linear
     """
@@ -158,7 +167,10 @@ def wave_claim(diagram: Diagram) -> Claim:
 
 
 def _wave_impedance(diagram: Diagram) -> float:
-    """b of a diagram without hand and environment that is wired as `wave_variables` does it."""
+    """Wave impedance b of a diagram without hand and environment, wired by `wave_variables`.
+
+    raises ModelError: another wiring
+    """
     bodies = {b.name: b.body for b in diagram.blocks if isinstance(b, Moving)}
     controls = {c.name: replace(c, analog=False) for c in diagram.controls}
     impedance = _damping_of(diagram, "b_m") if "b_m" in controls else 0.0
@@ -179,7 +191,7 @@ def _wave_impedance(diagram: Diagram) -> float:
 
 
 def _damping_of(diagram: Diagram, name: str) -> float:
-    """b of a controller whose linear form is b s; 0 of any other one."""
+    """Damping b of a controller whose linear form is b s; 0 for any other controller."""
     linear = linear_blocks(diagram, only=name)
     damping = sp.cancel(linear.blocks[name] / S)
     return 0.0 if name in linear.left_out or damping.free_symbols else float(damping)

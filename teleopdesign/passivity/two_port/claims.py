@@ -1,8 +1,8 @@
-"""Passivity and absolute stability of a two-port, as claims: exact where it is rational.
+"""Claims of passivity and of absolute stability of a two-port; exact where Z is rational.
 
 With dead times the margins are computed over frequency, and poles, residues and both ends of the
-axis are checked. A claim that fails a check is refuted or left unknown. A claim that passes has
-evidence, and no proof.
+axis are checked. If a check fails, the claim is refuted or unknown. If all checks pass, the claim
+has evidence and no proof.
 """
 
 from __future__ import annotations
@@ -51,7 +51,10 @@ _METHOD = (
 def passive(system: TwoPort) -> Claim:
     """Is the two-port passive: does no motion of its two ports take energy out (Raisbeck)?
 
-    Proved by the positive-real test of the matrix, which looks at poles on the axis as well
+    The positive-real test of the matrix decides, poles on the axis included.
+
+    returns: proved; or refuted by a growing wave; or, with dead times, evidence over frequency;
+        unknown where no proof and no wave is available
     """
     statement = f"the two-port {_write_matrix(system)} is passive"
     if not system.has_delay:
@@ -83,9 +86,12 @@ def passive(system: TwoPort) -> Claim:
 def absolutely_stable(system: TwoPort) -> Claim:
     """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
-    `checker/absolute_stability.py` has the statement and its proof. A refutation is a motion that
-    grows by itself between the two passive terminations that the method names. With dead times it
-    is a wave with which port 1 releases energy, with port 2 terminated as the method says.
+    `checker/absolute_stability.py` contains the statement and its proof.
+
+    returns: proved; or refuted by a motion that grows by itself between the two passive
+        terminations that the verdict names. With dead times: evidence over frequency, or refuted by
+        a wave with which port 1 releases energy while port 2 has the termination that the verdict
+        names; else unknown
     """
     statement = f"the two-port {_write_matrix(system)} is absolutely stable"
     return Claim(
@@ -130,7 +136,10 @@ def _judge_late_stability(system: TwoPort) -> Verdict:
 
 
 def is_shown_unstable(system: TwoPort) -> bool:
-    """Whether `absolutely_stable` refutes it; with dead times at the first wave, not the best."""
+    """Whether `absolutely_stable` refutes the two-port.
+
+    With dead times the search stops at the first wave, so it is faster.
+    """
     if not system.has_delay:
         return isinstance(absolutely_stable(system).verdict, Refutation)
     frequencies, margin = _find_lowest(system, stable_margin)
@@ -152,10 +161,10 @@ def _describe_sweep() -> str:
 
 
 def _find_lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
-    """Frequencies (Hz) at which to look for a wave, and the smallest margin, refined around it.
+    """Frequencies (Hz) at which a search should look for a wave, and the smallest margin.
 
-    The lowest one, and some of those with a negative margin. The fastest release of energy need not
-    be where the margin is smallest.
+    The first frequency is that of the smallest margin, refined. The others are some of those with a
+    negative margin, because the fastest release of energy need not be where the margin is smallest.
     """
     f = np.unique(np.concatenate([np.geomspace(1e-4, 1e4, 4001), resonances(system)]))
     values = margin(system.over(f))
@@ -170,10 +179,10 @@ def _find_lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
 
 
 def _find_active_points(system: TwoPort) -> tuple[list[float], list[float]]:
-    """Where Z + Z* is not positive: frequencies (Hz) on the axis, and rates (1/s) off the axis.
+    """Frequencies (Hz) on the axis and real rates s (1/s) at which Z + Z^H is not positive.
 
-    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, lets
-    energy out only next to its pole, below or above every frequency of a grid.
+    They come from exact polynomials in w^2 and in s. A residue that is not Hermitian, or not
+    positive, lets energy out only close to its pole, and a grid of frequencies may miss this place.
     """
     entries = [[system.entry(i, j) for j in (1, 2)] for i in (1, 2)]
     below = reduce(sp.lcm, [e.q for row in entries for e in row])
@@ -196,5 +205,5 @@ def _find_active_points(system: TwoPort) -> tuple[list[float], list[float]]:
 def _list_minors(
     first: sp.Poly, second: sp.Poly, upper: sp.Poly, lower: sp.Poly
 ) -> tuple[sp.Poly, sp.Poly, sp.Poly]:
-    """Both diagonal entries and the determinant."""
+    """Principal minors of a 2x2 matrix of polynomials: diagonal entries and determinant."""
     return first, second, first * second - upper * lower

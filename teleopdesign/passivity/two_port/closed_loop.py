@@ -1,4 +1,4 @@
-"""The closed loop of a rational two-port between two terminations, exact."""
+"""Exact closed loop of a rational two-port with a termination at each port."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from ..checker.polynomials import (
 def grows_between(z: Entries, held: tuple[Ratio, Ratio]) -> bool:
     """Whether (Z + diag(held))^-1 has a pole in the open right half plane, by Routh's scheme.
 
-    False also where the inverse does not exist.
+    held: impedances of the two terminations
+    returns: False also where the inverse does not exist
     """
     det, (z11, z22) = _close_loop(z, held)
     if not det[0]:
@@ -27,9 +28,11 @@ def grows_between(z: Entries, held: tuple[Ratio, Ratio]) -> bool:
 
 
 def hidden_poles(z: Entries, held: tuple[Ratio, Ratio], k: int) -> Polynomial:
-    """Polynomial whose zeros are poles of z[k] (k = 1 or 2) and of that entry of the closed loop.
+    """Polynomial whose zeros are poles of z[k] and of the same entry of the closed loop.
 
-    Those at which the loop's determinant is finite: the other port rests. Without a determinant: 1
+    Only poles count at which the determinant of the closed loop is finite, because there the other
+    port rests. The result is 1 where the determinant is zero or shares a pole with z[k].
+    k: 1 (z12) or 2 (z21);  held: impedances of the two terminations
     """
     det, _ = _close_loop(z, held)
     if not det[0] or len(greatest_common_divisor(det[1], z[k][1])) > 1:

@@ -1,9 +1,9 @@
-"""Two-ports with dead times: poles, residues and ends of the axis, which no sweep shows.
+"""Two-ports with dead times: checks of poles, residues and both ends of the axis.
 
-An entry is a sum of r_k(s) e^(-s T_k), r_k rational. Its poles are those of the r_k; at s = 0 and
-at both ends of the axis the decision is in rational arithmetic, at other poles numerical. The
-functions return obstacles: reasons for which a margin over frequency is no evidence. No obstacle is
-no proof.
+A sweep over frequency does not show these. An entry is a sum of r_k(s) e^(-s T_k), r_k rational, so
+its poles are those of the r_k. The checks at s = 0 and at both ends of the axis are in rational
+arithmetic, those at other poles are numerical. The functions return obstacles: reasons why a margin
+over frequency is no evidence. The absence of obstacles is no proof.
 """
 
 from __future__ import annotations
@@ -38,23 +38,23 @@ from .growing_mode import sort_by_power
 from .two_port import TwoPort
 
 Criterion = Literal["absolutely stable", "passive"]
-#: powers of s beyond the leading one that a series at s = 0 is carried to
+#: terms of a series at s = 0 after the leading one
 _TERMS = 24
-#: relative rounding of a residue at a pole whose frequency is irrational
+#: relative tolerance of a residue, for rounding: the frequency of its pole may be irrational
 _ROUNDING = 1e-9
 _NAMES = ("z11", "z12", "z21", "z22")
 
 
 @dataclass(frozen=True)
 class Late:
-    """ratio * e^(-s delay), delay in s."""
+    """A late rational function: ratio * e^(-s delay), delay in s."""
 
     ratio: Ratio
     delay: Fraction
 
 
 def late_terms(entry: sp.Expr) -> tuple[Late, ...] | None:
-    """The entry as a sum of late rational functions; None with a dead time in a denominator."""
+    """An entry as a sum of late rational functions; None if a dead time is in a denominator."""
     powers = sorted(entry.atoms(sp.exp), key=str)
     marks = [sp.Dummy(f"e{k}") for k in range(len(powers))]
     rates = [e.args[0].coeff(S) for e in powers]
@@ -77,7 +77,7 @@ def late_terms(entry: sp.Expr) -> tuple[Late, ...] | None:
 
 
 def obstacles(system: TwoPort, criterion: Criterion) -> tuple[str, ...]:
-    """Why margins on the axis say nothing of this two-port; empty where there is no reason."""
+    """Reasons why margins on the axis are no evidence for this two-port; empty: no reason."""
     entries = [late_terms(e) for e in system.z]
     lost = [n for n, e in zip(_NAMES, entries, strict=True) if e is None]
     if lost:
@@ -100,7 +100,7 @@ def _growth(z: Sequence[tuple[Late, ...]]) -> Iterator[str]:
 
 
 def _check_at_zero(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
-    """Order of the pole, residues, and the inequality in the limit of low frequency; exact."""
+    """Obstacles at s = 0, exact: order of the pole, residues, and the limit of the inequality."""
     series = [_series(terms) for terms in z]
     for name, coefficients in zip(_NAMES, series, strict=True):
         if any(c and n < -1 for n, c in coefficients.items()):
@@ -125,7 +125,7 @@ def _holds_exactly(k: Sequence[Fraction], criterion: Criterion) -> bool:
 
 
 def _series(terms: Sequence[Late]) -> dict[int, Fraction]:
-    """Laurent coefficients at s = 0, by power of s."""
+    """Laurent coefficients of a sum of late terms at s = 0: power of s -> coefficient."""
     total: dict[int, Fraction] = {}
     for term in terms:
         p, q = term.ratio
@@ -145,9 +145,9 @@ def _series(terms: Sequence[Late]) -> dict[int, Fraction]:
 def _low_frequency(
     series: Sequence[dict[int, Fraction]], criterion: Criterion
 ) -> Iterator[list[Fraction]]:
-    """Coefficients, lowest power of w first, of what must not be negative as w -> 0.
+    """Polynomials in w, lowest power first, that must not be negative as w -> 0.
 
-    With poles of first order only: everything is multiplied by w^2 for each entry's pole.
+    Poles at s = 0 are of first order. Each entry is multiplied by w.
     """
     (r1, _), (re12, im12), (re21, im21), (r2, _) = (_parts(c) for c in series)
     yield r1[1:]
@@ -165,12 +165,12 @@ def _low_frequency(
 
 
 def _trusted_coefficients(p: Polynomial) -> Polynomial:
-    """The coefficients that the truncated series determine."""
+    """The coefficients that do not depend on the truncated rest of the series."""
     return p[: _TERMS - 2]
 
 
 def _parts(series: dict[int, Fraction]) -> tuple[Polynomial, Polynomial]:
-    """Real and imaginary part at s = j w, each times w, powers of w from 0."""
+    """Real and imaginary part of a series at s = j w, each times w; lowest power of w first."""
     real, imaginary = [Fraction(0)] * (_TERMS - 1), [Fraction(0)] * (_TERMS - 1)
     for n, c in series.items():
         if -1 <= n < _TERMS - 2:
@@ -180,7 +180,7 @@ def _parts(series: dict[int, Fraction]) -> tuple[Polynomial, Polynomial]:
 
 
 def _check_on_axis(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
-    """Residues at poles j w, w > 0, in floating point; a multiple pole of one term is refused."""
+    """Obstacles at poles j w, w > 0: residues (floating point), and multiple poles of a term."""
     shared = [Fraction(1)]
     for name, terms in zip(_NAMES, z, strict=True):
         for term in terms:
@@ -231,10 +231,10 @@ def _is_allowed(k: Sequence[complex], criterion: Criterion, rounding: float) -> 
 
 
 def _far_out(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> Iterator[str]:
-    """Growth like s, and what the real parts leave of the inequality at high frequency.
+    """Obstacles at high frequency: growth like s, and the inequality in the limit.
 
-    A late product z12 z21 takes every phase there, so its size counts: Re z11 Re z22 >= abs(z12
-    z21), and of a passive one twice the off-diagonal, abs(z12) + abs(z21).
+    A late product z12 z21 has every phase there, so its size counts: Re z11 Re z22 >= abs(z12 z21).
+    For passivity the size of the off-diagonal counts, abs(z12) + abs(z21).
     """
     excess = [max((len(t.ratio[0]) - len(t.ratio[1]) for t in terms), default=0) for terms in z]
     for name, n in zip(_NAMES, excess, strict=True):
@@ -264,7 +264,7 @@ def _slope(term: Late) -> Fraction:
 
 
 def _fades(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> bool:
-    """Whether Re z11 Re z22 is surely as large as the coupling asks for as w -> infinity."""
+    """Whether Re z11 Re z22 is surely large enough for the coupling as w -> infinity."""
     if not (z[1] and z[2]) and (criterion == "absolutely stable" or not (z[1] or z[2])):
         return True
     if not any(t.delay for k in (1, 2) for t in z[k]):
@@ -283,7 +283,7 @@ def _fades(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> bool:
 
 
 def _real_far_out(terms: Sequence[Late]) -> tuple[int, Fraction] | None:
-    """(n, c > 0) with Re z ~ c w^n; None where late terms hide it."""
+    """(n, c > 0) with Re z ~ c w^n as w -> infinity; None: not known, or not > 0."""
     total: Ratio = ([], [Fraction(1)])
     for t in terms:
         if t.delay:
@@ -297,7 +297,7 @@ def _real_far_out(terms: Sequence[Late]) -> tuple[int, Fraction] | None:
 
 
 def _far_size(terms: Sequence[Late]) -> tuple[int, Fraction]:
-    """(n, c) with abs(z) <= about c w^n."""
+    """(n, c): as w -> infinity, abs(z) is about c w^n at most."""
     powers = [(len(t.ratio[0]) - len(t.ratio[1]), t.ratio[0][-1] / t.ratio[1][-1]) for t in terms]
     top = max((n for n, _ in powers), default=-(10**6))
     return top, sum((abs(c) for n, c in powers if n == top), Fraction(0))

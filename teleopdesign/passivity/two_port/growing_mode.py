@@ -2,10 +2,10 @@
 
     Z(s) V + diag(Z1, Z2) V = 0,   v(t) = Re(V e^(s t)),   s = a + j w,   a > 0
 
-A passive termination takes, at one s, exactly the values that `termination` can realise. So the
-search is one over s, and over the value of one termination (`growth_points`); the other is then
--z_in(s), in exact arithmetic. A sum Z + diag(Z1, Z2) without inverse at s, where Z is finite, is a
-pole at s of its inverse, unless it has none anywhere.
+At one s, the passive terminations have exactly the values that `termination` can realise. So the
+search runs over s and over the value of one termination (`growth_points`). The other termination is
+then -z_in(s), in exact arithmetic. If Z is finite at s and Z + diag(Z1, Z2) is singular there, its
+inverse has a pole at s, unless the sum is singular everywhere.
 """
 
 from __future__ import annotations
@@ -64,8 +64,9 @@ from .termination import (
 class GrowingMode:
     """A motion of a two-port between passive terminations that grows from near rest.
 
-    impedance: Z, rational in s;  terminations: of port 1 and port 2
-    rate, frequency: of growth, 1/s and rad/s; a pole of the closed loop, exactly or rounded
+    impedance: Z (N s/m), rational in s;  terminations: at port 1 and port 2
+    rate, frequency: real and imaginary part of s, 1/s and rad/s: a pole of the closed loop, exact
+        or rounded
     velocity: V at t = 0 (m/s, complex), one for each port
     """
 
@@ -77,12 +78,12 @@ class GrowingMode:
 
     @property
     def s(self) -> complex:
-        """rate + j frequency."""
+        """rate + j frequency, 1/s."""
         return complex(float(self.rate), float(self.frequency))
 
     @property
     def energy(self) -> float:
-        """Energy that both terminations together took in up to t = 0, J, in closed form."""
+        """Energy that both terminations together have taken in up to t = 0, J, in closed form."""
         total = 0.0
         for held, v in zip(self.terminations, self.velocity, strict=True):
             z = 0.0 if held.clamped else held.at(self.s)
@@ -90,9 +91,10 @@ class GrowingMode:
         return total / 4
 
     def replay(self) -> float:
-        """That energy, J, by integrating force times velocity of each termination over time.
+        """The same energy, J, from the integral of force times velocity of each termination.
 
-        Over twelve time constants, or the last LONGEST periods where those are shorter: then less.
+        The integral covers the last twelve time constants, or the last LONGEST periods if they are
+        shorter. In the second case the result is smaller than `energy`.
         """
         span = 12.0 / self.s.real  # twelve time constants: what came before is 1e-10 of it
         if self.frequency:
@@ -109,7 +111,7 @@ class GrowingMode:
         return total
 
     def is_confirmed(self) -> bool:
-        """Whether this closed loop has a pole in the open right half plane: exact, by Routh."""
+        """Whether the closed loop has a pole in the open right half plane, exactly (Routh)."""
         z = entries_of(self.impedance)
         first, second = self.terminations
         if not (first.clamped or second.clamped):
@@ -154,9 +156,10 @@ def sort_by_power(p: sp.Poly) -> Polynomial:
 
 
 def growing_mode(impedance: sp.ImmutableMatrix) -> GrowingMode | None:
-    """Passive terminations with a growing motion of the two-port, confirmed exactly; None: none.
+    """Search for passive terminations between which a two-port grows.
 
-    impedance: rational in s
+    impedance: Z (N s/m), 2x2, rational in s
+    returns: a motion that is confirmed exactly; None where the search has no result
     """
     z = entries_of(impedance)
     points = points_of_growth(z)
@@ -170,7 +173,7 @@ def growing_mode(impedance: sp.ImmutableMatrix) -> GrowingMode | None:
     )
 
 
-#: candidates that are tested exactly, a millisecond each
+#: most candidates that are tested exactly, a millisecond each
 _MOST_CANDIDATES = 40
 
 
@@ -179,7 +182,7 @@ def _exchange_ports(z: Entries) -> Entries:
 
 
 def _negative_places(z: Entries) -> list[Fraction]:
-    """w^2 at which a real part, or Llewellyn's inequality, is negative."""
+    """Values of w^2 at which Re z11, Re z22 or Llewellyn's inequality is negative."""
     tested = [real_part_of(*z[0]), real_part_of(*z[3]), *llewellyn(z)]
     return [x for p in tested for x in where_negative(_poly(p))]
 
@@ -191,9 +194,10 @@ def _poly(p: Polynomial) -> sp.Poly:
 def _mode_at(
     impedance: sp.ImmutableMatrix, z: Entries, at: Gaussian, far: Termination, turned: bool
 ) -> GrowingMode | None:
-    """The growing mode at exactly that s with that far termination, if the near one is passive.
+    """The growing mode at exactly s = `at` with that far termination.
 
     turned: the far port is port 1
+    returns: None where the near termination is not passive, or the mode is not confirmed
     """
     z11, z12, z21, z22 = (value_at(one, at) for one in (_exchange_ports(z) if turned else z))
     if z11 is None or z12 is None or z21 is None or z22 is None:
@@ -219,7 +223,7 @@ def _mode_at(
 
 
 def _mode_in_one_direction(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """The growing mode of z12 or z21 alone: it moves one port only."""
+    """A growing mode that is a pole of z12 or z21 alone: it moves one port only."""
     for k, velocity in ((1, (1 + 0j, 0j)), (2, (0j, 1 + 0j))):
         for size in (1, 100, Fraction(1, 100)):
             held = Termination(Fraction(size))
@@ -234,7 +238,10 @@ def _mode_in_one_direction(impedance: sp.ImmutableMatrix, z: Entries) -> Growing
 
 
 def _narrow(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """As `_points_near_axis`, with 40 digits: for inequalities that fail by little, or in a gap."""
+    """A growing mode beside the axis, with up to 40 digits; None: no result.
+
+    For inequalities that fail by little, or only in a narrow band of frequencies.
+    """
     for x in _negative_places(z):
         w = square_root(x, 30)
         for k in range(4, 132, 8):
@@ -248,7 +255,10 @@ def _narrow(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
 
 
 def _find_at_pole(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """Ever closer to a pole on the axis, far port free: for residues that fail by little."""
+    """A growing mode close to a pole on the axis, with the far port free; None: no result.
+
+    For residues that violate their condition by little.
+    """
     poles = greatest_common_divisor(axis_poles(z[1][1]), axis_poles(z[2][1]))
     places = [square_root(x, 60) for x in positive_roots(_poly(poles), bits=200)]
     free = Termination()
@@ -264,7 +274,7 @@ def _find_at_pole(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | No
 
 
 def _best_exact(z: Entries, at: Gaussian) -> Iterator[Termination]:
-    """What `_best_far` says, to 40 digits, and a clamp."""
+    """Far terminations: a clamp, and the one of `growth_points._best_far` to 40 digits."""
     yield CLAMPED
     z12, z21, z22 = (value_at(one, at) for one in z[1:])
     if z12 is None or z21 is None or z22 is None:

@@ -1,6 +1,6 @@
-"""Where a two-port may grow between passive terminations: points s to try, the best ones first.
+"""Points s at which a two-port may grow between passive terminations, the most likely ones first.
 
-Numerical: each point is confirmed in exact arithmetic by `growing_mode`.
+The choice of points is numerical. `growing_mode` then confirms a point in exact arithmetic.
 """
 
 from __future__ import annotations
@@ -13,20 +13,23 @@ from ..checker.absolute_stability import Entries, Ratio
 from ..checker.polynomials import Polynomial
 from .two_port import stable_margin
 
-#: halvings of the distance from the axis, from a pole, or to infinity
+#: powers of 1/2 by which points approach the axis or a pole, or (reversed) go far out
 _CLOSER = tuple(range(1, 34, 2))
 
 
 def points_of_growth(z: Entries) -> np.ndarray:
-    """Points s of the right half plane, imaginary part >= 0, for the search of growth, (n,).
+    """Points s of the right half plane at which a search for growth looks, 1/s, (n,).
 
-    Beside the axis where an inequality fails, beside poles, and on a grid over all of it.
+    The points lie beside the axis where an inequality fails, beside poles, and on a grid over the
+    quadrant with imaginary part >= 0.
+
+    z: z11, z12, z21, z22 as coprime numerators and denominators
     """
     return np.array([*_points_near_axis(z), *points_near_poles(z)])
 
 
 def _points_near_axis(z: Entries) -> Iterator[complex]:
-    """Beside some of the frequencies at which a sweep finds Llewellyn's margin negative."""
+    """Points beside the axis, at some of the frequencies where Llewellyn's margin is negative."""
     sizes = np.abs([r for p, q in z for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
     w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])
     value = np.stack([evaluate_at(one, 1j * w) for one in z], axis=1).reshape(-1, 2, 2)
@@ -41,11 +44,15 @@ def _points_near_axis(z: Entries) -> Iterator[complex]:
 
 
 def roots_of(p: Polynomial) -> np.ndarray:
+    """Roots of a polynomial (lowest power first) in floating point, (n,)."""
     return np.roots([float(c / p[-1]) for c in reversed(p)]) if len(p) > 1 else np.array([])
 
 
 def points_near_poles(z: Sequence[Ratio]) -> Iterator[complex]:
-    """Beside poles, and everywhere on a grid from the slowest root to the fastest and beyond."""
+    """Points s beside poles, and on a grid from below the slowest root to above the fastest, 1/s.
+
+    z: coprime numerators and denominators of the entries of any matrix
+    """
     poles = [r for _, q in z for r in roots_of(q)]
     roots = [*poles, *(r for p, _ in z for r in roots_of(p))]
     sizes = [abs(r) for r in roots if r != 0] or [1.0]
@@ -66,10 +73,13 @@ def points_near_poles(z: Sequence[Ratio]) -> Iterator[complex]:
 def candidates(
     values: Sequence[np.ndarray], points: np.ndarray
 ) -> list[tuple[complex, complex, bool]]:
-    """(s, value of the far termination, whether the far port is port 1), the best one first.
+    """Points at which two passive terminations seem to make a two-port grow, the best one first.
 
-    There -z_in is the value of a passive termination; numerical.
-    values: z11, z12, z21, z22 at each point s, (n,)
+    At such a point the near port with its termination -z_in(s) would grow, and -z_in(s) is a value
+    that a passive termination can have. Numerical.
+
+    values: z11, z12, z21, z22 at each point, each (n,);  points: s, 1/s, (n,)
+    returns: (s, value of the far termination, whether the far port is port 1)
     """
     z11, z12, z21, z22 = values
     with np.errstate(all="ignore"):
@@ -85,7 +95,11 @@ def candidates(
 def _score_points(
     z11: np.ndarray, loop: np.ndarray, z22: np.ndarray, points: np.ndarray, turned: bool
 ) -> list[tuple[float, complex, complex, bool]]:
-    """Score: how far -z_in lies within the values of passive terminations, times growth."""
+    """The best far termination at each point, with its score.
+
+    The score says how far -z_in lies inside the values of passive terminations, times the growth
+    relative to abs(s). turned: the far port is port 1
+    """
     with np.errstate(all="ignore"):
         half = np.angle(points)
         sizes = 10.0 ** np.array(sorted(np.arange(-9, 9.1, 0.5), key=abs))
@@ -110,7 +124,7 @@ def _score_points(
 
 
 def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """A far termination for which Re(z12 z21/(z22 + Z2)) is about as large as it can be.
+    """A far termination Z2 for which Re(z12 z21/(z22 + Z2)) is about as large as possible.
 
     z22 + Z2 = r (1 + j tan(arg(L)/2)), with r as small as a passive Z2 lets it be
     """
@@ -124,7 +138,7 @@ def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 
 def evaluate_at(one: Ratio, s: np.ndarray) -> np.ndarray:
-    """Numerical values at points s, (n,)."""
+    """Values of a rational function at points s, (n,), in floating point; not finite at a pole."""
     p, q = ([float(c) for c in reversed(r)] or [0.0] for r in one)
     with np.errstate(all="ignore"):  # a point may be a pole
         return np.asarray(np.polyval(p, s) / np.polyval(q, s))

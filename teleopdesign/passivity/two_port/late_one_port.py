@@ -1,7 +1,7 @@
-"""Passivity of one port with dead times: a wave that refutes it, or evidence over frequency.
+"""Passivity of a one-port with dead times: refuted by a wave, or supported over frequency.
 
 Z(s) is a sum of rational functions, each with a dead time. The test is that of a two-port with Z at
-both ports and no connection between the ports: both ports are passive, or neither is.
+both ports and no connection between the ports: then both ports are passive, or neither is.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ from .two_port import two_port
 def late_one_port(z: sp.Expr) -> Claim:
     """Is this impedance with dead times passive (force over velocity, in s and exp(-s T))?
 
-    returns: refuted by a growing wave; else evidence over frequency, poles and both ends of the
-        axis looked at; unknown where the dead times lie within a loop, so that poles stay uncounted
-    raises ModelError: no sum of late rational functions with numbers
+    z: N s/m
+    returns: refuted by a growing wave; else evidence over frequency, with poles and both ends of
+        the axis checked; unknown where a dead time lies within a loop, because the poles are then
+        not counted, or where a check fails and no wave is available
+    raises ModelError: z is no expression in s with numbers and exp(-s T)
     """
     statement = f"Z(s) = {readable(z)} is passive at its port (force, velocity)"
     verdict = passive(two_port([[z, 0], [0, z]])).verdict

@@ -9,12 +9,17 @@ from .delayed_two_port import late_terms
 from .growth_points import roots_of
 from .two_port import TwoPort
 
-#: half widths of a resonance beside its frequency: its real part turns its sign within the first
+#: places across a resonance, in half widths from its frequency: the real part of an entry changes
+#: its sign within the first half width
 _ACROSS = (-30.0, -10.0, -3.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 3.0, 10.0, 30.0)
 
 
 def resonances(system: TwoPort) -> np.ndarray:
-    """Frequencies (Hz) across the width of each resonance, which a grid may step over, (n,)."""
+    """Frequencies across the width of each resonance, Hz, (n,): a grid alone may miss one.
+
+    system: a two-port whose entries may have dead times. Poles on the axis have no width and are
+    left out
+    """
     terms = [late_terms(e) if e.has(sp.exp) else () for e in system.z]
     ratios = [t.ratio for entry in terms for t in entry or ()]
     poles = np.array([p for _, q in ratios for p in roots_of(q)], dtype=complex)

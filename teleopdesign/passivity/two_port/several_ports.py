@@ -1,4 +1,4 @@
-"""Passivity of more than two ports together: the positive-real test of the matrix, or a wave."""
+"""Passivity of several ports together: proved by the positive-real test, or refuted by a wave."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from .exact_complex import ZERO, Gaussian, add, multiply, round_point, value_at
 from .growing_mode import sort_by_power
 from .growth_points import evaluate_at, points_near_poles, roots_of
 
-#: of points of the right half plane, those whose waves are looked at exactly, the best first
+#: most points of the right half plane whose waves are tested exactly, the best points first
 _MOST_CANDIDATES = 30
 
 
 def passive_together(z: sp.Matrix) -> Claim:
-    """Does no motion of the ports take energy out, all of them moved at once?
+    """Are all ports passive together: does no motion of all ports at once take energy out?
 
     z: forces over velocities (N s/m), n by n, rational in S with exact numbers
-    returns: proved by the positive-real test of the matrix, refuted by a growing wave, or unknown:
-        with dead times nothing is known here, nor of more ports than a certificate has
+    returns: proved by the positive-real test of the matrix, refuted by a growing wave, or unknown;
+        always unknown with dead times, and with more ports than a certificate can have
     """
     matrix = sp.ImmutableMatrix(z)
     text = "; ".join(", ".join(map(readable, row)) for row in matrix.tolist())
@@ -80,7 +80,7 @@ def _ratio(entry: sp.Expr) -> Ratio:
 
 
 def _points_beside_axis(ratios: list[Ratio]) -> Iterator[complex]:
-    """Over all frequencies from below the slowest root to above the fastest, ever nearer."""
+    """Points beside the axis, from below the slowest root to above the fastest, ever closer."""
     sizes = np.abs([r for p, q in ratios for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
     w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])
     for closer in (1, 4, 8, 16, 32):
@@ -88,7 +88,7 @@ def _points_beside_axis(ratios: list[Ratio]) -> Iterator[complex]:
 
 
 def _takes_out(ratios: list[Ratio], at: Gaussian, wave: GrowingWave) -> bool:
-    """Whether V^H (Z + Z^H) V < 0 at the wave, exactly, V its velocities as they are written."""
+    """Whether V^H (Z + Z^H) V < 0 at the wave, exactly; V: its velocities, read as fractions."""
     v = [(Fraction(x.real), Fraction(x.imag)) for x in wave.velocity]
     total = ZERO
     for k, ratio in enumerate(ratios):

@@ -1,7 +1,8 @@
-"""Terminations of a port: a damper with a mass and a spring, or a clamp.
+"""Passive terminations of a port: a damper with a mass and a spring, or a clamp.
 
-R + m s + k/s with R, m, k >= 0. At one s of the open right half plane, such a termination takes
-every value with abs(arg) <= arg s, and a positive-real function takes no other.
+The impedance is R + m s + k/s with R, m, k >= 0. At one s of the open right half plane, such a
+termination can have every value with abs(arg) <= abs(arg s), and a positive-real function has no
+other value there.
 """
 
 from __future__ import annotations
@@ -20,7 +21,11 @@ from .exact_complex import Gaussian, round_point, short
 
 @dataclass(frozen=True)
 class Termination:
-    """Damper (N s/m), mass (kg) and spring (N/m) at a port, each >= 0; or a clamp: no motion."""
+    """A passive termination: damper, mass and spring at a port, or a clamp (no motion).
+
+    damping: N s/m;  inertia: kg;  stiffness: N/m; each >= 0
+    raises ValueError: one of them is negative
+    """
 
     damping: Fraction = Fraction(0)
     inertia: Fraction = Fraction(0)
@@ -33,13 +38,13 @@ class Termination:
 
     @property
     def ratio(self) -> Ratio:
-        """R + m s + k/s, coprime."""
+        """Impedance R + m s + k/s as a coprime numerator and denominator."""
         p = polynomial([self.stiffness, self.damping, self.inertia])
         return coprime(p, polynomial([0, 1]))
 
     @property
     def expression(self) -> sp.Expr:
-        """R + m s + k/s in `realise.lti.S`."""
+        """Impedance R + m s + k/s (N s/m) as an expression in `realise.lti.S`."""
         r, m, k = (
             sp.Rational(x.numerator, x.denominator)
             for x in (self.damping, self.inertia, self.stiffness)
@@ -47,7 +52,7 @@ class Termination:
         return r + m * S + k / S
 
     def at(self, s: complex) -> complex:
-        """Its impedance at s, N s/m."""
+        """Impedance at s, N s/m, in floating point."""
         return float(self.damping) + float(self.inertia) * s + float(self.stiffness) / s
 
     def __str__(self) -> str:
@@ -66,16 +71,17 @@ CLAMPED = Termination(clamped=True)
 
 
 def far_termination(s: complex, value: complex) -> Termination:
-    """The passive termination that has about that value at s; a clamp where it is infinite."""
+    """The passive termination that has about that impedance at s; a clamp if it is infinite."""
     if cmath.isinf(value):
         return CLAMPED
     return termination_near((Fraction(value.real), Fraction(value.imag)), round_point(s), 7)
 
 
 def with_resonance(held: Termination, at: Gaussian) -> Termination:
-    """The same impedance at s, half of its damper replaced by a mass and a spring that resonate.
+    """A termination with the same impedance at s, but half of the damper replaced.
 
-    For a two-port of dampers alone: with a damper equal and opposite no motion is determined.
+    A mass and a spring replace this half. It serves two-ports of dampers alone: beside an equal and
+    opposite damper a damper determines no motion.
     """
     rate, size = at[0], at[0] ** 2 + at[1] ** 2
     mass = held.damping / (4 * rate)
@@ -87,7 +93,12 @@ def with_resonance(held: Termination, at: Gaussian) -> Termination:
 def velocities_in_phase(
     near: Termination, far: Termination, ratio: complex, s: complex
 ) -> tuple[complex, complex]:
-    """Velocities, the larger one 1 m/s, in the phase in which the terminations take most."""
+    """Velocities of both ports at t = 0, m/s, complex; the larger one has the size 1 m/s.
+
+    Their phase is the one in which the terminations take in most energy.
+
+    ratio: velocity of the far port over that of the near port, at s
+    """
     size = max(1.0, abs(ratio))
     v = [1 / size, ratio / size]
     if s.imag == 0:
@@ -98,7 +109,10 @@ def velocities_in_phase(
 
 
 def termination_of(wanted: Gaussian, at: Gaussian) -> Termination | None:
-    """The damper with a mass or a spring whose impedance at s is `wanted`; None: not passive."""
+    """The damper with a mass or a spring whose impedance at s is `wanted`.
+
+    returns: None where no passive one has this impedance
+    """
     real, inertia, stiffness = _parts(wanted, at)
     if real < 0 or (wanted[1] != 0 and at[1] == 0):
         return None
@@ -106,14 +120,17 @@ def termination_of(wanted: Gaussian, at: Gaussian) -> Termination | None:
 
 
 def termination_near(wanted: Gaussian, at: Gaussian, digits: int) -> Termination:
-    """About the same, its parts to so many digits, a damper below 0 left off."""
+    """A termination whose impedance at s is about `wanted`.
+
+    Its parts are rounded to so many digits, and a negative damper is left out.
+    """
     real, *rest = _parts(wanted, at)
     real, inertia, stiffness = (short(x, digits) for x in (max(real, Fraction(0)), *rest))
     return Termination(real, inertia, stiffness)
 
 
 def _parts(wanted: Gaussian, at: Gaussian) -> tuple[Fraction, Fraction, Fraction]:
-    """Damper, which may be negative, mass and spring."""
+    """Damper (may be negative), mass and spring whose impedance at s is `wanted`."""
     (real, imaginary), (rate, frequency) = wanted, at
     none = Fraction(0)
     if imaginary == 0 or frequency == 0:
@@ -126,7 +143,7 @@ def _parts(wanted: Gaussian, at: Gaussian) -> tuple[Fraction, Fraction, Fraction
 
 
 def exact_value(held: Termination, at: Gaussian) -> Gaussian:
-    """R + m s + k/s at s, exactly."""
+    """Impedance R + m s + k/s of a termination at s, exactly."""
     size = at[0] ** 2 + at[1] ** 2
     m, k = held.inertia, held.stiffness
     return held.damping + m * at[0] + k * at[0] / size, m * at[1] - k * at[1] / size

@@ -2,13 +2,14 @@
 
     force_i = z_i1 velocity_1 + z_i2 velocity_2
 
-Forces act from outside on the device and velocities point the same way, so that power flows in at
-both ports. Passive (Raisbeck): no motion of the ports takes energy out. Absolutely stable
-(Llewellyn): no two passive terminations, one at each port, make it grow. Passive implies
-absolutely stable. Dead times are exact: e^(-s T) is evaluated, not approximated.
+Forces act from outside on the device, and velocities point the same way. So force times velocity is
+the power that flows in, at both ports. Passive (Raisbeck): no motion of the ports takes energy out.
+Absolutely stable (Llewellyn): with any two passive terminations, one at each port, no motion grows.
+A passive two-port is absolutely stable. Dead times are exact: e^(-s T) is evaluated, not
+approximated.
 
-Llewellyn, Proc. IRE 40 (1952) 271; his inequality on the axis is one of the conditions: all of them
-stand in `checker/absolute_stability.py`.
+Llewellyn, Proc. IRE 40 (1952) 271. His inequality on the axis is one of several conditions;
+`checker/absolute_stability.py` lists all of them.
 """
 
 from __future__ import annotations
@@ -31,25 +32,31 @@ from ..linear.impedance import Impedance, exact, impedance
 
 @dataclass(frozen=True)
 class TwoPort:
-    """Impedance matrix (N s/m) in `realise.lti.S`, with exact numbers."""
+    """A two-port by its impedance matrix.
+
+    z: 2x2, N s/m, in `realise.lti.S`, with exact numbers
+    """
 
     z: sp.ImmutableMatrix
 
     @property
     def has_delay(self) -> bool:
-        """Whether a dead time is in it."""
+        """Whether some entry has a dead time."""
         return bool(self.z.has(sp.exp))
 
     def entry(self, row: int, column: int) -> Impedance:
-        """One entry as rational function, row and column 1 or 2; ModelError with a dead time."""
+        """One entry as a rational function; row and column are 1 or 2.
+
+        raises ModelError: the entry has a dead time
+        """
         return impedance(self.z[row - 1, column - 1])
 
     def over(self, frequency: np.ndarray) -> np.ndarray:
-        """Values at frequency (Hz), (n, 2, 2)."""
+        """Impedance matrices at each frequency (Hz), N s/m, (n, 2, 2)."""
         return self.at(2j * np.pi * np.asarray(frequency, dtype=float))
 
     def at(self, s: np.ndarray) -> np.ndarray:
-        """Values at complex s (1/s), (n, 2, 2)."""
+        """Impedance matrices at each complex s (1/s), N s/m, (n, 2, 2)."""
         s = np.asarray(s, dtype=complex)
         out = np.empty((len(s), 2, 2), dtype=complex)
         for i in range(2):
@@ -66,10 +73,10 @@ def _function(entry: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def two_port(entries: Sequence[Sequence[Any]]) -> TwoPort:
-    """A two-port from [[z11, z12], [z21, z22]].
+    """A two-port from its impedances [[z11, z12], [z21, z22]], force over velocity.
 
-    entries: rational in s, with exp(-s T) for dead times; floats are read as decimals
-    raises ModelError: another shape, a free symbol, a dead time that is negative
+    entries: N s/m, rational in s, with exp(-s T) for dead times; floats are read as decimals
+    raises ModelError: another shape, a free symbol, a negative dead time
     """
     if len(entries) != 2 or any(len(row) != 2 for row in entries):
         raise ModelError("two_port: expected [[z11, z12], [z21, z22]]")
@@ -98,10 +105,10 @@ def _entry(entry: Any) -> sp.Expr:
 def teleoperator_two_port(
     *, master: Any, slave: Any, stiffness: float, damping: float = 0.0, delay: float = 0.0
 ) -> TwoPort:
-    """Master and slave, coupled by spring and damper between their positions.
+    """A teleoperator: master and slave with a spring and a damper between their positions.
 
-    master, slave: impedances, force over velocity, see `impedance`
-    stiffness: N/m;  damping: N s/m;  delay: each way, s
+    master, slave: impedances, force over velocity, N s/m, see `impedance`
+    stiffness: of the spring, N/m;  damping: of the damper, N s/m;  delay: each way, s
     """
     link = exact(stiffness) / S + exact(damping)
     late = sp.exp(-S * exact(delay)) if delay else sp.S(1)
@@ -111,13 +118,15 @@ def teleoperator_two_port(
 
 @dataclass(frozen=True, eq=False)
 class FrequencyMargins(ByValue):
-    """Margins on the axis over frequency (Hz), (n,) each; numerical.
+    """Margins of a two-port on the imaginary axis over frequency; numerical.
 
-    Nonnegative margins are necessary, not sufficient: they do not show poles in the right half
-    plane and residues at poles on the axis. `passive` and `absolutely_stable` check all conditions.
+    Nonnegative margins are necessary and not sufficient. They show neither poles in the right half
+    plane nor residues at poles on the axis. `passive` and `absolutely_stable` check all conditions.
 
-    passive: smallest eigenvalue of the Hermitian part (N s/m): < 0 where a motion takes energy out
-    llewellyn: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless; -inf where
+    frequency: Hz, (n,)
+    passive: smallest eigenvalue of the Hermitian part, N s/m, (n,); < 0 where a motion takes energy
+        out
+    llewellyn: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless, (n,); -inf where
         Re z11 or Re z22 < 0; < 0 where some pair of terminations makes it unstable
     """
 
@@ -136,11 +145,13 @@ class FrequencyMargins(ByValue):
 
 
 def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
-    """Both margins over frequency (Hz), default 1e-4 to 1e4, 4001 points.
+    """Margins of passivity and of absolute stability (Llewellyn) over frequency.
 
-    frequency: (n,), Hz;  returns: passive margin (n,), N s/m, >= 0 where passive, and Llewellyn's
-        parameter minus 1 (n,), >= 0 where absolutely stable; NaN at a pole of the two-port
-    Numerical: without information between the points, and on poles off the axis.
+    The result is numerical. Nothing is known between the frequencies, nor about poles off the axis.
+
+    frequency: Hz, (n,); default: 4001 points from 1e-4 to 1e4
+    returns: both margins, >= 0 at every frequency if the two-port is passive or absolutely stable;
+        NaN at a pole of the two-port
     """
     f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
     z = system.over(f)
@@ -148,7 +159,10 @@ def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> Frequ
 
 
 def passive_margin(z: np.ndarray) -> np.ndarray:
-    """Smallest eigenvalue of the Hermitian part; z: (n, 2, 2); NaN at a pole."""
+    """Smallest eigenvalue of the Hermitian part of each matrix, (n,); NaN where z is not finite.
+
+    z: (n, k, k), on the axis or in the right half plane
+    """
     finite = np.isfinite(z).all(axis=(1, 2))
     margin = np.full(len(z), np.nan)
     margin[finite] = np.linalg.eigvalsh((z[finite] + z[finite].conj().swapaxes(1, 2)) / 2)[:, 0]
@@ -156,7 +170,10 @@ def passive_margin(z: np.ndarray) -> np.ndarray:
 
 
 def stable_margin(z: np.ndarray) -> np.ndarray:
-    """Llewellyn's stability parameter minus 1; z: (n, 2, 2), on the axis."""
+    """Llewellyn's stability parameter minus 1 of each matrix, (n,); z: (n, 2, 2), on the axis.
+
+    inf where z12 z21 = 0;  -inf where Re z11 < 0 or Re z22 < 0
+    """
     r1, r2, loop = z[:, 0, 0].real, z[:, 1, 1].real, z[:, 0, 1] * z[:, 1, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         margin = (2 * r1 * r2 - loop.real) / np.abs(loop) - 1

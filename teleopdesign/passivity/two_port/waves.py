@@ -1,7 +1,7 @@
-"""Growing waves that take energy out of a two-port: motions that refute a claim about it.
+"""Search for growing waves that take energy out of a two-port: such a wave refutes a claim.
 
 The search starts near frequencies and rates with a negative margin, near poles, and in the open
-right half plane. Where stability is claimed, port 2 has a passive termination.
+right half plane. For a claim of stability, one port has a passive termination.
 """
 
 from __future__ import annotations
@@ -25,21 +25,25 @@ from .two_port import TwoPort, passive_margin
 
 
 def as_rational(system: TwoPort) -> sp.ImmutableMatrix:
-    """Z with rational coefficients, each entry coprime."""
+    """Z as a matrix of rational functions of s with rational coefficients, each entry coprime.
+
+    raises ModelError: an entry has a dead time
+    """
     rows = [[system.entry(i, j).expression for j in (1, 2)] for i in (1, 2)]
     return sp.ImmutableMatrix(rows)
 
 
 def select_fastest(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
-    """The wave that grows fastest against its frequency."""
+    """The wave that grows fastest relative to its frequency; None where there is no wave."""
     growing = [w for w in waves if w is not None]
     return max(growing, key=lambda w: w.rate / (w.frequency or w.rate), default=None)
 
 
 def find_wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:
-    """A growing wave at about that frequency (Hz), with the fastest growth of a halving sequence.
+    """A growing wave at about that frequency (Hz) that releases energy; None where there is none.
 
-    Down to 2^-30 of the frequency: a margin below that share is near rounding.
+    The rate of growth is halved until a wave releases energy, down to 2^-30 of the frequency: a
+    margin below this share is near rounding.
     """
     w = Fraction(2 * np.pi * frequency)
     for rate in halvings(8 * w, 33):
@@ -50,7 +54,7 @@ def find_wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:
 
 
 def _place_points(system: TwoPort) -> np.ndarray:
-    """Points of the right half plane, (n,), beside poles and far from them."""
+    """Points s of the right half plane at which the search looks, 1/s, (n,)."""
     if not system.has_delay:
         return points_of_growth(entries_of(as_rational(system)))
     ratios = [t.ratio for e in system.z for t in late_terms(e) or ()]
@@ -60,7 +64,11 @@ def _place_points(system: TwoPort) -> np.ndarray:
 def find_wave_between(
     system: TwoPort, frequencies: Sequence[float], rates: Sequence[float]
 ) -> GrowingWave | None:
-    """A growing wave beside those (Hz; 1/s), beside a pole or anywhere, the plainest of them."""
+    """A growing wave that takes energy out of the two ports; None where the search has no result.
+
+    The search looks beside the frequencies (Hz) and rates (1/s), beside poles and over the right
+    half plane. Points with a large share of released power and a moderate abs(s) come first.
+    """
     beside = [2 * np.pi * f * (2.0**-k + 1j) for f in frequencies for k in range(33)]
     points = np.concatenate([_place_points(system), beside, rates])
     z = system.at(points)
@@ -83,7 +91,7 @@ def find_wave_between(
 
 
 def _takes_energy_out(system: TwoPort, at: Gaussian) -> bool:
-    """Whether the Hermitian part of Z is not positive semidefinite there, exactly."""
+    """Whether the Hermitian part of Z at the point is not positive semidefinite, exactly."""
     z11, z12, z21, z22 = (value_at(one, at) for one in entries_of(as_rational(system)))
     if z11 is None or z12 is None or z21 is None or z22 is None:
         return False
@@ -92,7 +100,10 @@ def _takes_energy_out(system: TwoPort, at: Gaussian) -> bool:
 
 
 def terminate_elsewhere(system: TwoPort) -> Iterator[tuple[str, GrowingWave]]:
-    """As `terminate`, beside poles and in the open right half plane."""
+    """A passive termination and a wave as of `terminate`, at points beside poles and far from them.
+
+    Yields one pair at most.
+    """
     points = _place_points(system)
     values = list(system.at(points).reshape(-1, 4).T)
     for s, second, turned in candidates(values, points)[:40]:
@@ -106,7 +117,11 @@ def terminate_elsewhere(system: TwoPort) -> Iterator[tuple[str, GrowingWave]]:
 
 
 def terminate(system: TwoPort, frequency: float) -> Iterator[tuple[str, GrowingWave]]:
-    """Passive terminations of port 2 with which port 1 releases energy, and the wave."""
+    """Passive terminations with which the other port releases energy, and the wave.
+
+    frequency: where to look, Hz
+    yields: the termination of port 2 in words (port 2 "moved": port 1 has it), and the wave
+    """
     z = system.z
     value = system.over(np.array([frequency]))[0]
     choices: list[tuple[str, sp.Expr]] = [("clamped", z[0, 0])]
@@ -129,7 +144,7 @@ def terminate(system: TwoPort, frequency: float) -> Iterator[tuple[str, GrowingW
 
 
 def _realise_reactance(reactance: float, w: float) -> sp.Expr:
-    """A mass m s or a spring k/s of that reactance (N s/m) at w rad/s."""
+    """A mass m s or a spring k/s whose reactance at w rad/s is the given one, N s/m."""
     size = sp.Rational(Fraction(abs(reactance) * w ** (-1 if reactance > 0 else 1)))
     rounded = sp.Rational(str(Fraction(str(size)).limit_denominator(10**9)))
     return rounded * S if reactance > 0 else rounded / S

@@ -21,7 +21,7 @@ from .formulas import formula
 from .network import MINUS, Net, Network, Node, join_names
 from .shapes import Run, symbol
 
-MOST_INPUTS = 3  # of a circle, a box, a bar: from behind, from above, from below
+MOST_INPUTS = 3  # most inputs of a circle, a box, a bar: from behind, from above, from below
 
 
 def network(diagram: Diagram) -> Network:

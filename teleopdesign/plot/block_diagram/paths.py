@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from .network import Network
 
-LONGEST = 12  # nodes of a path: longer ones would make a drawing of one row
-MOST_STEPS = 4000  # of a search for a longest path; more would not be seen in the drawing
+LONGEST = 12  # most nodes of a path: a longer one would make a drawing of one row
+MOST_STEPS = 4000  # most steps of a search for a longest path; more would not change the drawing
 
 
 @dataclass(frozen=True)

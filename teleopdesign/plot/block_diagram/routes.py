@@ -18,10 +18,11 @@ from .network import Net, Network
 Vertex = tuple[int, int]
 #: steps right, down, left, up
 STEPS: tuple[Vertex, ...] = ((1, 0), (0, 1), (-1, 0), (0, -1))
-BEND, CROSSING, TAKE_OFF, AGAIN = 5.0, 9.0, 2.0, 0.5  # AGAIN: a second one at the same place
+BEND, CROSSING, TAKE_OFF, AGAIN = 5.0, 9.0, 2.0, 0.5  # AGAIN: a second branch at the same place
 #: lengths on the grid: between lines side by side, and from a cell's middle to the next line
 BESIDE, MIDDLE = 1.0, 4.0
-#: lines between cells, more where fewer leave no way; each with some orders, what failed first
+#: lines between cells, more of them if no route exists; each number is tried with several orders in
+#: which wires that failed come first
 TRACKS, TRIALS = (3, 5, 8, 12), 4
 #: a name from outside may leave its text to any side, best to the right
 BESIDE_RIGHT = 3.0
