@@ -108,7 +108,7 @@ def released_energy(
     step = min(max(min(shortest / _FINE, 1e-4), duration / _MOST), period) / finer
     if duration / step > _LONGEST:
         raise ModelError(
-            f"given_out: {duration / step:.3g} steps of simulation, at most {_LONGEST:g}: "
+            f"released_energy: {duration / step:.3g} steps of simulation, at most {_LONGEST:g}: "
             "ask for fewer rounds or more speed"
         )
     motion, force = port
