@@ -221,12 +221,15 @@ def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) 
     """Standard errors that hold under residuals correlated within a block (sandwich estimate).
 
     jacobian: (rows, p);  residual: (rows,);  blocks: block number of each row
-    NaN where the parameter cannot be distinguished from the others
+    NaN where the parameter cannot be distinguished from the others, and for all parameters where
+        a search diverged until numbers overflow
     """
     p = jacobian.shape[1]
     if p == 0:
         return np.zeros(0)
     norm = np.linalg.norm(jacobian, axis=0)
+    if not (np.isfinite(norm).all() and np.isfinite(residual).all()):
+        return np.full(p, np.nan)
     sensitive = norm > 0
     scaled = jacobian[:, sensitive] / norm[sensitive]
     bread = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)

@@ -101,3 +101,15 @@ def test_a_parameter_without_effect_has_no_standard_error():
     errors = standard_errors(jacobian, noise(rng), BLOCKS)
     assert np.isfinite(errors[0]) and np.isnan(errors[1])
     assert standard_errors(np.zeros((N, 0)), noise(rng), BLOCKS).shape == (0,)
+
+
+@pytest.mark.parametrize("size", [1e160, np.inf, np.nan])
+def test_a_search_that_ran_off_leaves_no_standard_error_and_no_traceback(size):
+    """A gain and a force that grow together leave the figure as it is, until numbers overflow."""
+    rng = np.random.default_rng(7)
+    jacobian = np.column_stack([np.ones(N), rng.standard_normal(N)])
+    spoiled = jacobian.copy()
+    spoiled[:, 1] *= size
+    with np.errstate(over="ignore", invalid="ignore"):
+        assert np.isnan(standard_errors(spoiled, noise(rng), BLOCKS)).all()
+        assert np.isnan(standard_errors(jacobian, np.full(N, np.nan), BLOCKS)).all()
