@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from .rung import Rung
 
 
+#: noise floors from which their number means nothing: the floor is then next to zero, for no noise
+#: of the force is stated, and real logs have some
+MANY_FLOORS = 1000
+
+
 def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> str:
     """The ladder as a table of a notebook;  floor: relative noise floor;  note: below the table."""
     rows = [
@@ -160,6 +165,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
+    if diagnosis.left > MANY_FLOORS:
+        lines.append(f"{'':<42}the floor holds no noise of the force: state noise at its channel")
     if (near := diagnosis.near_reversals) is not None:
         lines.append(f"check error {near}")
     if diagnosis.learnable is not None:
@@ -191,24 +198,29 @@ def _records_line(diagnosis: Diagnosis) -> str:
     )
 
 
+def say_floors(left: float) -> str:
+    """An error in noise floors, in words: no number where it only says that the floor is zero."""
+    return f"{left:.1f}" if left <= MANY_FLOORS else f"more than {MANY_FLOORS}"
+
+
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict in words."""
-    left = diagnosis.left
-    more = f" The remaining error is {left:.1f} noise floors: more is missing.{_nearest(diagnosis)}"
+    left = say_floors(diagnosis.left)
+    more = f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"
     if diagnosis.may_be_noise:
         more = (
-            f" The remaining error is {left:.1f} noise floors of {100 * diagnosis.floor.value:.3g} "
+            f" The remaining error is {left} noise floors of {100 * diagnosis.floor.value:.3g} "
             f"%. With this model sensor errors leave {100 * diagnosis.floor.drawn:.3g} %: these "
             "records do not tell whether more is missing."
         )
     rest = more if diagnosis.more_is_missing else ""
     if (moment := diagnosis.moment) is not None:
         rest = (
-            f" The remaining error is {left:.1f} noise floors, but {moment.without:.1f} without "
-            f"one moment ({moment})."
+            f" The remaining error is {left} noise floors, but {say_floors(moment.without)} "
+            f"without one moment ({moment})."
         )
     if diagnosis.verdict == "model_adequate":
-        noise = f" The remaining error is noise ({left:.2f} noise floors)."
+        noise = f" The remaining error is noise ({diagnosis.left:.2f} noise floors)."
         return f"verdict: model_adequate.{rest or noise}"
     if diagnosis.verdict == "effects_missing":
         added = [r for r in diagnosis.rungs if r.added is not None]
@@ -228,19 +240,19 @@ def sentence(diagnosis: Diagnosis) -> str:
         names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided, leading candidate {names}: less likely than not, because "
-            f"{left:.1f} noise floors are left."
+            f"{left} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
         names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided. {names} help, but explain less than half of what is missing: "
-            f"{left:.1f} noise floors are left."
+            f"{left} noise floors are left."
         )
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
         return f"verdict: undecided between {names}: these records cannot tell.{rest}"
     return (
-        f"verdict: undecided. No effect tried explains the {left:.1f} noise floors that are left."
+        f"verdict: undecided. No effect tried explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"
     )
 

@@ -6,6 +6,7 @@ import math
 import re
 
 from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.ladder_text import MANY_FLOORS
 from ..diagnose.rung import Rung
 from ..measurement.experiment import Experiment
 
@@ -102,10 +103,15 @@ def describe_judgement(experiment: Experiment) -> str:
     return "blocks of the records that were held out of the fit"
 
 
+def _floors(left: float) -> str:
+    """An error in noise floors; no number where the floor is next to zero."""
+    return number(left, 2) if left <= MANY_FLOORS else f"more than {MANY_FLOORS}"
+
+
 def verdict(diagnosis: Diagnosis) -> str:
     """The verdict in a sentence or two."""
     before, after = diagnosis.before.check_error, diagnosis.after.check_error
-    floor, left = percent(diagnosis.floor.value), number(diagnosis.left, 2)
+    floor, left = percent(diagnosis.floor.value), _floors(diagnosis.left)
     fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "
     fell += f"{percent(before)} to {percent(after)}"
     added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
@@ -124,7 +130,7 @@ def verdict(diagnosis: Diagnosis) -> str:
     if (moment := diagnosis.moment) is not None:
         rest = (
             f"The remaining error is {left} times what sensor noise alone would leave, "
-            f"{number(moment.without, 2)} times without one moment ({moment})."
+            f"{_floors(moment.without)} times without one moment ({moment})."
         )
     if diagnosis.verdict == "model_adequate":
         return (
