@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arguments import check_types
 from ..errors import ExperimentError, did_you_mean, quote
-from ..quantity import AXES, unit_of
+from ..quantity import AXES, is_unit, unit_of
 from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
-from .column_names import likeness, unit_in_name
+from .column_names import likeness, unfit_unit, unit_in_name, unit_of_text, why_no_unit
 from .description import BodyDescription, ModelValue, bodies_from
 from .doors._log import Log
 from .experiment import Experiment
@@ -204,7 +204,14 @@ def channel_table(
     if "unit" in table or not isinstance(column, str):
         return table
     quantity = BODY_QUANTITIES[key]
-    unit = units.get(column) or log.units.get(column) or unit_in_name(column, quantity, axis)
+    said = units.get(column) or log.units.get(column)
+    unit = said if said is None or is_unit(said) else unit_of_text(said) or said
+    unit = unit or unit_in_name(column, quantity, axis)
+    if unit is None and (text := unfit_unit(column)):
+        raise ExperimentError(
+            f"{_WHERE}: {key}: {why_no_unit(column, None, quantity, axis)}: state it, such as "
+            f"units={{{column!r}: {unit_of(quantity, axis)!r}}}, if {text!r} is to be read so"
+        )
     return {**table, "unit": unit or unit_of(quantity, axis)}
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ...quantity import measures, si_factor
-from ..column_names import is_another_quantity, is_wanted, likeness, words_of
+from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from .content import (
@@ -297,4 +297,5 @@ def _position_unit(
         unit = "deg" if reach > 50 else "rad"
     else:
         unit = "mm" if reach > 3 else "m"
-    return unit, f"{unit}, from its range of {reach:.3g}: its name states no unit"
+    why = why_no_unit(column.name, column.unit, "position", axis)
+    return unit, f"{unit}, from its range of {reach:.3g}: {why}"
