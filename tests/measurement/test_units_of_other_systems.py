@@ -8,6 +8,7 @@ from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.column_names import unfit_unit, unit_in_name
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.value_text import motor_constant
 from teleopdesign.quantity import to_si
 
 T = np.arange(1500) / 500.0
@@ -120,3 +121,31 @@ def test_a_unit_of_arrays_may_be_written_as_motors_sheets_do():
         data, axis="revolute", position="q", actuator_force="u", units={"u": "oz-in"}, inertia=0.02
     )
     assert made.records[0].signals["device.actuator_force"] == pytest.approx(U)
+
+
+@pytest.mark.parametrize(
+    ("text", "axis"),
+    [
+        ("23.4 mNm/A", "revolute"),
+        ("0.0234 N m/A", "revolute"),
+        ("3.31 oz-in/A", "revolute"),
+        ("12 N/A", "prismatic"),
+        ("2.7 lbf/A", "prismatic"),
+    ],
+)
+def test_a_torque_constant_turns_the_axis_in_whatever_unit(text, axis):
+    """Only "N*m/A" did: a data sheet's "mNm/A" made the axis prismatic, and was then refused."""
+    columns = {"t": T, "x": Q, "i_A": U}
+    survey = look(columns, torque_constant=motor_constant(text, where="--torque-constant"))
+    assert survey.axis == axis
+
+
+@pytest.mark.parametrize("text", ["12", "3 A", "0.02 kg/A", "0.02 Nm/s", "Nm/A", "1e999 Nm/A"])
+def test_what_is_no_torque_constant_is_refused(text):
+    with pytest.raises(ExperimentError, match="such as"):
+        motor_constant(text, where="--torque-constant")
+
+
+def test_forces_in_a_torques_unit_turn_the_axis():
+    assert look({"t": T, "x": Q, "u [mNm]": 1e3 * U}).axis == "revolute"
+    assert look({"t": T, "x": Q, "u [lbf]": U}).axis == "prismatic"
