@@ -73,7 +73,7 @@ WORDS: dict[str, tuple[str, ...]] = {
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
         "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps",
     ),
-    "segment": ("segment", "run", "trial"),
+    "segment": ("segment", "run", "trial", "repetition", "versuch", "essai"),
 }  # fmt: skip
 #: place in these lists from which words count alike: still sure
 LAST_RANK = 12
