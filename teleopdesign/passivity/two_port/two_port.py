@@ -135,7 +135,9 @@ class FrequencyMargins(ByValue):
         return Graph("frequency (Hz)", "Llewellyn's margin on the axis (1)", series)
 
 
-def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
+def sweep_margins(
+    system: TwoPort, frequency: np.ndarray | Sequence[float] | None = None
+) -> FrequencyMargins:
     """Both margins over frequency (Hz), default 1e-4 to 1e4, 4001 points.
 
     frequency: (n,), Hz;  returns: passive margin (n,), N s/m, >= 0 where passive, and Llewellyn's
