@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 #: part of the rows without a number in some cell above which a log is refused: a column that is
 #: mostly empty is another column, or belongs to a slower clock
 MOST_EMPTY = 0.2
+#: what to do with such a column
+OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table beside, in a folder"
 #: standard errors by which the position must tell whether stamps are true
 SURE = 3.0
 
@@ -121,7 +123,7 @@ def _filled_rows(
                 raise ExperimentError(
                     f"{name}: channels.{short}: column {quote(column)}, row {row + 1}: found "
                     f"{columns.values[column][row]:g}, and no number in {bad.mean():.0%} of the "
-                    f"rows, expected at most {MOST_EMPTY:.0%}"
+                    f"rows, expected at most {MOST_EMPTY:.0%}; {OF_ANOTHER_CLOCK}"
                 )
             filled &= ~bad
     return filled

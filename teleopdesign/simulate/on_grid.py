@@ -46,7 +46,7 @@ def input_table(
     table = np.zeros((max(len(names), 1), len(time)))
     for i, name in enumerate(names):
         value = signals.get(name, 0.0)
-        row = _over_time(value, time) if callable(value) else np.asarray(value, dtype=float)
+        row = _evaluate_at(value, time) if callable(value) else np.asarray(value, dtype=float)
         if row.ndim and row.shape != time.shape:
             raise ModelError(
                 f'simulate: input "{name}" has {len(row)} samples, expected {len(time)}'
@@ -55,7 +55,7 @@ def input_table(
     return table
 
 
-def _over_time(function: Callable[[np.ndarray], np.ndarray], time: np.ndarray) -> np.ndarray:
+def _evaluate_at(function: Callable[[np.ndarray], np.ndarray], time: np.ndarray) -> np.ndarray:
     """A function of time at times (n,): called once, or time by time where it takes one number.
 
     `lambda t: 1.0 if t > 0.5 else 0.0` and functions of `math` take one number.
