@@ -200,6 +200,11 @@ def unit_of_text(text: str) -> str | None:
     return text if is_unit(text) and not text.isdigit() else None
 
 
+def as_unit(text: str) -> str:
+    """A unit that a person states: as it is, or as loggers and motors' sheets write it."""
+    return text if is_unit(text) else unit_of_text(text) or text
+
+
 def _suits(unit: str, quantity: str, axis: str) -> bool:
     if unit == "counts":
         return quantity == "position"

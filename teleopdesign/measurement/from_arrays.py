@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arguments import check_types
 from ..errors import ExperimentError, did_you_mean, quote
-from ..quantity import AXES, is_unit, unit_of
+from ..quantity import AXES, unit_of
 from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
-from .column_names import likeness, unfit_unit, unit_in_name, unit_of_text, why_no_unit
+from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, ModelValue, bodies_from
 from .doors._log import Log
 from .experiment import Experiment
@@ -213,8 +213,7 @@ def channel_table(
         return table
     quantity = BODY_QUANTITIES[key]
     said = units.get(column) or log.units.get(column)
-    unit = said if said is None or is_unit(said) else unit_of_text(said) or said
-    unit = unit or unit_in_name(column, quantity, axis)
+    unit = as_unit(said) if said else unit_in_name(column, quantity, axis)
     if unit is None and (text := unfit_unit(column)):
         raise ExperimentError(
             f"{_WHERE}: {key}: {why_no_unit(column, None, quantity, axis)}: state it, such as "

@@ -149,3 +149,10 @@ def test_what_is_no_torque_constant_is_refused(text):
 def test_forces_in_a_torques_unit_turn_the_axis():
     assert look({"t": T, "x": Q, "u [mNm]": 1e3 * U}).axis == "revolute"
     assert look({"t": T, "x": Q, "u [lbf]": U}).axis == "prismatic"
+
+
+def test_a_unit_that_is_typed_is_read_as_one_in_a_name():
+    survey = look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-in"})
+    assert survey.channels["actuator_force"]["unit"] == "ozf*in"
+    with pytest.raises(ExperimentError, match="found 'oz-inn', expected a unit"):
+        look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-inn"})

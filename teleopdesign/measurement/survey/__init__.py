@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
+from ..column_names import as_unit
 from ..doors._log import Log, join_names
 from ..wrapped_stamps import unwrap_stamps
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
@@ -54,6 +56,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
             raise ExperimentError(
                 f"{file}: {key}: {why}, found {join_names(raw)}{did_you_mean(name, raw)}"
             )
+    choices = replace(choices, units={n: as_unit(u) for n, u in choices.units.items()})
     _check_units(choices, raw, file)
     _check_numbers(choices, file)
     guesses: dict[str, str] = {}
