@@ -85,6 +85,11 @@ def unit_of(quantity: str, axis: str) -> str:
     return _kind(quantity, axis, "").units[0]
 
 
+def noun_of(quantity: str, axis: str) -> str:
+    """What `quantity` is called on `axis`: "a torque"; errors as those of `unit_of`."""
+    return _kind(quantity, axis, "").noun
+
+
 def unit_after_number(unit: str) -> str:
     """A unit as it stands behind a number: " N*m"; nothing where the number has no dimension."""
     return "" if unit in ("", "1") else f" {unit}"

@@ -50,6 +50,13 @@ SYMBOLS = {
     "turn": ParsedUnit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
     "turns": ParsedUnit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
     "rpm": ParsedUnit(2 * math.pi / 60, (0, 0, -1, 0, 0, 1)),
+    "in": ParsedUnit(0.0254, (0, 1, 0, 0, 0, 0)),
+    "inch": ParsedUnit(0.0254, (0, 1, 0, 0, 0, 0)),
+    "ft": ParsedUnit(0.3048, (0, 1, 0, 0, 0, 0)),
+    "gf": ParsedUnit(9.80665e-3, (1, 1, -2, 0, 0, 0)),
+    "kgf": ParsedUnit(9.80665, (1, 1, -2, 0, 0, 0)),
+    "lbf": ParsedUnit(0.45359237 * 9.80665, (1, 1, -2, 0, 0, 0)),
+    "ozf": ParsedUnit(0.45359237 * 9.80665 / 16, (1, 1, -2, 0, 0, 0)),
     **_PREFIXED,
 }
 SYMBOLS |= {
@@ -60,7 +67,10 @@ SYMBOLS |= {
     and prefix + name not in SYMBOLS  # "min" and the like are no prefixed unit
 }
 
-_TOKEN = re.compile(r"\s*(\*\*|[*·/^()²³]|[A-Za-zµμ°%]+|[-+]?\d+)")
+#: a point or a hyphen between letters is a product: "N.m", "N-m"; behind a slash it is ambiguous
+_TOKEN = re.compile(r"\s*(\*\*|[*·⋅/^()²³]|[A-Za-zµμ°%]+|[-+]?\d+|(?<=[A-Za-z])[.-](?=[A-Za-z]))")
+_BETWEEN_LETTERS = (".", "-")
+_TIMES = ("*", "·", "⋅", *_BETWEEN_LETTERS)
 _LONGEST_UNIT = 60  # characters; also bounds the nesting of brackets
 _LARGEST_POWER = 4
 _SCALES = (1e-40, 1e40)
@@ -107,9 +117,13 @@ def multiply(unit: ParsedUnit, factor: ParsedUnit, power: int, text: str) -> Par
 def _product(tokens: list[str], text: str) -> tuple[ParsedUnit, list[str]]:
     """Product and quotient from left to right, up to the end or a closing bracket."""
     unit, tokens = _factor(tokens, text)
+    divided = False
     while tokens and tokens[0] != ")":
         sign = -1 if tokens[0] == "/" else 1
-        if tokens[0] in ("*", "·", "/"):
+        divided |= tokens[0] == "/"
+        if divided and tokens[0] in _BETWEEN_LETTERS:
+            raise NotAUnit(text)
+        if tokens[0] in (*_TIMES, "/"):
             tokens = tokens[1:]
         factor, tokens = _factor(tokens, text)
         unit = multiply(unit, factor, sign, text)

@@ -77,7 +77,7 @@ class Preview:
 
     def spans(self) -> FitAndCheck:
         """The fit and check spans that are proposed, s from the first row, within the log."""
-        (begin, cut), (after, _) = spans_of(self.survey.duration)
+        (begin, cut), (after, _) = spans_of(self.survey.duration, self.survey.trials)
         return (begin, cut), (after, self.survey.duration)
 
     def plot(self, spans: FitAndCheck | None = None) -> Figure:
@@ -92,7 +92,7 @@ class Preview:
         shown = [
             (key, entry)
             for key, entry in self.survey.channels.items()
-            if key != "time" and entry.get("column") in self.survey.columns
+            if key not in ("time", "segment") and entry.get("column") in self.survey.columns
         ]
         figure = Figure(figsize=(8.5, 1.5 * max(1, len(shown))), layout="constrained")
         panels = figure.subplots(max(1, len(shown)), 1, sharex=True, squeeze=False)[:, 0]

@@ -146,7 +146,7 @@ def survey_text(survey: Survey, name: str) -> str:
         rest = {k: v for k, v in entry.items() if k not in said}
         more = ", ".join(f"{k} {_shorten(v)}" for k, v in rest.items())
         column = f'"{entry["column"]}"' if "column" in entry else _shorten(entry)
-        unit = f" in {entry['unit']}" if "column" in entry else ""
+        unit = f" in {entry['unit']}" if "unit" in entry and "column" in entry else ""
         lines.append(f"  {key:<18} {column}{unit}{', ' + more if more else ''}")
     lines += [f"  {note}" for note in survey.notes]
     if survey.unused:

@@ -21,6 +21,7 @@ from ..names import check_name
 from ..notebook import html_table
 from ..quantity import QUANTITIES
 from .junctions import Junction, Kinematics, Weight, position_symbol
+from .one_axis import require_one_axis
 from .part_text import list_laws, write_equation
 from .parts import AnyBlock, Attached, Block, Control, Linked, Moving, Part
 
@@ -76,6 +77,7 @@ class Diagram:
                     f'{self.name}: {where}: nothing makes signal "{signal}"'
                     f"{did_you_mean(signal, made)}"
                 )
+        require_one_axis(self.name, self.blocks, self.kinematics, self.junctions)
         for name in ("outside", "texts", "pose"):
             object.__setattr__(self, name, Frozen(getattr(self, name)))
 

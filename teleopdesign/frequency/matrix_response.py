@@ -59,7 +59,7 @@ def matrix_response(
     diagram: Diagram,
     outputs: Sequence[str],
     inputs: Sequence[str],
-    frequency: np.ndarray,
+    frequency: np.ndarray | Sequence[float],
     *,
     given: Sequence[str] = (),
     speed: float = 0.0,

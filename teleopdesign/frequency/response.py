@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -105,7 +105,7 @@ def bode(
     output: str = "R_M",
     input: str = "R_D",
     given: str | tuple[str, ...] = "",
-    frequency: np.ndarray | None = None,
+    frequency: np.ndarray | Sequence[float] | None = None,
     speed: float = 0.0,
 ) -> FrequencyResponse:
     """Frequency response from one signal to another, for one diagram or several cases.
@@ -117,6 +117,8 @@ def bode(
     """
     cases = cases_of(diagrams)
     f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
+    if f.ndim != 1 or not np.all(np.isfinite(f)) or np.any(f < 0):
+        raise ModelError("bode: frequency: expected numbers in Hz from 0, in one row")
     rows, left_out = [], {}
     for name, diagram in cases.items():
         expression, linear = with_values(

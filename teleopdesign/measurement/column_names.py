@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import unicodedata
 
-from ..quantity import is_unit, measures
+from ..quantity import is_unit, measures, noun_of
 from .conversion import COUNTS
 from .doors._log import bare_column
 
@@ -27,10 +28,17 @@ ALIASES = {
     "米/秒": "m/s", "ミリ秒": "ms", "ラジアン": "rad", "도": "deg", "days": "day",
     "tage": "day", "jours": "day", "grad/s": "deg/s", "grad/sec": "deg/s", "degree/s": "deg/s",
     "degrees/s": "deg/s", "newtonmeter": "Nm", "sekunde": "s", "millisekunden": "ms",
-    "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm",
+    "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
+    "inches": "in", "lb": "lbf", "lbs": "lbf",
     "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
 }  # fmt: skip
 _BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])([^()\[\]{}]++)[)\]}]\s*+$")
+#: a torque as a weight at a lever: "oz-in", "ft lbs", "kg*cm", as motors' sheets write it
+_WEIGHT_AT_LEVER = re.compile(
+    r"(?P<weight>oz|lb|kg)s?[-*·⋅. ]?(?P<lever>in|ft|cm)"
+    r"|(?P<arm>in|ft|cm)[-*·⋅. ]?(?P<load>oz|lb|kg)s?",
+    re.I,
+)
 #: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
 _OF_TWO = re.compile(
     r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
@@ -65,7 +73,7 @@ WORDS: dict[str, tuple[str, ...]] = {
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
         "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps",
     ),
-    "segment": ("segment", "run", "trial"),
+    "segment": ("segment", "run", "trial", "repetition", "versuch", "essai"),
 }  # fmt: skip
 #: index in these lists from which all words count as equally certain
 LAST_RANK = 12
@@ -93,6 +101,13 @@ OTHER_QUANTITIES = frozenset(
     "pressure press druck pression bar mbar psi pa kpa mpa hpa temperature temp temperatur celsius "
     "degc kelvin humidity flow".split()
 )
+
+#: units that are words or parts of names as well: "x_in" is an input, "hand_ft" force and torque
+_ONLY_IN_BRACKETS = ("in", "ft")
+#: most letters of a text in brackets that may be a unit, without a sign of a product
+_UNIT_LETTERS = 5
+#: least letters of a name that is a unit and nothing else; a shorter one is a symbol such as "s"
+_WHOLE_NAME = 3
 
 #: beginnings of words with the same meaning as in WANTED: "Sollwinkel", "targetPosition"
 WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consigne", "目標", "指令")
@@ -125,14 +140,54 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
         unit = unit_of_text(text.group(1))
         if unit is None or not sure and len(text.group(1)) < 2 and quantity is None:
             continue
+        if not sure and unit in _ONLY_IN_BRACKETS:
+            continue
         if quantity is None or _suits(unit, quantity, axis):
             return unit
-    return None
+    whole = unit_of_text(name) if len(name) >= _WHOLE_NAME else None  # "counts", "volts"
+    return whole if whole and (quantity is None or _suits(whole, quantity, axis)) else None
+
+
+def unfit_unit(name: str) -> str | None:
+    """What a name writes in brackets at its end or behind a slash, where that may be a unit.
+
+    Asked where `unit_in_name` finds no unit of the column's quantity: "Hand [N]" of a torque,
+    "Pos [px]". A word such as "(filtered)" or "(cmd)" is none.
+    """
+    name = bare_column(name)
+    match = _BRACKETS.search(name) or _SLASH.search(name)
+    if match is None:
+        return None
+    text = match.group(1).strip()
+    if unit_of_text(text) is not None or not text.isalpha() and any(map(str.isalpha, text)):
+        return text
+    words = {*itertools.chain.from_iterable(WORDS.values()), *WANTED}
+    short = text.isalpha() and len(text) <= _UNIT_LETTERS
+    return text if short and text.lower() not in words else None
+
+
+def why_no_unit(name: str, said: str | None, quantity: str, axis: str) -> str:
+    """Why the unit of a column is a guess: none is stated, none that is known, or another's.
+
+    said: in a row of units, or as an attribute of the column
+    """
+    text = said or unfit_unit(name)
+    if text is None:
+        return f"the name {name!r} states no unit"
+    unit = unit_of_text(text)
+    if unit is None:
+        return f"{text!r}, of {name!r}, is no unit that is known"
+    lever = quantity == "force" and axis == "revolute" and measures(unit, "force")
+    arm = f": `scale` in experiment.toml is the torque of one {text}" if lever else ""
+    return f"{text!r}, of {name!r}, is no unit of {noun_of(quantity, axis)}{arm}"
 
 
 def unit_of_text(text: str) -> str | None:
     """A unit as a logger writes it ("degrees", "Amps", "ticks"); None: none."""
     text = text.strip()
+    if weight := _WEIGHT_AT_LEVER.fullmatch(text):
+        load, lever = weight["weight"] or weight["load"], weight["lever"] or weight["arm"]
+        return f"{load.lower()}f*{lever.lower()}"
     if text.lower() in ALIASES and not is_unit(text):
         return ALIASES[text.lower()]
     if text in (
@@ -144,6 +199,11 @@ def unit_of_text(text: str) -> str | None:
     if text in COUNTS:
         return "counts"
     return text if is_unit(text) and not text.isdigit() else None
+
+
+def as_unit(text: str) -> str:
+    """A unit that a person states: as it is, or as loggers and motors' sheets write it."""
+    return text if is_unit(text) else unit_of_text(text) or text
 
 
 def _suits(unit: str, quantity: str, axis: str) -> bool:

@@ -12,7 +12,7 @@ from ..arguments import check_types
 from ..errors import ExperimentError, did_you_mean, quote
 from ..quantity import AXES, unit_of
 from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
-from .column_names import likeness, unit_in_name
+from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, ModelValue, bodies_from
 from .doors._log import Log
 from .experiment import Experiment
@@ -38,6 +38,7 @@ def experiment(
     velocity: ChannelEntry | None = None,
     time: ChannelEntry | None = None,
     sample_rate: float | None = None,
+    segment: str | None = None,
     units: Mapping[str, str] | None = None,
     inertia: float | None = None,
     effects: Sequence[str] = ("coulomb", "viscous"),
@@ -53,6 +54,7 @@ def experiment(
     position, actuator_force, ...: the column, or a table as in [channels] of a file
         (`{"column": "i", "unit": "A", "torque_constant": {"value": 0.04, "unit": "N*m/A"}}`)
     time: default: the column or index that sounds like it;  sample_rate: Hz, in place of a time
+    segment: the column that numbers trials: hidden states start anew at each
     units: column -> unit; default: what the column's name ends with ("Pos (deg)"), or SI
     inertia: kg or kg*m^2; default: estimated from the data, as are the friction's first values
     effects: those of the model;  fit, check: spans (begin, end) in s from the first row, or one
@@ -66,11 +68,7 @@ def experiment(
         "interaction_force": interaction_force,
         "velocity": velocity,
     }
-    if axis not in AXES:
-        raise ExperimentError(
-            f"{_WHERE}: axis: found {quote(axis)}, expected {' or '.join(map(quote, AXES))}"
-            f"{did_you_mean(axis, AXES)}"
-        )
+    _require_axis(axis)
     entered = {key: entry for key, entry in entries.items() if entry is not None}
     channels = {key: channel_table(e, key, axis, log, units or {}) for key, e in entered.items()}
     content: dict[str, Any] = {"channels": channels}
@@ -78,6 +76,8 @@ def experiment(
         channels["sample_rate"] = {"value": sample_rate, "unit": "Hz"}
     else:
         channels["time"] = _time_table(time, log, units or {})
+    if segment is not None:
+        channels["segment"] = {"column": segment}
     body: dict[str, Any] = {"axis": axis, "effects": {name: {} for name in effects}}
     if inertia is not None:
         body["inertia"] = inertia
@@ -88,6 +88,14 @@ def experiment(
         spans = [("fit", span) for span in _spans(fit, "fit")]
     spans += [("check", span) for span in _spans(check, "check")]
     return build_experiment(content, log, spans, title=title, bandwidth=bandwidth)
+
+
+def _require_axis(axis: str) -> None:
+    if axis not in AXES:
+        raise ExperimentError(
+            f"{_WHERE}: axis: found {quote(axis)}, expected {' or '.join(map(quote, AXES))}"
+            f"{did_you_mean(axis, AXES)}"
+        )
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
@@ -204,7 +212,13 @@ def channel_table(
     if "unit" in table or not isinstance(column, str):
         return table
     quantity = BODY_QUANTITIES[key]
-    unit = units.get(column) or log.units.get(column) or unit_in_name(column, quantity, axis)
+    said = units.get(column) or log.units.get(column)
+    unit = as_unit(said) if said else unit_in_name(column, quantity, axis)
+    if unit is None and (text := unfit_unit(column)):
+        raise ExperimentError(
+            f"{_WHERE}: {key}: {why_no_unit(column, None, quantity, axis)}: state it, such as "
+            f"units={{{column!r}: {unit_of(quantity, axis)!r}}}, if {text!r} is to be read so"
+        )
     return {**table, "unit": unit or unit_of(quantity, axis)}
 
 

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 #: a log is refused if more than this part of the rows lack a number in some cell: such a column is
 #: another column, or belongs to a slower clock
 MOST_EMPTY = 0.2
+#: what to do with such a column
+OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table beside, in a folder"
 #: standard errors from which the position decides whether the stamps are true
 SURE = 3.0
 
@@ -121,7 +123,7 @@ def _filled_rows(
                 raise ExperimentError(
                     f"{name}: channels.{short}: column {quote(column)}, row {row + 1}: found "
                     f"{columns.values[column][row]:g}, and no number in {bad.mean():.0%} of the "
-                    f"rows, expected at most {MOST_EMPTY:.0%}"
+                    f"rows, expected at most {MOST_EMPTY:.0%}; {OF_ANOTHER_CLOCK}"
                 )
             filled &= ~bad
     return filled

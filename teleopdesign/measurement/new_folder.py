@@ -110,7 +110,7 @@ def _records(
 ) -> list[dict[str, Any]]:
     if len(names) > 1:
         return [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
-    fit, check = spans_of(survey.duration) if spans is None else spans
+    fit, check = spans_of(survey.duration, survey.trials) if spans is None else spans
     return [
         {"file": names[0], "use": "fit", "span": fit},
         {"file": names[0], "use": "check", "span": check},

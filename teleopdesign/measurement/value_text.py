@@ -6,7 +6,8 @@ import math
 import re
 
 from ..errors import ExperimentError
-from ..quantity import is_unit
+from ..quantity import AXES, is_unit, measures
+from .column_names import unit_of_text
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)")
 
@@ -19,31 +20,24 @@ def split_value(text: str) -> tuple[float, str] | None:
     return float(match[1]), match[2].strip()
 
 
-def number_and_unit(text: str, *, where: str, example: str) -> tuple[float, str]:
-    """The number and the unit of a text such as "0.037 N*m/A", both required.
-
-    raises ExperimentError: no number, or no unit
-    """
-    parts = split_value(text)
-    if parts is None or not is_unit(parts[1]):
-        raise ExperimentError(
-            f'{where}: found {text!r}, expected a number and a unit such as "{example}"'
-        )
-    return parts
-
-
 def motor_constant(text: str, *, where: str) -> tuple[float, str]:
     """A motor's constant such as "0.037 N*m/A" or "12 N/A".
 
     raises ExperimentError: no number, or another unit
     """
-    value, unit = number_and_unit(text, where=where, example="0.037 N*m/A")
-    if not unit.endswith(("/A", "/mA", "/V")):
+    parts = split_value(text)
+    force, _, per = (parts[1] if parts else "").rpartition("/")
+    force = unit_of_text(force) or ""
+    if parts is None or not (is_unit(parts[1]) or is_unit(f"{force}/{per}")):
         raise ExperimentError(
-            f"{where}: found the unit {unit!r}, expected a force or torque for each "
+            f'{where}: found {text!r}, expected a number and a unit such as "0.037 N*m/A"'
+        )
+    if not any(measures(force, "force", axis) for axis in AXES) or per not in ("A", "mA", "V"):
+        raise ExperimentError(
+            f"{where}: found the unit {parts[1]!r}, expected a force or torque for each "
             'ampere or volt, such as "N*m/A" or "N/A"'
         )
-    return value, unit
+    return parts[0], f"{force}/{per}"
 
 
 def plain_number(text: str, *, where: str) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -45,10 +46,22 @@ def input_table(
     table = np.zeros((max(len(names), 1), len(time)))
     for i, name in enumerate(names):
         value = signals.get(name, 0.0)
-        row = np.asarray(value(time) if callable(value) else value, dtype=float)
+        row = _evaluate_at(value, time) if callable(value) else np.asarray(value, dtype=float)
         if row.ndim and row.shape != time.shape:
             raise ModelError(
                 f'simulate: input "{name}" has {len(row)} samples, expected {len(time)}'
             )
         table[i] = row
     return table
+
+
+def _evaluate_at(function: Callable[[np.ndarray], np.ndarray], time: np.ndarray) -> np.ndarray:
+    """A function of time at times (n,): called once, or time by time where it takes one number.
+
+    `lambda t: 1.0 if t > 0.5 else 0.0` and functions of `math` take one number.
+    """
+    try:
+        return np.asarray(function(time), dtype=float)
+    except (TypeError, ValueError):
+        one_by_one: Callable[[float], Any] = function  # type: ignore[assignment]
+        return np.array([float(one_by_one(t)) for t in time.tolist()])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..diagrams import Diagram, with_shared_states
+from ..diagrams import Diagram, Moving, with_shared_states
 from ..errors import ModelError, did_you_mean
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer
@@ -52,6 +52,7 @@ def prepare(
                 f'{diagram.name}: "{name}" is not from outside, inputs are '
                 f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
             )
+    _refuse_results(diagram, inputs, motion)
     positive = {"duration": duration, "step": step, "give": give}
     for name, value in positive.items():
         if not 0 < value < float("inf"):
@@ -65,6 +66,21 @@ def prepare(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
     return Setup(body, made, setting, duration, step, inputs, motion, initial)
+
+
+def _refuse_results(
+    diagram: Diagram, inputs: Mapping[str, Input], motion: Mapping[str, Trajectory]
+) -> None:
+    """Refuse the force that prescribes a motion as an input: it is what the motion takes."""
+    for block in diagram.blocks:
+        if not isinstance(block, Moving) or block.motion not in motion:
+            continue
+        force = inputs.get(block.driver, 0.0)
+        if callable(force) or np.any(force):
+            raise ModelError(
+                f"{diagram.name}: {block.driver} is the force that moves {block.motion} as "
+                "prescribed: it is a result, expected among the inputs or the motions, not in both"
+            )
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,12 +23,16 @@ TimeFunction = Callable[[np.ndarray], np.ndarray]
 class Trajectory:
     """A motion as functions of time (s): position (m or rad) and its two derivatives.
 
-    Each function takes and returns arrays (n,). `sine` and `sampled_motion` make one.
+    Each function takes and returns arrays (n,). `sine` and `sampled_motion` make one. Called with
+    times, it gives the position: as an input of a simulation it is a force that varies so.
     """
 
     position: TimeFunction
     velocity: TimeFunction
     acceleration: TimeFunction
+
+    def __call__(self, t: np.ndarray) -> np.ndarray:
+        return self.position(t)
 
     @property
     def all(self) -> tuple[TimeFunction, TimeFunction, TimeFunction]:

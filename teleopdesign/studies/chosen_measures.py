@@ -135,7 +135,9 @@ def _amount(value: Any, where: str) -> Amount:
     if isinstance(value, str):
         return Amount(value)
     if value is None:
-        return Amount(float("nan"), "")
+        raise ModelError(
+            f"measure {where}: returned nothing (None), expected a number (NaN: none) or a text"
+        )
     raise ModelError(
         f"measure {where}: found {describe_value(value)}, "
         "expected a number, a text, a mapping of names "

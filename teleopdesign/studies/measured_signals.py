@@ -11,10 +11,13 @@ import numpy as np
 from ..by_value import ByValue
 from ..errors import ModelError, did_you_mean
 from ..measurement import Record
-from ..simulate import Trajectory, sampled_motion
+from ..measurement.from_arrays import log_of
+from ..simulate import Simulation, Trajectory, sampled_motion
 
 #: fewest instants from which anything is fitted
 _FEWEST = 10
+#: durations of the data before them that nobody means to simulate: stamps of a clock
+_LATE = 10.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,11 +63,14 @@ class MeasuredSignals:
 
 
 def measured_signals(data: Any) -> MeasuredSignals:
-    """What was measured, from a mapping with "time", a data set over `time`, or a record.
+    """What was measured, from columns with "time", a data set over `time`, a record, a simulation.
 
     A record's time is counted from its first sample.
-    raises ModelError: no time, another shape, times that do not increase, a record with gaps
+    raises ModelError: no time, another shape, times that do not increase or that count from long
+        before the record, a record with gaps
     """
+    if isinstance(data, Simulation):
+        data = data.data
     if isinstance(data, Record):
         if len(data.segments) > 1:
             raise ModelError(
@@ -76,14 +82,26 @@ def measured_signals(data: Any) -> MeasuredSignals:
     elif hasattr(data, "data_vars") and "time" in data.coords:
         time = data["time"].values
         columns = {str(n): x.values for n, x in data.data_vars.items() if x.dims == ("time",)}
-    elif isinstance(data, Mapping) and "time" in data:
-        time, columns = data["time"], {n: x for n, x in data.items() if n != "time"}
     else:
-        raise ModelError(
-            'fit_simulation: data: expected a mapping with "time" (s), a Dataset over `time`, or '
-            f"a Record, found {type(data).__name__}"
-        )
+        columns = _named_columns(data)
+        if "time" not in columns:
+            raise ModelError(
+                'fit_simulation: data: expected a mapping with "time" (s), a DataFrame with such a '
+                "column or index, a Dataset over `time`, a Record or a Simulation, found "
+                f"{type(data).__name__}"
+            )
+        time = columns.pop("time")
     return _check_signals(time, columns)
+
+
+def _named_columns(data: Any) -> dict[str, Any]:
+    """Columns of a mapping or of a DataFrame, whose index may be the time; none of all else."""
+    if isinstance(data, Mapping):
+        return {str(n): x for n, x in data.items()}
+    if hasattr(data, "columns") or hasattr(data, "get_columns"):
+        log = log_of(data)
+        return dict(log.read(dict.fromkeys(log.names, "")))
+    return {}
 
 
 def _check_signals(time: Any, columns: Mapping[str, Any]) -> MeasuredSignals:
@@ -96,6 +114,11 @@ def _check_signals(time: Any, columns: Mapping[str, Any]) -> MeasuredSignals:
         raise ModelError(
             f"fit_simulation: time: expected {_FEWEST} or more instants (s) that increase from 0 "
             "or later; the simulation starts at 0"
+        )
+    if t[0] > _LATE * (t[-1] - t[0]):
+        raise ModelError(
+            f"fit_simulation: time: begins at {t[0]:g} s and lasts {t[-1] - t[0]:g} s; the "
+            "simulation starts at 0: subtract the instant at which it starts"
         )
     for name, array in arrays.items():
         if array.shape != t.shape:

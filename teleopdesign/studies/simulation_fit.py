@@ -144,7 +144,8 @@ def fit_simulation(
     """Values of parameters whose simulation follows measured signals, with standard errors.
 
     data: "time" (s; the simulation starts at 0) and samples by signal, SI, NaN where one lacks; a
-        Dataset over `time`; or a `Record`, whose time is counted from its first sample
+        DataFrame with such a column or index; a Dataset over `time`; a `Simulation`; or a `Record`,
+        whose time is counted from its first sample
     parameters: names of `SimulatedCase` -> (low, high); in logarithms where high is 10 low or more.
         "initial.L" and the like are parameters too
     signals: simulated signal -> its name in the data; default: all that have a simulated namesake

@@ -26,7 +26,7 @@ POSITIVE = st.floats(1e-6, 1e6)
 
 
 @st.composite
-def bodies(draw):
+def bodies(draw, axis):
     """A body known by its name, or with effects and values, some of them known."""
     if draw(st.booleans()):
         return ANY
@@ -37,7 +37,6 @@ def bodies(draw):
     for name in names:
         for parameter in effects[name].parameters:
             values[f"{name}.{parameter}"] = Value(draw(POSITIVE), draw(st.booleans()))
-    axis = draw(st.sampled_from(("prismatic", "revolute")))
     return Body(axis, values, tuple(effects[n] for n in names))
 
 
@@ -107,12 +106,13 @@ def diagrams(draw, *, geometry=False):
     weights = WEIGHTS | WEIGHTS | expressions(signals) if geometry else WEIGHTS
     weighted = st.dictionaries(signals, weights, max_size=5)
     outside = {s: draw(st.sampled_from(("force", "position"))) for s in made["o"]}
+    axis = draw(st.sampled_from(("prismatic", "revolute")))  # of all: others are refused
     blocks = [
-        Moving(f"M{x}", draw(bodies()), x, draw(signals), draw(terms), draw(signals))
+        Moving(f"M{x}", draw(bodies(axis)), x, draw(signals), draw(terms), draw(signals))
         for x in made["x"]
     ]
     blocks += [
-        Attached(f"Z{f}", draw(bodies()), draw(signals), f, draw(st.sampled_from((1, -1))))
+        Attached(f"Z{f}", draw(bodies(axis)), draw(signals), f, draw(st.sampled_from((1, -1))))
         for f in made["f"]
     ]
     blocks += [
@@ -126,8 +126,7 @@ def diagrams(draw, *, geometry=False):
         sign = draw(st.sampled_from((1, -1)))
         blocks.append(Linked(f"Z{i}", draw(matrices(size)), motions, forces, sign))
     junctions = tuple(Junction(j, draw(weighted)) for j in made["j"])
-    axes = st.sampled_from(("prismatic", "revolute"))
-    kinematics = tuple(Kinematics(k, draw(expressions(signals)), draw(axes)) for k in made["k"])
+    kinematics = tuple(Kinematics(k, draw(expressions(signals)), axis) for k in made["k"])
     pose = draw(st.dictionaries(signals, st.floats(-5, 5), max_size=2)) if geometry else {}
     measured = tuple(draw(st.lists(signals, unique=True, max_size=3)))
     texts = draw(st.dictionaries(signals, st.text(max_size=20), max_size=3))

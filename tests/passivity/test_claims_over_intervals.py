@@ -229,8 +229,8 @@ def test_a_delay_leaves_numbers_and_no_proof():
     ("intervals", "words"),
     [
         ({"Z_M.inertio": (0.1, 0.2)}, 'did you mean "Z_M.inertia"'),
-        ({"Z_M.inertia": (0.2, 0.1)}, "expected low <= high"),
-        ({"Z_M.inertia": (0.2, float("inf"))}, "expected low <= high"),
+        ({"Z_M.inertia": (0.2, 0.1)}, "expected finite low <= high"),
+        ({"Z_M.inertia": (0.2, float("inf"))}, "expected finite low <= high"),
     ],
 )
 def test_an_interval_that_is_none_is_refused(intervals, words):

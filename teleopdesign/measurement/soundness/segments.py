@@ -19,9 +19,11 @@ def check_segments(record: Record) -> list[Finding]:
     starts = np.array([record.time[s.start] for s in record.segments])
     ends = np.array([record.time[s.stop - 1] for s in record.segments])
     missing = starts[1:] - ends[:-1] - h
+    longest = max(float(missing.max()), 0.0)
+    pause = f"the longest gap {longest:.3g} s" if longest > h / 2 else "with no gap between them"
     numbers = {
         "segments": float(len(lengths)),
-        "longest_gap": float(missing.max()),
+        "longest_gap": longest,
         "too_short": float(short.sum()),
         "left_out": float(lengths[short].sum()),
     }
@@ -35,8 +37,8 @@ def check_segments(record: Record) -> list[Finding]:
         Finding(
             "gaps",
             "warning" if lengths[short].sum() > 0.1 * lengths.sum() else "note",
-            f"{len(lengths)} segments of {lengths.min():.3g} to {lengths.max():.3g} s, the longest "
-            f"gap {missing.max():.3g} s{left}. Hidden states start anew at each.",
+            f"{len(lengths)} segments of {lengths.min():.3g} to {lengths.max():.3g} s, {pause}"
+            f"{left}. Hidden states start anew at each.",
             numbers,
             record.file,
         )

@@ -9,15 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
+from ..column_names import as_unit
 from ..doors._log import Log, join_names
 from ..wrapped_stamps import unwrap_stamps
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
 from .position import axis_of, describe_position, find_position
+from .trials import longest_trial, name_trials
 from .unused import unused_columns
 
 __all__ = [
@@ -36,6 +39,8 @@ UNITS = (
 )
 #: part of a single log that is fitted; the rest is the check record
 FIT_PART = 0.6
+#: part of a log by which a cut moves to lie between two trials
+NEAR_CUT = 0.25
 
 
 def survey_log(log: Log, file: str, choices: Choices) -> Survey:
@@ -51,6 +56,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
             raise ExperimentError(
                 f"{file}: {key}: {why}, found {join_names(raw)}{did_you_mean(name, raw)}"
             )
+    choices = replace(choices, units={n: as_unit(u) for n, u in choices.units.items()})
     _check_units(choices, raw, file)
     _check_numbers(choices, file)
     guesses: dict[str, str] = {}
@@ -64,12 +70,15 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:
         survey.channels["sample_rate"] = {"value": choices.sample_rate or 1000.0, "unit": "Hz"}
+    name_trials(survey, raw)
+    survey.columns = longest_trial(survey)
     position, velocity = find_position(survey, time_name, choices, file)
     survey.axis = axis_of(survey, position, choices)
     describe_position(survey, position, velocity, choices)
     describe_forces(survey, position, velocity, time_name, choices, file)
     _units_in_use(survey, choices, file)
     survey.unused = unused_columns(log, raw, survey)
+    survey.columns = columns
     return survey
 
 
@@ -120,9 +129,16 @@ def _noun(key: str) -> str:
     return "force" if key.endswith("force") else key
 
 
-def spans_of(duration: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """(begin, end) in s of the fit record and of the check record in one log."""
-    cut = float(f"{FIT_PART * duration:.4g}")
+def spans_of(
+    duration: float, trials: Sequence[float] = ()
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(begin, end) in s of the fit record and of the check record in one log.
+
+    trials: where trials begin: the log is cut at one of them, if any lies near the usual cut
+    """
+    usual = FIT_PART * duration
+    near = [t for t in trials if abs(t - usual) < NEAR_CUT * duration]
+    cut = float(f"{min(near, key=lambda t: abs(t - usual), default=usual):.4g}")
     return (0.0, cut), (cut, math.floor(duration) + 1.0)
 
 

@@ -10,6 +10,7 @@ from ...errors import ExperimentError, quote
 from ...quantity import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text
 from ..doors._log import Log, join_names
+from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import numbers_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
@@ -40,13 +41,18 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         if finite > 0.5:
             raw[name] = values
         else:
-            is_one = len(values) == 1
-            unread[name] = "one value" if is_one else f"numbers in {finite:.0%} of its rows"
+            unread[name] = "one value" if len(values) == 1 else _explain_empty(finite)
     if not raw:
         raise ExperimentError(
             f"{file}: found no column of numbers among {join_names(log.names)}{reasons(unread)}"
         )
     return raw, unread
+
+
+def _explain_empty(finite: float) -> str:
+    """Why a column with this part of its rows filled is left out, and what to do about it."""
+    said = f"numbers in {finite:.0%} of its rows"
+    return f"{said}: {OF_ANOTHER_CLOCK}" if finite > 0 else said
 
 
 def _without_name(message: str, column: str, file: str) -> str:

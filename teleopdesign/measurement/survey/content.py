@@ -44,6 +44,7 @@ class Survey:
     explained: column that may be a force -> part of it that the motion explains (up to 1)
     remarks: lines of text above the table
     unused: column that is in no channel -> why;  unread: column without numbers -> why
+    trials: where the second and later trials begin, s from the first row
     """
 
     axis: str
@@ -58,6 +59,7 @@ class Survey:
     unused: dict[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     unread: dict[str, str] = field(default_factory=dict)
+    trials: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from ...quantity import measures, unit_of
-from ..column_names import unit_in_name
+from ..column_names import unit_in_name, why_no_unit
 from ..conversion import conversion_of
 from ..toml_table import Table
 from .acting import names_current, names_torque
@@ -51,7 +51,7 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         return entry
     if unit is None or not measures(unit, "force", axis):
         unit = unit_of("force", axis)
-        why = f"the name {name!r} states no unit"
+        why = why_no_unit(name, survey.columns[name].unit, "force", axis)
         if PER_CENT.search(name):
             why = f"{name!r} is in parts of a rated force: `scale` is one part in {unit}"
         survey.guesses[f"channels.{key}.unit"] = f"{unit}: {why}"

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ...quantity import measures, si_factor
-from ..column_names import is_another_quantity, is_wanted, likeness, words_of
+from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from .content import (
@@ -152,11 +152,16 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
             if measures(unit, "position", axis):
                 return axis
     if choices.torque_constant is not None:
-        return "revolute" if choices.torque_constant[1].startswith("N*m") else "prismatic"
+        force = choices.torque_constant[1].rpartition("/")[0]
+        return "revolute" if measures(force, "force", "revolute") else "prismatic"
     units = [c.unit for c in survey.columns.values() if c.unit]
     names = {word for name in survey.columns for word in words_of(name)}
-    if "N" in units or any(measures(u, "position") for u in units if u != "counts"):
-        why, axis = "forces are in N", "prismatic"
+    forces = [u for u in units if measures(u, "force")]
+    turned = [u for u in units if measures(u, "force", "revolute")]
+    if forces and not turned or any(measures(u, "position") for u in units):
+        why, axis = f"forces are in {forces[0] if forces else 'N'}", "prismatic"
+    elif turned and not forces:
+        why, axis = f"forces are in {turned[0]}", "revolute"
     else:
         words = words_of(position)
         turning = TURNING.intersection(words)
@@ -299,4 +304,5 @@ def _position_unit(
         unit = "deg" if reach > 50 else "rad"
     else:
         unit = "mm" if reach > 3 else "m"
-    return unit, f"{unit}, from its range of {reach:.3g}: its name states no unit"
+    why = why_no_unit(column.name, column.unit, "position", axis)
+    return unit, f"{unit}, from its range of {reach:.3g}: {why}"

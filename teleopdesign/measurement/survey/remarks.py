@@ -18,7 +18,7 @@ _COUNTS_PER_TURN = (
 )
 _TORQUE_CONSTANT = re.compile(
     r"(?:\bk_?[tm]\b|torque[ _]constant|drehmomentkonstante|constante de couple)\D{0,12}?"
-    r"(\d{1,9}(?:[.,]\d{1,9})?(?:e[-+]?\d{1,3})?)\s*([A-Za-z][A-Za-z*· ]{0,10})/\s*(m?A)\b",
+    r"(\d{1,9}(?:[.,]\d{1,9})?(?:e[-+]?\d{1,3})?)\s*([A-Za-z][A-Za-z*·⋅. -]{0,10})/\s*(m?A)\b",
     re.I,
 )
 #: "gear 50:1", "gear ratio = 50", "Getriebe i = 100"

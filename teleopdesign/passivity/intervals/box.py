@@ -92,7 +92,7 @@ def box_of(
             raise ModelError(f"{name}: found {describe_value(ends)}, expected (low, high)")
         if not all(math.isfinite(x) for x in ends) or ends[0] > ends[1]:
             low, high = map(float, ends)
-            raise ModelError(f"{name}: found {low:g} to {high:g}, expected low <= high")
+            raise ModelError(f"{name}: found {low:g} to {high:g}, expected finite low <= high")
     wide = {n: (float(a), float(b)) for n, (a, b) in intervals.items() if a < b}
     fixed = {n: float(a) for n, (a, b) in intervals.items() if a == b}
     box = ValueBox(

@@ -206,7 +206,9 @@ def _coprime(p: sp.Poly, q: sp.Poly) -> Impedance:
 
 def _from_control(system: Any) -> Impedance:
     if system.isdtime(strict=True):
-        raise ModelError("impedance: a discrete system; see sampled_data for sampled controllers")
+        raise ModelError(
+            "impedance: a discrete system; see sampled_passivity for sampled controllers"
+        )
     if (system.ninputs, system.noutputs) != (1, 1):
         raise ModelError(
             f"impedance: expected one input and one output, found {system.ninputs} and "

@@ -144,7 +144,9 @@ class FrequencyMargins(ByValue):
         return Graph("frequency (Hz)", "Llewellyn's margin on the axis (1)", series)
 
 
-def sweep_margins(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
+def sweep_margins(
+    system: TwoPort, frequency: np.ndarray | Sequence[float] | None = None
+) -> FrequencyMargins:
     """Margins of passivity and of absolute stability (Llewellyn) over frequency.
 
     The result is numerical. Nothing is known between the frequencies, nor about poles off the axis.

@@ -1,0 +1,88 @@
+"""Several trials in one log, numbered by a column: a leap between two of them is no motion."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.soundness.segments import check_segments
+from teleopdesign.measurement.survey import Choices, spans_of, survey_log
+from teleopdesign.measurement.survey.trials import trial_column
+
+H, ROWS = 2e-3, 1500
+ONE = np.arange(ROWS)
+T = H * np.arange(4 * ROWS)
+TRIAL = np.repeat([1.0, 2.0, 3.0, 4.0], ROWS)
+
+
+def swing(k):
+    """Angle (rad) and torque (N*m) of one trial, which begins anywhere."""
+    q = 0.4 * np.sin(5.0 * H * ONE + k) + 0.1 * np.sin(16.0 * H * ONE + 2 * k)
+    v = np.gradient(q, H)
+    return q + 1.7 * k, 0.02 * np.gradient(v, H) + 0.1 * np.tanh(v / 1e-3)
+
+
+Q, U = (np.concatenate(parts) for parts in zip(*map(swing, range(4)), strict=True))
+
+
+def look(columns):
+    log = Log(tuple(columns), lambda names: {n: columns[n] for n in names})
+    return survey_log(log, "log", Choices())
+
+
+@pytest.mark.parametrize("name", ["trial", "Trial_No", "run", "Versuch"])
+def test_a_column_that_numbers_trials_is_that_of_segments(name):
+    survey = look({"t_s": T, name: TRIAL, "angle_rad": Q, "tau_Nm": U})
+    assert survey.channels["segment"] == {"column": name}
+    assert name not in survey.unused
+    assert survey.trials == pytest.approx([H * ROWS * k for k in (1, 2, 3)], abs=H)
+    assert "channels.position.sign" not in survey.guesses
+
+
+def test_pauses_between_trials_are_no_trials():
+    stamps = T + 50.0 * (TRIAL - 1)
+    survey = look({"t_s": stamps, "trial": TRIAL, "angle_rad": Q, "tau_Nm": U})
+    assert survey.trials == pytest.approx([53.0, 106.0, 159.0], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("trial", np.sin(T)),  # a signal
+        ("trial", np.arange(len(T)) // 10),  # a counter of rows
+        ("run", np.ones(len(T))),  # one trial
+        ("gain", TRIAL),  # another name
+        ("trial", np.where(T < 1, np.nan, TRIAL)),
+    ],
+)
+def test_what_does_not_number_trials_is_none(name, values):
+    assert trial_column({"t": T, name: np.asarray(values, dtype=float)}) is None
+
+
+def test_a_log_is_cut_between_two_trials():
+    """The cut at 60 % lay in a trial, of which a millisecond was left on one side."""
+    assert spans_of(12.0, (2.4, 4.8, 7.2, 9.6)) == ((0.0, 7.2), (7.2, 13.0))
+    assert spans_of(12.0, (1.0, 11.5)) == spans_of(12.0)
+
+
+def test_arrays_of_several_trials_start_anew_at_each():
+    """The inertia of this motion came out as zero: a leap of 1.7 rad in a row outweighed it."""
+    data = {"t": T, "trial": TRIAL, "q": Q, "u": U}
+    words = {"axis": "revolute", "position": "q", "actuator_force": "u"}
+    made = td.experiment(data, segment="trial", **words)
+    assert len(made.records[0].segments) == 4
+    assert made.bodies["device"].inertia.value == pytest.approx(0.02, rel=0.05)
+    with pytest.raises(ExperimentError, match='"trail".*did you mean "trial"'):
+        td.experiment(data, segment="trail", **words)
+
+
+def test_no_gap_is_said_where_trials_follow_at_once():
+    """It was the rest of a difference: "the longest gap 3.34e-16 s"."""
+    data = {"t": T, "trial": TRIAL, "q": Q, "u": U}
+    made = td.experiment(
+        data, axis="revolute", position="q", actuator_force="u", segment="trial", inertia=0.02
+    )
+    (found,) = check_segments(made.records[0])
+    assert "with no gap between them" in found.sentence
+    assert found.numbers["longest_gap"] == pytest.approx(0.0, abs=1e-9)

@@ -1,0 +1,158 @@
+"""Units of inches, pounds and ounces, and units that fit no quantity: never read as SI unsaid."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.column_names import unfit_unit, unit_in_name
+from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.value_text import motor_constant
+from teleopdesign.quantity import to_si
+
+T = np.arange(1500) / 500.0
+Q = 0.5 * np.sin(2 * np.pi * 0.7 * T) + 0.1 * np.sin(2 * np.pi * 2.3 * T)
+U = 0.02 * np.gradient(np.gradient(Q, T), T) + 0.1 * np.sign(np.gradient(Q, T))
+INCH, POUND = 0.0254, 4.4482216152605
+
+
+def look(columns, **choices):
+    return survey_log(
+        Log(tuple(columns), lambda names: {n: columns[n] for n in names}), "log", Choices(**choices)
+    )
+
+
+@pytest.mark.parametrize(
+    ("unit", "quantity", "axis", "si"),
+    [
+        ("in", "position", "prismatic", INCH),
+        ("in/s", "velocity", "prismatic", INCH),
+        ("lbf", "force", "prismatic", POUND),
+        ("ozf*in", "force", "revolute", POUND * INCH / 16),
+        ("lbf*ft", "force", "revolute", POUND * 12 * INCH),
+        ("kgf-cm", "force", "revolute", 0.0980665),
+        ("N.m", "force", "revolute", 1.0),
+        ("mN-m", "force", "revolute", 1e-3),
+        ("N⋅m", "force", "revolute", 1.0),
+        ("ozf*in*s^2/rad", "inertia", "revolute", POUND * INCH / 16),
+    ],
+)
+def test_inches_pounds_and_points_are_converted(unit, quantity, axis, si):
+    assert to_si(1.0, unit, quantity=quantity, axis=axis) == pytest.approx(si, rel=1e-12)
+
+
+@pytest.mark.parametrize("unit", ["N/m-s", "N/m.s", "s-1", "N-", "-N", "N..m", "N.-m"])
+def test_a_hyphen_that_may_mean_two_things_is_refused(unit):
+    with pytest.raises(ExperimentError, match="expected"):
+        to_si(1.0, unit, quantity="damping")
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "axis", "unit"),
+    [
+        ("Torque (oz-in)", "force", "revolute", "ozf*in"),
+        ("Torque [in-lbs]", "force", "revolute", "lbf*in"),
+        ("servo torque (kg*cm)", "force", "revolute", "kgf*cm"),
+        ("F [lbs]", "force", "prismatic", "lbf"),
+        ("x [in]", "position", "prismatic", "in"),
+        ("vel_dps", "velocity", "revolute", "deg/s"),
+        ("x_in", "position", "prismatic", None),  # what goes in
+        ("hand_ft", "position", "prismatic", None),  # force and torque
+        ("counts", "position", "revolute", "counts"),
+        ("volts", "force", "revolute", "V"),
+    ],
+)
+def test_the_unit_of_a_motors_sheet_in_a_name(name, quantity, axis, unit):
+    assert unit_in_name(name, quantity, axis) == unit
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("Hand [N]", "N"),
+        ("Pos (px)", "px"),
+        ("F (kg/s)", "kg/s"),
+        ("Torque (cmd)", None),
+        ("Pos (filtered)", None),
+        ("q (1)", None),
+        ("q", None),
+    ],
+)
+def test_a_word_in_brackets_is_no_unit(name, text):
+    assert unfit_unit(name) == text
+
+
+def test_a_log_in_inches_and_pounds_is_read_in_metres_and_newtons():
+    survey = look({"t [s]": T, "x [in]": Q / INCH, "F [lbf]": U / POUND})
+    assert {k: entry.get("unit") for k, entry in survey.channels.items()} == {
+        "time": "s", "position": "in", "actuator_force": "lbf"
+    }  # fmt: skip
+    assert not [key for key in survey.guesses if key.endswith(".unit")]
+
+
+def test_a_guessed_unit_says_what_stands_in_its_place():
+    """'states no unit' was said of a hand's force in N beside an angle, and 1 N was 1 N m."""
+    survey = look({"t": T, "angle [deg]": np.rad2deg(Q), "u [foo]": U, "Hand [N]": U + 0.01 * Q})
+    assert (
+        "'foo', of 'u [foo]', is no unit that is known"
+        in (survey.guesses["channels.actuator_force.unit"])
+    )
+    assert (
+        "'N', of 'Hand [N]', is no unit of a torque: `scale` in experiment.toml is the "
+        in (survey.guesses["channels.interaction_force.unit"])
+    )
+
+
+def test_arrays_with_a_unit_that_does_not_fit_are_refused():
+    """They were silently read in SI: inches as metres."""
+    data = {"t": T, "q": Q, "u": U, "Hand [N]": U}
+    words = {"axis": "revolute", "position": "q", "actuator_force": "u", "inertia": 0.02}
+    with pytest.raises(ExperimentError, match=r"'N', of 'Hand \[N\]', is no unit of a torque"):
+        td.experiment(data, interaction_force="Hand [N]", **words)
+    lever = {"column": "Hand [N]", "unit": "N*m", "scale": 0.07}
+    scaled = td.experiment(data, interaction_force=lever, **words)
+    assert scaled.records[0].signals["device.interaction_force"] == pytest.approx(0.07 * U)
+
+
+def test_a_unit_of_arrays_may_be_written_as_motors_sheets_do():
+    data = {"t": T, "q": Q, "u": U / (POUND * INCH / 16)}
+    made = td.experiment(
+        data, axis="revolute", position="q", actuator_force="u", units={"u": "oz-in"}, inertia=0.02
+    )
+    assert made.records[0].signals["device.actuator_force"] == pytest.approx(U)
+
+
+@pytest.mark.parametrize(
+    ("text", "axis"),
+    [
+        ("23.4 mNm/A", "revolute"),
+        ("0.0234 N m/A", "revolute"),
+        ("3.31 oz-in/A", "revolute"),
+        ("12 N/A", "prismatic"),
+        ("2.7 lbf/A", "prismatic"),
+    ],
+)
+def test_a_torque_constant_turns_the_axis_in_whatever_unit(text, axis):
+    """Only "N*m/A" did: a data sheet's "mNm/A" made the axis prismatic, and was then refused."""
+    columns = {"t": T, "x": Q, "i_A": U}
+    survey = look(columns, torque_constant=motor_constant(text, where="--torque-constant"))
+    assert survey.axis == axis
+
+
+@pytest.mark.parametrize("text", ["12", "3 A", "0.02 kg/A", "0.02 Nm/s", "Nm/A", "1e999 Nm/A"])
+def test_what_is_no_torque_constant_is_refused(text):
+    with pytest.raises(ExperimentError, match="such as"):
+        motor_constant(text, where="--torque-constant")
+
+
+def test_forces_in_a_torques_unit_turn_the_axis():
+    assert look({"t": T, "x": Q, "u [mNm]": 1e3 * U}).axis == "revolute"
+    assert look({"t": T, "x": Q, "u [lbf]": U}).axis == "prismatic"
+
+
+def test_a_unit_that_is_typed_is_read_as_one_in_a_name():
+    survey = look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-in"})
+    assert survey.channels["actuator_force"]["unit"] == "ozf*in"
+    with pytest.raises(ExperimentError, match="found 'oz-inn', expected a unit"):
+        look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-inn"})
