@@ -23,11 +23,6 @@ if TYPE_CHECKING:
     from .rung import Rung
 
 
-#: noise floors from which their number means nothing: the floor is then next to zero, for no noise
-#: of the force is stated, and real logs have some
-MANY_FLOORS = 1000
-
-
 def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> str:
     """The ladder as a table of a notebook;  floor: relative noise floor;  note: below the table."""
     rows = [
@@ -165,7 +160,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
-    if diagnosis.left > MANY_FLOORS:
+    if diagnosis.left > CRITERIA.countable:
         lines.append(f"{'':<42}the floor holds no noise of the force: state noise at its channel")
     if (near := diagnosis.near_reversals) is not None:
         lines.append(f"check error {near}")
@@ -200,7 +195,7 @@ def _records_line(diagnosis: Diagnosis) -> str:
 
 def say_floors(left: float) -> str:
     """An error in noise floors, in words: no number where it only says that the floor is zero."""
-    return f"{left:.1f}" if left <= MANY_FLOORS else f"more than {MANY_FLOORS}"
+    return f"{left:.1f}" if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
 
 
 def sentence(diagnosis: Diagnosis) -> str:

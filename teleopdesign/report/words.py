@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.diagnosis import Diagnosis
-from ..diagnose.ladder_text import MANY_FLOORS
 from ..diagnose.rung import Rung
 from ..measurement.experiment import Experiment
 
@@ -105,7 +105,7 @@ def describe_judgement(experiment: Experiment) -> str:
 
 def _floors(left: float) -> str:
     """An error in noise floors; no number where the floor is next to zero."""
-    return number(left, 2) if left <= MANY_FLOORS else f"more than {MANY_FLOORS}"
+    return number(left, 2) if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
 
 
 def verdict(diagnosis: Diagnosis) -> str:
