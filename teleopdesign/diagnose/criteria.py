@@ -116,9 +116,9 @@ class Criteria:
     #: recordings of real machines, by 4.5 on one with a filtered potentiometer. Lower: said of
     #: friction that jumps; higher: not said of what reading spoils in part
     falls: float = 3.0
-    #: noise floors above which their number is not stated: such a floor is close to zero, because no
-    #: noise of the force is stated, while real logs have noise. Lower: hides large errors; higher:
-    #: numbers without meaning
+    #: noise floors above which their number is not stated: the floor is then close to zero, because
+    #: no noise of the force is stated, while real logs have noise. Lower: hides large errors;
+    #: higher: a number without meaning
     countable: float = 1000.0
     #: probability from which an effect is said to be missing: less likely than not is not named
     named: float = 0.5
