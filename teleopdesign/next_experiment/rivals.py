@@ -38,8 +38,8 @@ def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
     """Models that the records of a diagnosis leave open; none where they decide.
 
     Of each effect that was accepted, those that do as well within `OPEN` noise floors take its
-    place in turn. Where nothing was accepted, or what was explains little: the best few of what
-    would be added next.
+    place in turn. Where nothing was accepted, where the accepted effects explain little, or where
+    more is missing: the best few candidates that would be added next.
     """
     rivals: list[Rival] = []
     questions = open_questions(diagnosis)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..diagnose.open_questions import open_questions
 from ..finding import Finding, Graph, Series
 from ..plain_data import make_plain
 from ..quantity import si_factor
@@ -58,6 +59,12 @@ def _explain_nothing_open(proposal: Proposal) -> str:
         return (
             "No candidate effect lowers the error: there are no rivals to distinguish, and no "
             "motion is proposed."
+        )
+    nearest = [q.others[0][0] for q in open_questions(proposal.diagnosis) if q.added is None]
+    if nearest:
+        return (
+            f"More is missing, and only {nearest[0]} comes near: there is no rival to distinguish "
+            "it from. Longer check records decide whether it is there."
         )
     return "The present records decide: no rival is left to distinguish."
 
@@ -145,12 +152,14 @@ def proposal_text(proposal: Proposal) -> str:
     """The proposal as text: sentence, table of separations, what becomes determinable."""
     lines = ["next experiment: " + proposal.sentence]
     if proposal.separations:
-        lines += [
-            "",
-            f"{'if this is right':<36}{'this leaves':<36}{'now':>7}{'then':>8}  noise floors",
-        ]
+        names = [str(name) for s in proposal.separations for name in (s.truth, s.other)]
+        wide = max(36, *(len(name) + 2 for name in names))
+        head = f"{'if this is right':<{wide}}{'this leaves':<{wide}}{'now':>7}{'then':>8}"
+        lines += ["", f"{head}  noise floors"]
         for s in proposal.separations:
-            lines.append(f"{s.truth!s:<36}{s.other!s:<36}{s.present:>7.2f}{s.predicted:>8.2f}")
+            lines.append(
+                f"{s.truth!s:<{wide}}{s.other!s:<{wide}}{s.present:>7.2f}{s.predicted:>8.2f}"
+            )
     for d in proposal.determined:
         lines.append(
             f"  {d.name} becomes determinable: standard error {_percent(d.before)} -> "

@@ -16,6 +16,8 @@ from teleopdesign import Model, find_missing
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import write_answer
 from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.diagnosis import OpenQuestion
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment import (
@@ -328,3 +330,12 @@ def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
 
     experiment = write_experiment(tmp_path / "null", rod, poor.fit, poor.check, poor.effects)
     assert propose(diagnosed(experiment, FEW)).reference is None
+
+
+@pytest.mark.slow
+def test_one_candidate_beside_named_effects_has_no_rival(diagnosis):
+    """More is missing, and one effect comes near: only longer check records decide."""
+    nearest = Candidate(EFFECTS["cogging"], "device"), diagnosis.rungs[-1].fit
+    proposal = propose(replace(diagnosis, open=(OpenQuestion(None, (nearest,)),)))
+    assert not proposal.separations
+    assert "only cogging at device comes near" in proposal.sentence
