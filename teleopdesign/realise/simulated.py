@@ -20,6 +20,10 @@ from .tips import with_tips
 
 #: m/s or rad/s: a speed above which no friction level changes
 _FAST = 1e6
+#: m/s^2 or rad/s^2: an acceleration of the size that devices have, for the size of a load
+LIVELY = 10.0
+#: forces in proportion to which a friction level may grow
+_LOADS = SIGNALS["acting_force"], SIGNALS["carried_force"]
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
@@ -77,13 +81,26 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
     if "friction_level" not in roles or "friction_shape" in roles:
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
-    level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
+    loaded = at_rest | dict.fromkeys(_LOADS, _typical_load(body))
+    level = float(body.equation().level.subs(loaded).subs(body.numbers()))
     lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
     stiffness = level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
     return body.with_effect(lugre, {"stiffness": stiffness, "bristle_damping": damping})
+
+
+def _typical_load(body: Body) -> float:
+    """A force of the size that the transmission of a body carries, N or N m.
+
+    A level that is a part of the load is zero without one, and so would be its bristle's stiffness.
+    """
+    law = body.carried_force().subs(body.numbers())
+    rest = dict.fromkeys((s for s in SIGNALS.values() if s != SIGNALS["position"]), 0)
+    places = (0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi) if body.axis == "revolute" else (0.0,)
+    forces = (abs(float(law.subs(rest | {SIGNALS["position"]: x}))) for x in places)
+    return max(forces) + LIVELY * body.parameters["inertia"].value
 
 
 def check_levels(body: Body, where: str) -> None:
