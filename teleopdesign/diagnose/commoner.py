@@ -24,10 +24,12 @@ from .rungs import estimate_without, reorder_and_refit
 
 
 def compare_look_alikes(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with one effect in the place of another that the records hardly tell from it.
+    """The ladder with one effect replaced by another that the records hardly distinguish from it.
 
-    Where more than noise is left: the more common effect, such as gravity for a spring. Where noise
-    is left: the simpler one. None: the records distinguish them, or the right ones are there.
+    Where more than noise is left, the more common effect is preferred, such as gravity to a spring;
+    where only noise is left, the simpler one.
+    returns: None where the records distinguish the effects, or the preferred ones are present
+        already
     """
     noise = is_adequate(state.fit, state.floor, criteria=search.criteria)
     for rung in state.rungs[1:]:
@@ -40,7 +42,7 @@ def compare_look_alikes(search: LadderSearch, state: LadderState) -> LadderState
 
 
 def _list_rivals(added: Candidate, state: LadderState, *, simpler: bool) -> list[Candidate]:
-    """Look-alikes that may stand for an effect: the simpler ones, or else the more common ones."""
+    """Look-alikes that may replace an effect: the simpler ones, or else the more common ones."""
     alike = [c for c in list_look_alikes(added, state.fit.model) if c.key not in state.gone]
     if simpler:
         return [
@@ -54,7 +56,7 @@ def _list_rivals(added: Candidate, state: LadderState, *, simpler: bool) -> list
 def _exchange_for(
     search: LadderSearch, state: LadderState, rung: Rung, other: Candidate
 ) -> LadderState | None:
-    """The ladder with a look-alike in the place of a rung's effect; None: it is not supported."""
+    """The ladder with a look-alike in place of a rung's effect; None: it is not supported."""
     model, criteria, added = state.fit.model, search.criteria, rung.added
     assert added is not None
     if (
