@@ -5,13 +5,13 @@ Cox, Matthews, J. Comput. Phys. 176 (2002) 430, eqs (26) to (29), with the rate 
 as A z + B, A frozen at the start of the step; for all other states the classical Runge-Kutta
 method. At every sample the computer reads its sensors and steps its states as its laws say.
 
-Several simulations of one grid run side by side in lanes; one lane is a simulation by itself. What
-the loop remembers is `memory`: a row for each quantity, in it an entry for each lane. A constant
-such as STATES is where its group begins, MANY_STATES how many there are, so that state i of a lane
+Several simulations of one grid run side by side in lanes; one lane is a simulation by itself. The
+state of the loop is `memory`: a row for each quantity, with an entry for each lane. A constant such
+as STATES is the place where its group begins, MANY_STATES the size of the group: state i of a lane
 is `memory[STATES + i * LANES + lane]`. With constant addresses the compiler keeps a step in
-registers, and works on several lanes by one instruction: while all that a step reads is in `memory`
-or in no array at all (parameters are, inputs come as numbers). It works on one lane after the other
-where it would have to check too often that two arrays do not overlap.
+registers, and computes several lanes by one instruction, as long as a step reads from `memory` only
+(parameters are in it) or from no array (inputs are passed as numbers). It computes one lane after
+the other where it would have to check too often that two arrays do not overlap.
 
 Everything below the line of "#" is the second half of every generated module; the first half holds
 the laws and constants that are imported here (`_codegen.py`). Those of `_free_mass.py` let this
