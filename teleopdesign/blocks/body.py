@@ -202,7 +202,7 @@ class Body:
         return friction_level(self.effects)
 
     def tip_level(self) -> sp.Expr:
-        """Level of the dry friction that holds the tip of a structure."""
+        """Level of the dry friction on the tip of a structure."""
         return sp.Add(*(e.expression() for e in sort_by_action(self.effects, "tip_level")))
 
     def carried_force(self) -> sp.Expr:

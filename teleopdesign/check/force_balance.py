@@ -1,13 +1,14 @@
 """Scale, sign and timing of each force, from the balance of all forces along the motion.
 
-lead(t + shift) + gain other(t + shift') = sum of strength_j column_j + rest of the model
+    lead(t + shift) + gain other(t + shift') = sum of strength_j column_j + rest of the model
 
-By linear least squares, unbounded, on the rows where the body surely moves. `lead` is the actuator
-force (the interaction force where nothing is commanded); columns are the tangents of the user's
-model by its inertia and by every strength in which its force is linear, and a constant force where
-the model has none. A force with the wrong sign gives a negative gain, a motion with the wrong sign
-negative strengths, and a wrong unit a strength that is wrong by its factor. Shifts come from the
-forces' derivatives, solved again about each shift, first at low frequency, where a period is long.
+This is solved by linear least squares, without bounds, on the rows where the body surely moves.
+`lead` is the actuator force (the interaction force where nothing is commanded). The columns are the
+tangents of the user's model by its inertia and by every strength in which its force is linear, and
+a constant force where the model has none. A force with the wrong sign gives a negative gain, a
+motion with the wrong sign negative strengths, and a wrong unit a strength that is wrong by its
+factor. Shifts come from the forces' derivatives, solved again at each shift, first at low
+frequency, where a period is long.
 """
 
 from __future__ import annotations

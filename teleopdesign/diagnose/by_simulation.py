@@ -113,7 +113,7 @@ class SimulationComparison(ByValue):
 
     @property
     def title(self) -> str:
-        """What was compared, in words."""
+        """A title in words: whether a loop held the model."""
         how = "freely" if self.loop is None else "in its loop"
         return f"Simulation, driven {how} by the recorded command"
 

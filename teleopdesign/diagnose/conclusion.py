@@ -113,7 +113,7 @@ def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
 
 
 def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | None:
-    """The last rung whose effect is absent or misnamed at the end, with the reason."""
+    """The last rung whose effect is uncertain or implausible in the final fit, with the reason."""
     last = rungs[-1].fit
     stands_for = implausible_effects(last.model, prepared) if len(rungs) > 1 else {}
     for before, rung in reversed(list(pairwise(rungs))):

@@ -56,8 +56,7 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
 def _errors_from_absence(model: Model, name: str, criteria: Criteria) -> float:
     """Standard errors by which a parameter must differ from the value where its effect is absent.
 
-    One where the parameter is neither essential nor a strength: others show that the effect is
-    there.
+    One where the parameter is neither essential nor a strength: other parameters show the effect.
     """
     if model.declared(name).search.essential:
         return criteria.surely

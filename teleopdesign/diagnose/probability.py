@@ -4,10 +4,10 @@ It is calibrated on diagnoses of cases from an independent simulator, not by a f
 white noise. In these cases the final error decides whether an accepted effect is true: where it is
 noise, nearly all accepted effects are true; where it is much larger, a wrong effect may have
 imitated one that the catalogue lacks. On a real machine more than noise is nearly always left.
-There an effect is believed by how far what it explains outweighs what is left: a stand-in leaves a
-part of the order of what it explains, or a better one would not be worth looking for. Of what is
-left, that counts which another effect could still explain: where a black box does as well from the
-motion alone, what it cannot learn does not repeat, and hides no other effect.
+There the probability follows from the ratio of explained to remaining squares: an effect that only
+imitates the true one leaves a part as large as it explains. Of the remaining squares, only those
+count that another effect could still explain: where a black box that knows the motion only does as
+well as the model, a residual that it cannot learn does not repeat, and hides no other effect.
 """
 
 from __future__ import annotations

@@ -5,17 +5,19 @@ to one row, either way, belongs to the record. It is no physics, but if it is ig
 a physical effect: a delay, a lag, the lead of a compliant transmission. So it is estimated with
 every model, one shift for each body, common to all its records.
 
-A shift that raises the error on the check records is held at none (`clock.py`): beside a model that
-lacks much it may take up a part of what is missing.
+A shift that raises the error on the check records is fixed at zero (`clock.py`): with a model that
+lacks much it may describe a part of a missing effect.
 
-Where records hardly tell it (a delay does the same to them, a spring and damper of the controller
-make viscous friction of it), what is known beforehand decides: most loggers are right, none is off
-by much more than a row. Normally distributed, the shift adds a row to the residual r of each body,
+Records may hardly determine the shift: a delay has the same effect, and with a spring and damper of
+the controller viscous friction has. Then prior knowledge decides: most loggers are right, and none
+is wrong by much more than a row. With a normal prior, the shift adds a row to the residual r of
+each body,
 
     |r| d / (s sqrt(n)),    d: shift, s: the spread, n: independent observations
 
-for that makes the least squares the most probable values, r having an unknown size: -2 log p =
-n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of the shift.
+because then the least-squares values are the most probable ones, for a residual of unknown size: -2
+log p = n log |r|^2 + (d / s)^2. Standard errors of all other parameters include the uncertainty of
+the shift.
 
 The log of a force may be late by more: buffers and batches hold commands back, sensors filter the
 measured force. No motion precedes its force, so this is no missing effect, but structures would

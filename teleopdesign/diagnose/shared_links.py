@@ -1,8 +1,8 @@
-"""The links of an arm from one joint: what other joints tell of them, and what stays free.
+"""The links of an arm in the fit of one joint: information from other joints, and what stays free.
 
-The base parameters b of an arm act at all of its joints, and force is linear in them. What the
-other joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their parameters free.
-So a joint can be compared alone: to minimise
+The base parameters b of an arm act at all of its joints, and force is linear in them. The
+information of the other joints on b is a quadratic, (b - c)^T H (b - c) with centre c, when their
+other parameters are free. So a joint can be compared alone: to minimise
 
     |r - Y (b - c)|^2 + (b - c)^T H (b - c)        over b,     Y: force of its links per unit of b
 

@@ -1,7 +1,7 @@
 """Threads and memory of a diagnosis: work shared among the cores.
 
-Linear algebra keeps to one core meanwhile. Its threads wait for each other by spinning: with
-several callers on two cores that took a third of the time.
+Meanwhile linear algebra uses one thread only. Its threads wait for each other in busy loops: with
+several callers on two cores this took a third of the time.
 
 Freed memory stays with the process for the next array. By default, glibc returns blocks of 128 KiB
 and more to the system at once, until a larger block was freed. Then the system clears each array of

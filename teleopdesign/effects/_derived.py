@@ -27,7 +27,7 @@ def channels(effect: Effect) -> frozenset[str]:
 
 @lru_cache(maxsize=256)
 def strength(effect: Effect) -> str | None:
-    """Parameter in which the law is linear and that is zero where the effect is absent; or None."""
+    """The parameter that the law is linear in, and that is zero at absence; None: there is none."""
     if len(effect.absent) != 1 or effect.states:
         return None
     ((name, value),) = effect.absent.items()

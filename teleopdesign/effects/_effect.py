@@ -80,10 +80,10 @@ class Effect:
         contact_shape: the penetration that the spring of an environment feels
     block: "" for an effect of a body; else the block it is for, such as "hand" or "environment":
         a diagnosis does not try it
-    energy: what it does with energy, together with the effects that it needs, for all parameters
-        within their bounds. "stores": returns all of it on a closed path; "dissipates": never
-        returns more than it took; "supplies": may return more, or nothing is known. Claims of
-        passivity rest on it
+    energy: effect on energy, together with the effects that it needs, for all parameters within
+        their bounds. "stores": returns all of it on a closed path; "dissipates": never returns more
+        than it took; "supplies": may return more, or nothing is known. Claims of passivity rest on
+        it
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It never comes from differentiating sgn.
@@ -96,7 +96,7 @@ class Effect:
         can have, any effect of this role is enough
     counts_as: needed effects that it can replace, for effects whose laws hold no parameter of these
     takes_over: needed effects that may be zero beside it, because it can have all of their force
-    always: what holds for any values of its parameters, such as "even in velocity"
+    always: properties for any values of its parameters, such as "even in velocity"
     commoner: name of the effect that gives nearly the same force where `untold` says so, and acts
         on far more machines; "" for none
     elsewhere: axis where the law does not hold ("prismatic" or "revolute") -> the effect of the

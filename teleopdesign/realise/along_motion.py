@@ -3,12 +3,12 @@
 The motion is prescribed, so the effects decouple: each turns arrays into arrays, composed by role.
 
     command -> actuation stages (averages over each hold) -> acting force at the rows
-    needed friction = acting + interaction - inertia a - forces (- what the links of an arm need)
-    friction = shape(level, motion); where the position cannot tell a motion it is what balances
+    needed friction = acting + interaction - inertia a - forces (- force of an arm's links)
+    friction = shape(level, motion); where no motion is certain, the force that balances
     residual = needed friction - friction           > 0: more force acts than the model needs
 
-Every array carries its tangents, the derivatives by the parameters that are asked for; both come
-from the same sympy law. Hidden states advance exactly where their rate is affine in them.
+Every array has its tangents, the derivatives by the requested parameters; both come from the same
+sympy law. Hidden states advance exactly where their rate is affine in them.
 """
 
 from __future__ import annotations

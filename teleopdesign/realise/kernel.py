@@ -185,9 +185,10 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
 
 
 def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) -> np.ndarray:
-    """How rates change with states at rest, 1/s: (lanes, states, states).
+    """Derivatives of the rates by the states at rest, 1/s: (lanes, states, states).
 
-    parameters: flat, row by row;  exactly stepped states without their slope
+    parameters: flat, row by row
+    Exactly integrated states have no derivative by themselves here.
     """
     layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
     slopes = np.zeros(n * n * lanes)

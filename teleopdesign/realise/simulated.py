@@ -104,7 +104,7 @@ def check_levels(body: Body, where: str) -> None:
 
 
 def may_be_negative(body: Body) -> bool:
-    """Whether an effect that sets the friction level does not declare that it is non-negative."""
+    """Whether an effect of the friction level does not declare itself non-negative."""
     levels = (e for e in body.effects if e.role == "friction_level")
     return not all("non-negative" in e.always for e in levels)
 

@@ -81,7 +81,7 @@ class Dependence:
 
     @property
     def squares(self) -> float:
-        """Sum of squares that it leaves on the checked rows."""
+        """Sum of squares that the dependence leaves on the checked rows."""
         return float(self.after @ self.after)
 
 

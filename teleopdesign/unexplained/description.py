@@ -56,7 +56,7 @@ class BodyResidual:
     after: error without the explained part, on rows where the body slides; `error` without
         dependences
     at_rest: part of the residual's squares on rows where no motion is certain
-    dependences: what the residual depends on, largest first
+    dependences: dependences of the residual, largest first
     tests: of every dependence, best first;  views: name -> graph of the residual
     """
 

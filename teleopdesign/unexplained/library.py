@@ -21,9 +21,8 @@ class FormulaTerm:
     """One term of a formula: its kind and its number n.
 
     kind: "power" (u^n), "decay" (exp(-u/n)), "bell" (exp(-(u/n)^2)), "above" and "below" (distance
-        of u beyond n), "beyond" (distance of u from the range -n .. n), "wave" (cosine and sine of
-        n cycles per
-    unit: two coefficients)
+        of u beyond n), "beyond" (distance of u from the range -n .. n), "wave" (cosine and sine
+        with n cycles per unit: two coefficients)
     """
 
     kind: str
