@@ -98,8 +98,8 @@ def force_balance(
     """The balance of one body; None where it hardly moves or no force is measured.
 
     A constant force that the model lacks, such as a weight of many times the friction, would give
-    friction the wrong sign. So would the gravity of a pendulum do with its inertia. So a bias is
-    always added, and a force of position where it removes most of the residual.
+    friction the wrong sign. Likewise, the gravity of a pendulum would give its inertia the wrong
+    sign. So a bias is always added, and a force of position where it removes most of the residual.
 
     stretches: of this body;  timed: whether shifts are estimated
     """

@@ -200,7 +200,7 @@ def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) ->
 def _strength_at_threshold(
     candidate: Candidate, first: _Trial, shaped: Model, scene: _Scene
 ) -> _Trial:
-    """The least visible strength; `first` or a stronger one where none is visible.
+    """The least visible strength; the most visible one where none reaches the threshold.
 
     By secants of the logarithms, and bisection between a visible and an invisible factor, for
     effects such as a limit that appear suddenly.

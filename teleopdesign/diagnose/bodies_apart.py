@@ -23,7 +23,7 @@ from .residual import relative_residuals
 
 @dataclass(frozen=True, eq=False)
 class Apart:
-    """Stretches of bodies that share parameters: of one body, or of the joined bodies of an arm.
+    """Stretches of some bodies whose parameters act on no other body.
 
     rows: indices of these stretches' rows among the rows of all stretches
     bodies: names of the bodies that the stretches belong to

@@ -62,12 +62,11 @@ def candidates(
 ) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
 
-    An effect that could stand for other effects is a candidate only after these were added
-    (`Effect.after`).
-    An effect whose law uses a channel that the records lack is no candidate.
-    Nor is an effect of the position, where a body never returns to a place at another time: there
-    it cannot be separated from a drift. A periodic effect also returns after each of its periods.
-    Nor is an effect of time, where the speed itself follows time.
+    An effect that could imitate other effects is a candidate only after these were added
+    (`Effect.after`). An effect whose law uses a channel that the records lack is no candidate. Nor
+    is an effect of the position, where a body never returns to a place at another time: there it
+    cannot be separated from a drift. A periodic effect also returns after each of its periods. Nor
+    is an effect of time, where the speed itself follows time.
 
     motions: of all records
     separate_zeros: files whose positions cannot be compared with those of other files

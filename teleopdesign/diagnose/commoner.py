@@ -2,8 +2,8 @@
 
 Over a part of a turn, a spring and the gravity of a link are nearly the same torque. If the
 remaining error is noise, either the records distinguish the two, or the simpler effect is named. If
-more than noise remains, something unknown acts too, and may be as large as the difference of the
-two effects. Then a smaller error, or one parameter less, says little, and the effect that most
+more than noise remains, an unknown effect acts too, and may be as large as the difference of the
+two effects. Then a smaller error, or one parameter less, is weak evidence, and the effect that most
 machines have is named. The file of an effect says which effect is more common (`commoner`), and on
 which travel the two are hardly distinguished (`untold`).
 """

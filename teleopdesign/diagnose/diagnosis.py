@@ -72,8 +72,8 @@ class Diagnosis(ByValue):
     floor: the noise floor: the error that the sensors alone would leave
     moment: the single time span that holds all of the residual above noise; None: there is no such
         span
-    open: questions that the records leave open, for a diagnosis that was read from a file; else
-        None, and the rankings hold them
+    open: questions that the records leave open, where they are stored: in a diagnosis read from a
+        file, or of an arm's joint; None: they follow from the rankings
     named: accepted effects that are probable enough to be called missing
     learnable: how much of the residual a black box can learn; None without the extra `learn`
     near_reversals: the check error near reversals of the motion; None where there are none

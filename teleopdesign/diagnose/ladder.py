@@ -106,11 +106,11 @@ def climb(
 def bar_what_explains_nothing(
     search: LadderSearch, state: LadderState, moved: LadderState
 ) -> LadderState | None:
-    """The state without the effects of a move that explain nothing; None: they explain something.
+    """The state before a move, with the move's new effects barred; None: they explain something.
 
-    Such an effect only does what other values of the model do as well, or only weakens the errors
-    of the readings. A move that replaces rungs is exempt: it may explain as much as they did, more
-    simply.
+    An effect is barred if it only does what other values of the model do as well, or only weakens
+    the errors of the readings. A move that replaces rungs is exempt: it may explain as much as they
+    did, more simply.
     """
     before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]

@@ -64,7 +64,7 @@ class LadderSearch:
         among: Collection[Candidate] | None = None,
         worth: float | None = None,
     ) -> Ranking:
-        """`rank_candidates` beside a fit; step: number of the rung that is searched."""
+        """`rank_candidates` on top of a fit; step: number of the rung that is searched."""
         return rank_candidates(
             base,
             self.prepared,
@@ -184,7 +184,7 @@ def begin(search: LadderSearch) -> LadderState:
 def look(
     search: LadderSearch, rungs: tuple[Rung, ...], before: LadderState | None = None
 ) -> LadderState:
-    """Draw the noise floor of the last rung and rank every candidate beside it.
+    """Draw the noise floor of the last rung, and rank every candidate added to its model.
 
     before: the state that a move led to; None: the ladder begins
     Where a low-pass of the hand's force sensor explains more than every effect and every external

@@ -39,8 +39,8 @@ class NoiseFloor(ByValue):
     source: origin of step and noise of the sensors, in words
     held: whether `value` was limited, so that the residual of this model cannot hide in sensor
         errors
-    at_command: floor of the error at the command (`refer_to_command`) over `value`: 1 where no
-        effect lies between command and body; never less
+    at_command: floor of the error at the command (`refer_to_command`) over that of the force: 1
+        where no effect lies between command and body; never less
     jitters: whether the readings show that their moments jitter
     """
 

@@ -87,8 +87,8 @@ def _best_pair(
     """The best pair of rungs added to the user's model; None where no pair is supported.
 
     Each of the best few candidates of the ranking is added, and all candidates (or those in
-    `among`) are ranked again beside it. A pair counts where it explains most of the missing force
-    and neither effect can be left out.
+    `among`) are ranked again on top of it. A pair counts where it explains most of the missing
+    force and neither effect can be left out.
     """
     base, floor, criteria = state.rungs[0], state.floor, search.criteria
     here = base.fit

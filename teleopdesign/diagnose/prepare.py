@@ -85,8 +85,8 @@ class Prepared(ByValue):
     def is_of_an_arm(self) -> bool:
         """Whether the records are of an arm's joint, whose link parameters are estimated too.
 
-        Such effects are compared with the whole arm, and with the noise that they weaken, where all
-        joints are estimated together (`arms/refusal.py`).
+        Effects at such a joint are tested where all joints are estimated together, by the error of
+        the whole arm and by the noise that they weaken (`arms/refusal.py`).
         """
         return any(s.motion.links is not None or s.shared is not None for s in self.stretches)
 

@@ -112,7 +112,7 @@ class SearchPlan:
     def for_joints(self, count: int) -> SearchPlan:
         """The plan for each joint of an arm with `count` joints.
 
-        The arm's records are cut to windows only above the size that is usual for one body.
+        An arm's records are searched whole, so the plan has the default sizes of windows.
         """
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
         most = self.trials if count <= self.whole_at else self.pairs_beyond

@@ -49,9 +49,9 @@ def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | 
 def _best_pair(
     search: LadderSearch, state: LadderState, base: Fit, ranking: Ranking | None
 ) -> tuple[Rung, ...] | None:
-    """The best transmission with friction behind it, beside a base; None: none is supported.
+    """The best transmission with friction behind it, added to a base; None: none is supported.
 
-    ranking: of the candidates beside the base; None: not known
+    ranking: of the candidates added to the base; None: not known
     """
     alone = {r.candidate.key: r.fit for r in ranking.ranked} if ranking is not None else {}
     pairs = [

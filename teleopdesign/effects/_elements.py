@@ -41,7 +41,7 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
 
 
 def elements_slip(p: Any, facts: RecordFacts) -> str | None:
-    """A sentence where no element slips in both directions, or none deflects visibly; else None."""
+    """A sentence where the softest element slips in one direction only, or as `slip_is_seen`."""
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}

@@ -2,10 +2,10 @@
 
     gain g: r / g     lag: (1 + tau s) r     delay: r, earlier by it     ripple: r / (1 + r sin ...)
 
-No effect is known here by name. Each law between the command and the force that moves the body is
-linearised along the motion by its derivatives: the stages of the actuation, friction and forces
-that depend on the acting force. A law is then a gain for a constant command, sample by sample,
-times dynamics that are 1 at rest, with coefficients at their mean along the motion:
+This works for any effect, without its name. Each law between the command and the force that moves
+the body is linearised along the motion by its derivatives: the stages of the actuation, friction,
+and forces that depend on the acting force. A law is then a gain for a constant command, sample by
+sample, times dynamics that are 1 at rest, with coefficients at their mean along the motion:
 
     H(s) = law_command + law_delayed e^(-s delay) + law_state (s - rate_state)^-1 rate_command
 

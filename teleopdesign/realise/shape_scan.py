@@ -196,8 +196,8 @@ def shape_bounds(
 
     It has one hidden state, or several that each follow the motion up to a separate stop.
     forward, backward: friction level in that direction
-    The bounds coincide where the motion is certain. Elsewhere they differ by the force that half a
-    step of the position causes in the bristle, and never exceed the level.
+    The bounds coincide where the motion is certain. Elsewhere they lie to either side by the force
+    that half a step of the position causes in the bristle, and never exceed the level.
     """
     source, used = _shape_of(effect)
     scan = compile_source(source, "shape")

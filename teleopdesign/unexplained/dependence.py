@@ -124,7 +124,7 @@ def predict_held_out(rows: Rows, columns: Columns) -> Array:
 def fit_dependence(
     rows: Rows, beside: Columns, shape: Shape, knots_and_columns: tuple[Array, Columns]
 ) -> Dependence:
-    """Estimate one dependence beside other columns, and test it on the checked rows."""
+    """Estimate one dependence together with other columns, and test it on the checked rows."""
     knots, columns = knots_and_columns
     if shape.variable is not None and not shape.is_wave:
         columns = _with_smoothness(rows, beside, columns, roughness(shape, knots))
