@@ -1,4 +1,4 @@
-"""The model that a user holds against a recording: bodies with their effects at places.
+"""The model that a user compares with a recording: bodies with their effects at places.
 
 Frozen: `model.with_effect("stribeck", at="device")` returns a new one.
 """
@@ -24,10 +24,11 @@ from .standard_error import with_standard_error
 class Model:
     """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI).
 
-    record_shift: body -> s by which the log of its command is late, "BODY.interaction_force" -> s,
-        time constant of the hand's sensor: no physics, but what a logger or a sensor did to the
-        records that the model was estimated on; none where that is unknown
-    links: base parameters (SI) of the arm whose joints the bodies are; (): none are estimated
+    known: effects by name that may be added
+    record_shift: body -> s by which the log of its command is late; "BODY.interaction_force" -> s,
+        time constant of the hand's sensor: errors of the records that the model was estimated on,
+        no physics; empty where unknown
+    links: base parameters (SI) of the arm whose joints are the bodies; (): none is estimated
     """
 
     bodies: Mapping[str, Body]
@@ -56,8 +57,9 @@ class Model:
     ) -> Model:
         """The model that an experiment.toml describes, its values converted to SI.
 
-        known: the effects by name, for those who add effects
-        raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
+        known: effects by name, with those of the user
+        raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds, no
+            channel
         """
         described = experiment.bodies
         if experiment.arm is not None:
@@ -79,9 +81,9 @@ class Model:
 
     @check_types
     def body(self, at: str) -> Body:
-        """The body at that place; ModelError with the nearest place where there is none.
+        """The body at a place; for the environment, the body that touches it.
 
-        The environment's is the body that touches it.
+        raises ModelError: there is no such place
         """
         return self.bodies[self.holder(at)]
 
@@ -95,10 +97,10 @@ class Model:
     ) -> Model:
         """The model with one effect more.
 
-        at: place; may be left out where there is one body only
-        values: parameter -> value (SI); by default the effect starts as absent and a fit
-        finds its starting values
-        raises ModelError: no such effect, place or parameter, or the effect is already there
+        at: place; None: the only body, or the environment for its effects
+        values: parameter -> value (SI); None: the effect is absent, and a fit searches its start
+            values
+        raises ModelError: no such effect, place or parameter, or the model has the effect already
         """
         added = (
             find_effect(effect, self.known, "with_effect") if isinstance(effect, str) else effect
@@ -116,7 +118,7 @@ class Model:
 
     @check_types
     def without_effect(self, effect: str, *, at: str | None = None) -> Model:
-        """The model without that effect."""
+        """The model without an effect; raises ModelError: it lacks it, or another one needs it."""
         removed = self.known.get(effect)
         place = self._place(at, removed.role if removed else "")
         return self._with_body(place, self.body(place).without_effect(effect))
@@ -140,12 +142,12 @@ class Model:
         return model
 
     def log_late(self, log: str) -> float:
-        """Seconds by which a log is late: of a command "device", "device.interaction_force"."""
+        """Seconds by which a log is late: of a command "device", or "device.interaction_force"."""
         shift = self.record_shift.get(log)
         return 0.0 if shift is None else shift.value
 
     def with_record_shift(self, shifts: Mapping[str, Value]) -> Model:
-        """The model with other shifts of the records, by what was logged; {}: with none."""
+        """The model with other shifts of the records; shifts: log -> Value in s, {}: none."""
         instance(shifts, Mapping, "with_record_shift", expected='such as {"device": Value(0.001)}')
         return replace(self, record_shift=Frozen(shifts))
 
@@ -166,7 +168,7 @@ class Model:
         return named
 
     def locate(self, name: str) -> tuple[str, str]:
-        """Body, and name within it, of the parameter of that full name.
+        """Body, and name within it, of the parameter with this full name.
 
         Parameters of the environment belong to the body that touches it.
         """
@@ -182,13 +184,13 @@ class Model:
 
     @check_types
     def declared(self, name: str) -> Parameter:
-        """Declaration of the parameter of that full name."""
+        """Declaration of the parameter with this full name."""
         place, local_name = self.locate(name)
         return self.body(place).parameter(local_name)
 
     @check_types
     def unit(self, name: str) -> str:
-        """Unit of the parameter of that full name."""
+        """Unit of the parameter with this full name."""
         place, local_name = self.locate(name)
         return self.body(place).unit(local_name)
 
@@ -216,7 +218,7 @@ class Model:
         return self.with_values(values)
 
     def in_order(self) -> Model:
-        """The same model with parts of effects that may change places in order (`Effect.order`)."""
+        """The same model with interchangeable parts of effects sorted (`Effect.order`)."""
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             numbers = {n: v.value for n, v in body.parameters.items()}
@@ -233,7 +235,7 @@ class Model:
 
     @property
     def absent(self) -> tuple[tuple[str, str], ...]:
-        """(effect, place) of the effects whose values say that they are not there."""
+        """(effect, place) of the effects that are absent by their values."""
         return tuple(
             (effect.name, CONTACT.name if effect.role in CONTACT_ROLES else place)
             for place, body in self.bodies.items()
@@ -252,12 +254,12 @@ class Model:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """Where effects may be: the bodies, and "environment" where one is modelled."""
+        """Places of effects: the bodies, and "environment" where one is modelled."""
         touched = any(b.has(CONTACT.name) for b in self.bodies.values())
         return (*self.bodies, CONTACT.name) if touched else tuple(self.bodies)
 
     def holder(self, at: str) -> str:
-        """The body at a place; for the environment, the body that touches it."""
+        """Name of the body at a place or touching it; raises ModelError: there is no such place."""
         if at not in self.places:
             raise ModelError(
                 f'model: no body "{at}", has {", ".join(self.places)}'

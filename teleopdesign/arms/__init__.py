@@ -1,4 +1,4 @@
-"""Arms: chains of links on joints, their kinematics, and the forces that their motion needs."""
+"""Arms: chains of links on joints, their kinematics, and the joint forces of their motion."""
 
 from .base_parameters import BaseParameters, base_parameters
 from .chain import INERTIAL, Chain, Link, inertia_about, rotation_of

@@ -1,10 +1,10 @@
-"""Base parameters: the combinations of inertial parameters that a motion of the arm can tell.
+"""Base parameters: the combinations of inertial parameters that motions of an arm determine.
 
-Many of the ten parameters of a link act only together with those of others: a mass on an axis that
-never tips is not felt. Which columns of the forces are independent depends on the kinematics alone;
-so they are sought among random poses, by orthogonalisation: moments of inertia first, masses and
-motors last. Each base parameter bears the name of the inertial parameter that stands for its
-combination.
+Many of the ten parameters of a link act only together with those of other links, and some not at
+all: a mass on an axis that never tilts causes no torque. The kinematics alone decide which columns
+of the regressor are independent. So these are selected at random poses, by orthogonalisation:
+moments first, then masses, motors last. Each base parameter has the name of the inertial parameter
+whose column is selected.
 
 Source: Gautier, Khalil, Direct calculation of minimum set of inertial parameters of serial robots,
 IEEE Trans. Robotics and Automation 6 (1990) 368.
@@ -32,8 +32,8 @@ INDEPENDENT = 1e-8
 class BaseParameters(ByValue):
     """Combinations of an arm's inertial parameters and motor inertias that its motion determines.
 
-    names: of the b base parameters, "forearm_link.mx" and the like;  units: of each
-    chosen: (b,) columns that stand for them;  initial: (b,) their values by those of the arm
+    names: of the b base parameters, such as "forearm_link.mx";  units: of each
+    chosen: (b,) their columns in the regressor;  initial: (b,) their values by those of the arm
     """
 
     names: tuple[str, ...]
@@ -43,9 +43,10 @@ class BaseParameters(ByValue):
 
 
 def columns_with_motors(arm: Chain, position: Array, velocity: Array, acceleration: Array) -> Array:
-    """Force at each joint per inertial parameter and per inertia of its motor (k, 11 k, n).
+    """Regressor of the joint forces by inertial parameters and motor inertias (k, 11 k, n).
 
-    The rotor of joint j needs its inertia times the acceleration of that joint, at that joint.
+    position, velocity, acceleration: (k, n)
+    The rotor of a joint needs its inertia times the acceleration of this joint, at this joint.
     """
     columns = force_columns(arm, position, velocity, acceleration)
     motors = np.eye(len(arm.links))[:, :, None] * acceleration[:, None, :]
@@ -53,9 +54,9 @@ def columns_with_motors(arm: Chain, position: Array, velocity: Array, accelerati
 
 
 def base_parameters(arm: Chain, *, seed: int = 0) -> BaseParameters:
-    """The base parameters of an arm: links that tell first, motors last.
+    """The base parameters of an arm, with moments preferred to masses, and masses to motors.
 
-    seed: of the random poses; the parameters do not depend on it but for rounding
+    seed: of the random poses; the parameters depend on it by rounding only
     """
     k, generator = len(arm.links), np.random.default_rng(seed)
     q, v, a = (generator.uniform(-np.pi, np.pi, (k, POSES * k)) for _ in range(3))
@@ -75,14 +76,14 @@ def base_parameters(arm: Chain, *, seed: int = 0) -> BaseParameters:
 
 
 def _turn(column: int, links: int) -> int:
-    """When a column is looked at: moments of links first, then masses, then motors."""
+    """Rank of a column in the selection: moments of links 0, masses 1, motors 2."""
     if column >= len(INERTIAL) * links:
         return 2
     return 1 if column % len(INERTIAL) == 0 else 0
 
 
 def _independent(rows: Array) -> NDArray[np.intp]:
-    """Columns none of which depends on those before it, in their order."""
+    """Indices of the columns that do not depend on the columns before them, in their order."""
     size = np.linalg.norm(rows, axis=0)
     basis = np.zeros((len(rows), 0))
     chosen = []

@@ -1,4 +1,4 @@
-"""An arm: a chain of links, each turning about or sliding along an axis fixed in the one before it.
+"""An arm: a chain of links; each turns about or slides along an axis fixed in the link before it.
 
 Each link has a frame that moves with it. At joint position q, the frame of a link relative to that
 of the link before it (the base for the first) is
@@ -6,7 +6,7 @@ of the link before it (the base for the first) is
     revolute: rotation R Rot(axis, q), origin p        prismatic: rotation R, origin p + R axis q
 
 Its ten inertial parameters are mass m, first moments m c, and moments of inertia about the origin
-of its frame, in the axes of its frame. Every force that a motion needs is linear in them.
+of its frame, in the axes of its frame. All joint forces of a motion are linear in them.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Link(ByValue):
 
     name: of the link;  joint: of its joint;  kind: "revolute" or "prismatic"
     axis: (3,) unit vector in the frame of the link;  rotation: (3, 3) R;  origin: (3,) p, m
-    inertial: (10,) as `INERTIAL` names them, about the origin of the frame; SI
+    inertial: (10,) in the order of `INERTIAL`, about the origin of the frame; SI
     """
 
     name: str
@@ -65,7 +65,7 @@ class Chain(ByValue):
         return np.concatenate([link.inertial for link in self.links])
 
     def with_gravity(self, gravity: tuple[float, float, float]) -> Chain:
-        """The same arm mounted another way; gravity: m/s^2, in the frame of its base."""
+        """The same arm in another mounting; gravity: (3,) m/s^2, in the frame of its base."""
         return replace(self, gravity=gravity)
 
     def __repr__(self) -> str:
@@ -75,7 +75,7 @@ class Chain(ByValue):
 
 
 def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
-    """Rotation (3, 3) by fixed axes x, then y, then z (rad), as robot descriptions write it."""
+    """Rotation matrix (3, 3) for turns about fixed axes x, then y, then z (rad), as in URDF."""
     cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
     cy, sy = np.cos(yaw), np.sin(yaw)
     return np.array(
@@ -90,7 +90,8 @@ def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
 def inertia_about(mass: float, centre: Array, inertia: Array) -> Array:
     """Inertial parameters (10,) of a body about the origin of a frame.
 
-    centre: (3,) of mass, m;  inertia: (3, 3) about the centre of mass, kg m^2, in the same axes
+    mass: kg;  centre: (3,) centre of mass in this frame, m
+    inertia: (3, 3) about the centre of mass, kg m^2, in the axes of this frame
     """
     c = np.asarray(centre, dtype=float)
     about = inertia + mass * (float(c @ c) * np.eye(3) - np.outer(c, c))
@@ -98,9 +99,10 @@ def inertia_about(mass: float, centre: Array, inertia: Array) -> Array:
 
 
 def express_in_frame(inertial: Array, rotation: Array, origin: Array) -> Array:
-    """Inertial parameters (10,) of a body in a frame, as another frame has them.
+    """Inertial parameters (10,) of a body, transformed from one frame to another.
 
-    rotation, origin: of the frame of the body, in the other frame
+    inertial: (10,) in the first frame
+    rotation, origin: (3, 3), (3,) of the first frame, in the other frame
     """
     mass, first = float(inertial[0]), rotation @ inertial[1:4]
     about = rotation @ tensor(inertial[4:]) @ rotation.T
@@ -116,6 +118,6 @@ def _moments(about: Array) -> Array:
 
 
 def tensor(moments: Array) -> Array:
-    """Tensor of inertia (3, 3) of its six components xx, xy, xz, yy, yz, zz."""
+    """Tensor of inertia (3, 3) from its six components xx, xy, xz, yy, yz, zz."""
     xx, xy, xz, yy, yz, zz = moments
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

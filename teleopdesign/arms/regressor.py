@@ -1,10 +1,11 @@
-"""The forces at the joints that a motion of an arm needs: columns, linear in inertial parameters.
+"""Regressor of an arm: joint forces of a motion, linear in the inertial parameters.
 
     force = Y(q, q', q'') x inertial parameters
 
-Recursive Newton-Euler for all samples at once: velocities and accelerations of the frames from the
-base to the tip, gravity as an acceleration of the base the other way; then the force and the moment
-that one unit of each inertial parameter of a link needs, as every joint below it carries them.
+Recursive Newton-Euler algorithm for all samples at once. First velocities and accelerations of the
+frames, from the base to the tip; gravity is an opposite acceleration of the base. Then force and
+moment per unit of each inertial parameter of a link, which all joints between the base and the link
+carry.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ _MOMENTS = np.array([tensor(unit) for unit in np.eye(6)])
 
 @dataclass(frozen=True)
 class _Frames:
-    """Frames of all links along a motion, in the base: rotation (n, 3, 3), origin (n, 3).
+    """Frame of a link along a motion, in the base: rotation (n, 3, 3), origin (n, 3).
 
     spin, turn: angular velocity and acceleration (n, 3);  lift: acceleration of the origin less
     gravity (n, 3); all three in the axes of the link
@@ -42,6 +43,7 @@ def force_columns(arm: Chain, position: Array, velocity: Array, acceleration: Ar
     """Force at each joint per unit of each inertial parameter (k, 10 k, n), SI.
 
     position, velocity, acceleration: (k, n) of the k joints, in the order of the arm
+    raises ModelError: the shapes differ, or do not fit the arm
     """
     frames = _frames(arm, position, velocity, acceleration)
     force, moment = (np.stack(x) for x in zip(*map(_link_columns, frames), strict=True))
@@ -52,7 +54,7 @@ def force_columns(arm: Chain, position: Array, velocity: Array, acceleration: Ar
 
 
 def _carried_load(link: Link, frame: _Frames, force: Array, moment: Array) -> Array:
-    """What a joint carries (..., n) of forces and moments about the origin of the base (..., n, 3).
+    """Joint force (..., n) that carries forces and moments about the base's origin (..., n, 3).
 
     All in the axes of the base;  link, frame: of that joint
     """
@@ -86,7 +88,7 @@ def _frames(arm: Chain, position: Array, velocity: Array, acceleration: Array) -
 
 
 def _next_frame(before: _Frames, link: Link, q: Array, v: Array, a: Array) -> _Frames:
-    """The frame of a link from that of the link before it."""
+    """The frame of a link from the frame of the link before it; q, v, a: (n,) of its joint."""
     axis = link.axis
     if link.kind == "prismatic":
         relative = np.broadcast_to(link.rotation, (len(q), 3, 3))
@@ -137,5 +139,5 @@ def _link_columns(frame: _Frames) -> tuple[Array, Array]:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    """Vector product along the last axis: for few rows in a fraction of the time of numpy's."""
+    """Vector product along the last axis; for few rows much faster than numpy's."""
     return np.asarray(a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT])

@@ -1,8 +1,8 @@
-"""Arms from URDF, the format in which most robots are described: kinematics and inertial values.
+"""Arms from URDF, the usual format of robot descriptions: kinematics and inertial values.
 
-Read: links with their inertial values, joints with their origin, axis and kind. What is drawn,
-limits, transmissions and what simulators add are not. A file is data: one that declares
-entities is refused, and so is one of a size that no robot has.
+Links are read with their inertial values, joints with their origin, axis and kind. Meshes, limits,
+transmissions and additions of simulators are ignored. A file is data: a file that declares entities
+is refused, and so is a file larger than any robot needs.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class _Joint:
 
 @dataclass(frozen=True)
 class _Robot:
-    """What a file says: link -> its inertial parameters (10,), and joints."""
+    """The content of a file: link -> its inertial parameters (10,), and joints."""
 
     file: str
     links: dict[str, Array]
@@ -47,11 +47,11 @@ class _Robot:
 
 
 def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Chain:
-    """The arm of a robot's description.
+    """The arm in a robot's description.
 
-    file: its name in messages;  joints: names of those that move, in the order of the answer
-    What hangs on the links by other joints is part of them, those joints at zero.
-    raises ExperimentError: unreadable, no such joint, no chain from the base to the tip
+    file: its name in messages;  joints: names of the moving joints, from the base to the tip
+    Links on other joints are part of the link that carries them, with these joints at zero.
+    raises ExperimentError: the file is unreadable or invalid, or the joints are no chain in it
     """
     robot = _robot(_root(path, file), file)
     chain = _chain(robot, joints)
@@ -76,7 +76,7 @@ def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Chain:
 
 
 class _Counted(ET.TreeBuilder):
-    """A tree of bounded depth and size."""
+    """A builder of XML trees of limited depth and size."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -151,7 +151,7 @@ def _name(element: ET.Element, file: str, what: str) -> str:
 
 
 def _inertial(link: ET.Element, where: str) -> Array:
-    """Inertial parameters (10,) of a link about its frame; zeros where it says none."""
+    """Inertial parameters (10,) of a link about its frame; zeros where it has none."""
     element = link.find("inertial")
     if element is None:
         return np.zeros(10)
@@ -194,7 +194,7 @@ def _joint(element: ET.Element, file: str, links: dict[str, Array]) -> _Joint:
 
 
 def _origin(element: ET.Element, where: str) -> tuple[Array, Array]:
-    """Rotation and origin that an element's `origin` says; none where it has none."""
+    """Rotation and origin of an element's `origin`; identity and zero where it has none."""
     origin = element.find("origin")
     if origin is None:
         return np.eye(3), np.zeros(3)
@@ -221,7 +221,10 @@ def _numbers(
 
 
 def _chain(robot: _Robot, joints: Sequence[str]) -> list[_Joint]:
-    """The joints that move, from the base to the tip."""
+    """The moving joints, from the base to the tip.
+
+    raises ExperimentError: unknown or fixed joints, or no chain
+    """
     by_name = {j.name: j for j in robot.joints}
     for name in joints:
         if name not in by_name:
@@ -258,7 +261,7 @@ def _chain(robot: _Robot, joints: Sequence[str]) -> list[_Joint]:
 
 
 def _locate_parent(robot: _Robot, frame: str, joint: _Joint) -> tuple[Array, Array]:
-    """Rotation and origin of the parent of a joint, in the frame of a link that it is fixed to."""
+    """Rotation and origin of a joint's parent link, in the frame of a link that carries it."""
     carrier = {j.child: j for j in robot.joints}
     rotation, origin, link = np.eye(3), np.zeros(3), joint.parent
     while link != frame:
@@ -269,7 +272,7 @@ def _locate_parent(robot: _Robot, frame: str, joint: _Joint) -> tuple[Array, Arr
 
 
 def _inertia_with_children(robot: _Robot, link: str, moving: set[str]) -> Array:
-    """Inertial parameters (10,) of a link with all that hangs on it by joints that do not move."""
+    """Inertial parameters (10,) of a link with all links on it whose joints do not move."""
     whole = np.zeros(10)
     waiting = [(link, np.eye(3), np.zeros(3))]
     while waiting:

@@ -1,4 +1,4 @@
-"""Blocks of a diagram: equations only."""
+"""Blocks of a diagram, as equations only: bodies, environments, hands, impedances."""
 
 from ..arguments import check_arguments
 from ..effects import BLOCK_EFFECTS, with_block_effects

@@ -2,8 +2,8 @@
 
     inertia * a = acting force + interaction force - force - friction
 
-`Body.equation` composes the laws of its effects by role into that one equation, which every form
-(transfer function, python-control system, kernel, residual along a motion) starts from.
+`Body.equation` composes the laws of its effects by role into this equation. All other forms
+(transfer function, python-control system, kernel, residual along a motion) use it.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ class Body:
     """A body on one axis: its inertia, its effects, and a value for every parameter.
 
     axis: "prismatic" or "revolute";  parameters: "inertia", "coulomb.level", ... -> Value, or a
-    plain number (SI)
+        plain number (SI)
+    raises ModelError: a parameter is unknown, missing or out of bounds, or effects do not combine
     """
 
     axis: str
@@ -80,12 +81,12 @@ class Body:
         object.__setattr__(self, "parameters", Frozen(parameters))
 
     def declared(self) -> list[tuple[str, Parameter]]:
-        """Every parameter of the body by its name in answers, with its declaration."""
+        """Every parameter of the body: its name in answers, and its declaration."""
         of_effects = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
         return [("inertia", INERTIA), *of_effects]
 
     def parameter(self, name: str) -> Parameter:
-        """Declaration of the parameter of that name; ModelError with the nearest one."""
+        """Declaration of a parameter; raises ModelError: there is none of this name."""
         declared = dict(self.declared())
         if name not in declared:
             raise _missing_parameter_error(name, declared)
@@ -97,20 +98,20 @@ class Body:
         return unit_of(self.parameter(name).quantity, self.axis)
 
     def has(self, effect: str) -> bool:
-        """Whether the effect of that name is in the body."""
+        """Whether the body has an effect of this name."""
         return any(e.name == effect for e in self.effects)
 
     def lacks(self, effect: Effect) -> tuple[str, ...]:
-        """Names of what an effect needs beside it and the body has not, sorted.
+        """Names of effects that an effect needs and the body lacks, sorted.
 
-        Of a role that one effect of a body can have, another one of that role will do; so will an
-        effect that counts as the one needed, where the law holds no parameter of that one.
+        For a role that only one effect can have, any effect of this role is enough. So is an effect
+        that counts as the needed one, unless the law holds a parameter of the needed one.
         """
         return _list_missing_parts(self.effects, effect)
 
     @check_types
     def effect(self, name: str) -> Effect:
-        """The effect of that name; ModelError where the body has none."""
+        """The effect of this name; raises ModelError: the body has none."""
         for effect in self.effects:
             if effect.name == name:
                 return effect
@@ -119,10 +120,10 @@ class Body:
 
     @check_types
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
-        """The body with one more effect, at these values (default: those at which it is absent).
+        """The body with one more effect, at these values (None: those at which it is absent).
 
-        A shape of friction, or a structure, replaces another one that was there.
-        raises ModelError: the effect is there already, or has no such parameter
+        A shape of friction, or a structure, replaces the present one of the same role.
+        raises ModelError: the body has the effect already, or the effect has no such parameter
         """
         if self.has(effect.name):
             raise ModelError(
@@ -152,7 +153,7 @@ class Body:
 
     @check_types
     def without_effect(self, name: str) -> Body:
-        """The body without that effect."""
+        """The body without an effect; raises ModelError: it lacks it, or another one needs it."""
         self.effect(name)
         return replace(
             self,
@@ -194,37 +195,37 @@ class Body:
         return {s: self.parameters[n].value for n, s in self.symbols().items()}
 
     def level(self) -> sp.Expr:
-        """Friction level: the sum of the laws, each times its factors, at the speed it depends on.
+        """Friction level: sum of the laws times their factors, at the speed that it depends on.
 
-        A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
+        A factor scales the levels that it needs ("coulomb"), or all of them where it needs none.
         """
         return friction_level(self.effects)
 
     def tip_level(self) -> sp.Expr:
-        """Level of the dry friction that holds the tip of a structure."""
+        """Level of the dry friction on the tip of a structure."""
         return sp.Add(*(e.expression() for e in sort_by_action(self.effects, "tip_level")))
 
     def carried_force(self) -> sp.Expr:
-        """Force that the transmission carries along a measured motion, as the acting force."""
+        """Force of the transmission along a measured motion, positive as the acting force."""
         return carried_force(self.effects)
 
     def contact(self) -> sp.Expr:
-        """Force that a modelled environment takes from the body; 0 where there is none."""
+        """Force of a modelled environment that resists the body; 0 where there is none."""
         return contact_force(self.effects)
 
     def equation(self) -> BodyEquation:
-        """Compose the effects by role into the body's equation."""
+        """The body's equation, composed from its effects by role."""
         return compose_equation(self.effects)
 
     def impedance(self, s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
-        """Impedance relative to position, Z(s) (force per position), and the effects left out.
+        """Impedance relative to position, Z(s) (force per position), and names of effects left out.
 
-        The linear forms that effects declare, inertia s^2 included.
+        The sum of inertia s^2 and the linear forms that effects declare.
         """
         return impedance_of(self.effects, s)
 
     def actuation(self, s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
-        """Transfer function from command to acting force, and the effects left out."""
+        """Transfer function from command to acting force, and names of effects left out."""
         return actuation_of(self.effects, s)
 
     def __repr__(self) -> str:
@@ -255,7 +256,7 @@ def _missing_parameter_error(name: object, known: Iterable[str]) -> ModelError:
 
 @lru_cache(maxsize=4096)
 def _list_missing_parts(effects: tuple[Effect, ...], effect: Effect) -> tuple[str, ...]:
-    """What `Body.lacks` says of a body with these effects."""
+    """Result of `Body.lacks` for a body with these effects."""
     roles = {e.role for e in effects} & set(ONE_ONLY)
     known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
     counted = {n for e in effects for n in e.counts_as} - effect.parameters_of_others()
@@ -267,9 +268,9 @@ def _list_missing_parts(effects: tuple[Effect, ...], effect: Effect) -> tuple[st
 
 @lru_cache(maxsize=256)
 def _check_effects(effects: tuple[Effect, ...], axis: str) -> None:
-    """Refuse effects that no body can have together; once for each set, for a fit makes thousands.
+    """Refuse effects that no body can have together; cached, for a fit makes thousands.
 
-    raises ModelError: what is wrong
+    raises ModelError: with the effects
     """
     names = [e.name for e in effects]
     if doubled := {n for n in names if names.count(n) > 1}:
@@ -297,7 +298,7 @@ def _refuse_axis(axis: object) -> None:
 
 
 def _effects(effects: object) -> tuple[Effect, ...]:
-    """A tuple of effects; a list is taken too, a name is refused."""
+    """A tuple of effects; a list is converted, a name is refused."""
     expected = 'a tuple of effects, such as (EFFECTS["coulomb"],)'
     if not isinstance(effects, tuple):
         instance(effects, list, "Body: effects", expected=expected)

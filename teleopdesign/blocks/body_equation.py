@@ -17,10 +17,10 @@ from .environment import contact_force
 class BodyEquation:
     """The composed equation of one body, in sympy, on the symbols of `effects.SIGNALS`.
 
-    inertia: total inertia;  force: forces subtracted, without their share in the acceleration
-    level: friction level;  friction: friction force, level in place (sgn v times level by default)
-    acting: force that acts, from `command`, with `delayed(...)` where a delay is in the chain
-    rates: hidden state -> rate of change;  stages: states of the actuation chain among them
+    inertia: total inertia;  force: forces that are subtracted, without their part in the inertia
+    level: friction level;  friction: friction force (sgn v times level without a friction shape)
+    acting: acting force from `command`, with `delayed(...)` where the actuation has a delay
+    rates: hidden state -> rate of change;  stages: states of the actuation among these
     """
 
     inertia: sp.Expr
@@ -33,7 +33,7 @@ class BodyEquation:
 
 
 def compose_equation(effects: tuple[Effect, ...]) -> BodyEquation:
-    """The equation that the effects make together."""
+    """The equation of a body with these effects."""
     acceleration, velocity = SIGNALS["acceleration"], SIGNALS["velocity"]
     forces = [*sort_by_action(effects, "force"), *sort_by_action(effects, "structure")]
     force = sp.expand(sum((e.expression() for e in forces), sp.S(0)))
@@ -68,7 +68,7 @@ def compose_equation(effects: tuple[Effect, ...]) -> BodyEquation:
 
 
 def impedance_of(effects: tuple[Effect, ...], s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
-    """Sum of the linear forms, inertia s^2 included, and the effects without one."""
+    """Inertia s^2 plus the linear forms of effects, and names of effects without one."""
     z: sp.Expr = body_symbols(effects)["inertia"] * s**2
     left_out = []
     for effect in effects:
@@ -83,7 +83,7 @@ def impedance_of(effects: tuple[Effect, ...], s: sp.Symbol) -> tuple[sp.Expr, tu
 
 
 def actuation_of(effects: tuple[Effect, ...], s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
-    """Transfer function of the actuation stages, and those without a linear form."""
+    """Transfer function of the actuation stages, and names of stages without a linear form."""
     transfer: sp.Expr = sp.S(1)
     left_out = []
     for effect in sort_by_action(effects, "actuation"):
@@ -107,7 +107,7 @@ def body_symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
 
 @lru_cache(maxsize=256)
 def friction_level(effects: tuple[Effect, ...]) -> sp.Expr:
-    """Sum of the levels, each times its factors, at the speed that it depends on."""
+    """Sum of the levels times their factors, at the speed that it depends on."""
     factors = sort_by_action(effects, "friction_factor")
     level = sp.S(0)
     for effect in sort_by_action(effects, "friction_level"):

@@ -1,15 +1,15 @@
-"""The force that a transmission carries: what its output hands on to the load.
+"""The force that a transmission carries from its output to the load.
 
     carried = inertia a + forces of the place - interaction        along a measured motion
             = acting force - damping - friction                    by the body's equation
 
-Gears press on their teeth by this force. An actuator that is driven by a voltage loses a part of
-its acting force to the back-EMF before the gears: friction of the gears then follows the carried
+Gear teeth press on each other with this force. An actuator that is driven by a voltage loses a part
+of its acting force to the back-EMF before the gears: friction of the gears then follows the carried
 force, not the acting force. Forces that depend on the velocity, and forces with hidden states,
-count as before the transmission; all others count as a part of its load.
+count as forces before the transmission; all others are a part of its load.
 
-Friction that grows with the carried force reduces this force. The second form is solved for it,
-with the friction of a body that slides or is about to:
+Friction that grows with the carried force reduces this force. The second form is solved for the
+carried force, with the friction of a body that slides or starts to slide:
 
     level = A + M abs(carried),  y = acting force - damping - A sgn v
     carried = y / (1 + M sgn(v y))
@@ -43,10 +43,10 @@ def carried_force(effects: tuple[Effect, ...]) -> sp.Expr:
 
 
 def solve_carried_force(equation: BodyEquation, effects: tuple[Effect, ...]) -> BodyEquation:
-    """The equation with the carried force solved for, on acting force and motion.
+    """The equation with the carried force solved for, in terms of acting force and motion.
 
-    raises ModelError: the friction level is not in proportion to the carried force, beside a part
-        that does not depend on it
+    raises ModelError: the friction level is not a constant part plus a part in proportion to
+        abs(carried force), for each direction
     """
     if not any(e.has(_CARRIED) for e in (equation.friction, *equation.rates.values())):
         return equation
@@ -60,13 +60,16 @@ def solve_carried_force(equation: BodyEquation, effects: tuple[Effect, ...]) -> 
 
 
 def _of_the_load(effects: tuple[Effect, ...]) -> list[Effect]:
-    """Forces that act behind the transmission."""
+    """Forces behind the transmission."""
     forces = sort_by_action(effects, "force")
     return [e for e in forces if not e.states and not e.expression().has(*_BEFORE)]
 
 
 def _solve(level: sp.Expr, effects: tuple[Effect, ...]) -> sp.Expr:
-    """Carried force at which all forces on the body are in balance while it slides."""
+    """Carried force that balances all forces on a sliding body.
+
+    raises ModelError: as `solve_carried_force`
+    """
     load = _of_the_load(effects)
     before = [e.expression() for e in sort_by_action(effects, "force") if e not in load]
     base = level.subs(_CARRIED, 0)

@@ -1,7 +1,7 @@
-"""Bodies from what files describe: the one place where written values meet an effect's parameters.
+"""Bodies from descriptions in files: the only place where written values become parameters.
 
-The same table is a body in experiment.toml, in a diagram's file and in an answer. A value with a
-unit is converted and its unit checked; a plain number is in SI.
+The same table describes a body in experiment.toml, in a diagram's file and in an answer. A value
+with a unit is checked and converted; a plain number is in SI.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from .value import Value
 def body_of(
     description: BodyDescription, known: Mapping[str, Effect], *, complete: bool = False
 ) -> Body:
-    """The body that is described, in SI.
+    """The body of a description, in SI.
 
-    known: effects by name;  complete: every parameter that is not optional is required; else one
-        that is left out is open, and stands where its effect is absent
+    known: effects by name
+    complete: whether every parameter that is not optional is required; otherwise a missing one is
+        free, with the value at which its effect is absent
     raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds or missing
     """
     where = description.where
@@ -75,7 +76,10 @@ def effects_of(
 
 
 def value_of(written: ModelValue, parameter: Parameter, axis: str) -> Value:
-    """A value in SI; raises ExperimentError: wrong unit, or out of the parameter's bounds."""
+    """A value in SI.
+
+    raises ExperimentError: wrong unit, or value out of the parameter's bounds
+    """
     number, error = written.in_si(parameter.quantity, axis)
     if not parameter.lower <= number <= parameter.upper:
         unit = written.unit or unit_of(parameter.quantity, axis)
@@ -89,7 +93,10 @@ def value_of(written: ModelValue, parameter: Parameter, axis: str) -> Value:
 def with_environment(
     body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]
 ) -> Body:
-    """The body with the environment that it touches; without a stated damping it has none."""
+    """The body with the environment that it touches; a damping that is not stated is zero.
+
+    raises ExperimentError: no stiffness, or as `body_of`
+    """
     if "stiffness" not in description.values:
         raise ExperimentError(f"{description.where}: no stiffness given")
     values = {
@@ -109,15 +116,15 @@ def with_environment(
 
 
 def joint_with_links(description: BodyDescription) -> BodyDescription:
-    """A joint of an arm as a body: its links have the inertia that its motor does not state."""
+    """A joint of an arm as a body with fixed inertia: that of its motor, or zero if not stated."""
     motor = description.inertia or ModelValue(0.0, None, True, description.where)
     return replace(description, inertia=replace(motor, fixed=True))
 
 
 def free_body_of(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
-    """As `body_of`; raises ExperimentError also where an effect acts at an environment.
+    """As `body_of`, for a body without an environment, which `with_environment` adds.
 
-    What the body touches is described beside it: see `with_environment`.
+    raises ExperimentError: also where an effect acts at an environment
     """
     for name in description.effects:
         if name in known and known[name].role in CONTACT_ROLES:

@@ -1,4 +1,4 @@
-"""The force that a modelled environment takes from the body that touches it."""
+"""The force of a modelled environment on the body that touches it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ CONTACT = BLOCK_EFFECTS["environment"]
 
 
 def contact_force(effects: Sequence[Effect]) -> sp.Expr:
-    """Force that the environment takes from the body; 0 where none of these effects is one."""
+    """Force of the environment that resists the body; 0 where no effect is a contact."""
     if not any(e.role in CONTACT_ROLES for e in effects):
         return sp.S(0)
     penetration = SIGNALS["position"] - CONTACT.symbols()["contact_position"]

@@ -1,9 +1,10 @@
-"""Environments to design against: a body with something to run into.
+"""Environments for a design: a body with an object that it can touch.
 
     slave = soft_rubber(slave, stiffness=800.0, damping=2.0, level=0.3, give=5e-4, position=0.01)
 
-Each replaces the environment that the body had. SI; `position` is where contact begins, and what
-lies beyond it resists. Numbers in the documentation are examples: what a material does is measured.
+Each function replaces the environment that the body had. SI; contact begins at `position` and
+resists motion beyond it. Numbers in the documentation are examples: values of a material must be
+measured.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from .environment import CONTACT
 
 
 def free_space(body: Body) -> Body:
-    """The body without what it touches: free motion, no contact force.
+    """The body without an environment: free motion, no contact force.
 
     Effects of contacts are removed; friction, structure and actuation of the body stay.
     """
@@ -25,9 +26,9 @@ def free_space(body: Body) -> Body:
 
 
 def spring_damper(body: Body, *, stiffness: float, damping: float, position: float = 0.0) -> Body:
-    """A wall of spring and damper that pushes and never pulls.
+    """A wall with spring and damper that pushes and never pulls.
 
-    stiffness: N/m;  damping: N s/m, of which the force jumps at the touch
+    stiffness: N/m;  damping: N s/m, makes the force jump at the first contact;  position: m
     """
     return _add_environment(body, stiffness, position, damping=damping)
 
@@ -43,7 +44,7 @@ def hunt_crossley(
 ) -> Body:
     """A force K d_0 (d/d_0)^n (1 + v/v_0): k d^n + c d^n v with k = K d_0^(1-n), c = k/v_0.
 
-    stiffness: K, secant stiffness at the depth d_0 = `depth`, N/m and m
+    stiffness: K, N/m, secant stiffness at the depth d_0 = `depth`, m
     reference_velocity: v_0, m/s;  power: n, 1.5 for a sphere on a flat (Hertz)
     """
     wall = _add_environment(body, stiffness, position)
@@ -65,8 +66,8 @@ def soft_rubber(
 ) -> Body:
     """A spring, a damper and a small friction inside the material, in parallel.
 
-    stiffness: N/m;  damping: N s/m;  level: of the friction inside, N
-    give: depth over which that friction builds up, m;  recovery_time: s
+    stiffness: N/m;  damping: N s/m;  level: of the inner friction, N
+    give: depth over which the inner friction builds up, m;  recovery_time: s;  position: m
     """
     wall = _add_environment(body, stiffness, position, damping=damping)
     inside = {"level": level, "stiffness": level / give, "recovery_time": recovery_time}

@@ -4,9 +4,9 @@
     gripping = hand(mass=0.1, damping=2.0, stiffness=50.0, arm={"inertia": 1.5, ...})
 
 These numbers are examples: with the grip and from person to person they vary by an order of
-magnitude. What the hand wants comes in as force (`R_V`) or as motion: the force that would lead the
-free hand along it, from a simulation of the hand alone (`haptic_interface(hand)` with that
-motion prescribed: its R_V).
+magnitude. The intention of the hand is a force (`R_V`) or a motion. For a motion, it is the force
+that would move the free hand along it, from a simulation of the hand alone
+(`haptic_interface(hand)` with this motion prescribed: its R_V).
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def hand(
     arm: Mapping[str, float] | None = None,
     axis: str = "prismatic",
 ) -> Body:
-    """Mass, damper and spring from the handle to rest, or to an arm that itself moves.
+    """Mass, damper and spring between the handle and a fixed point, or an arm that moves itself.
 
-    mass: what moves with the handle, kg;  damping: N s/m;  stiffness: N/m
+    mass: moving with the handle, kg;  damping: N s/m;  stiffness: N/m
     arm: `inertia`, `damping`, `stiffness` of the arm; then `damping` and `stiffness` are the grip's
     """
     body = Body(axis, {"inertia": Value(mass)})

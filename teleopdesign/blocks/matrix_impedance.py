@@ -23,7 +23,8 @@ MatrixRows = tuple[tuple[float, ...], ...]
 class MatrixImpedance:
     """Z = mass s^2 + damping s + stiffness, square matrices of one size (SI).
 
-    Entry (i, j) is the force i for motion j; entries that are zero are no parameters.
+    Entry (i, j) is the force i per motion j; entries that are zero are no parameters.
+    raises ModelError: the matrices are not square and of one size
     """
 
     mass: MatrixRows
@@ -55,9 +56,9 @@ class MatrixImpedance:
         }
 
     def with_values(self, values: Mapping[str, float]) -> MatrixImpedance:
-        """The impedance with other values (SI) of entries that it has, such as "stiffness_1_2".
+        """The impedance with other values (SI) of its entries, such as "stiffness_1_2".
 
-        raises ModelError: no such entry, also where it is zero
+        raises ModelError: there is no such entry, or it is zero now
         """
         known = self.parameters
         for name in values:
@@ -78,9 +79,10 @@ class MatrixImpedance:
         motions: Sequence[tuple[sp.Expr, sp.Expr, sp.Expr]],
         symbol: Callable[[str], sp.Symbol],
     ) -> list[sp.Expr]:
-        """Force along each motion; motions: position, velocity, acceleration of each.
+        """Force along each motion, as expressions.
 
-        symbol: parameter -> its symbol
+        motions: position, velocity, acceleration of each;  symbol: name of a parameter -> its
+            symbol
         """
         total = [sp.S(0)] * self.size
         for name in self.parameters:
@@ -90,7 +92,7 @@ class MatrixImpedance:
         return total
 
     def entry(self, row: int, column: int, s: sp.Symbol) -> sp.Expr:
-        """Z_ij(s), row and column from 0."""
+        """Z_ij(s); row and column count from 0."""
         return sp.Add(*(getattr(self, p)[row][column] * s**k for p, k in _PARTS.items()))
 
     def over(self, s: np.ndarray) -> np.ndarray:
@@ -107,9 +109,10 @@ assert {f.name for f in fields(MatrixImpedance)} == set(_PARTS)
 def matrix_impedance(
     *, mass: Any = 0.0, damping: Any = 0.0, stiffness: Any = 0.0
 ) -> MatrixImpedance:
-    """An impedance from square matrices (or one number for all diagonals of one size).
+    """An impedance from square matrices, or from numbers for the whole diagonal.
 
-    raises ModelError: no matrix, or sizes differ
+    mass, damping, stiffness: SI; at least one of them a matrix
+    raises ModelError: an argument is no matrix or number, or sizes differ
     """
     matrices = {"mass": mass, "damping": damping, "stiffness": stiffness}
     for name, matrix in matrices.items():
@@ -124,7 +127,7 @@ def matrix_impedance(
 
 
 def _refuse_other(matrix: Any, name: str) -> None:
-    """Refuse what is neither a number nor a matrix of numbers."""
+    """Refuse an argument that is neither a number nor a matrix of numbers."""
     try:
         array = np.asarray(matrix)
         right = array.dtype.kind in "iuf" and array.ndim in (0, 2) and bool(np.all(array == array))

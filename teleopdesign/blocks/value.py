@@ -1,4 +1,4 @@
-"""A number with what is known of it: whether it is fixed, and its standard error."""
+"""A number with its standard error, and whether it is fixed."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ NINETY_FIVE = 1.96
 
 @dataclass(frozen=True, eq=False)
 class Value(ByValue):
-    """A parameter's value with what is known of it.
+    """A parameter's value with its standard error.
 
-    value: SI;  fixed: known, so that no fit estimates it anew
+    value: SI;  fixed: whether it is known, so that no fit estimates it
     stderr: standard error, in the unit of the value; NaN where it is unknown
-    raises ModelError: the value is no number
+    raises ModelError: the value is no number, or `fixed` no flag
     """
 
     value: float

@@ -1,4 +1,4 @@
-"""The bandwidth of the comparison: whether the position still tells a motion there."""
+"""The bandwidth of the comparison: whether the position still shows a certain motion there."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ ENOUGH = 0.9
 
 
 def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
-    """A bandwidth at which far fewer rows tell a motion than lower down, or below the motion.
+    """Findings on a bandwidth that is too high for the position readings, or below the motion.
 
-    Or one at which the user's model leaves far more than lower down.
+    A bandwidth is too high where far fewer rows show a certain motion than at a lower one, or where
+    the user's model leaves far more than at a lower one.
     """
     experiment, stated = prepared.experiment, prepared.bandwidth
     narrower = narrower_band(model, prepared)
@@ -48,7 +49,7 @@ def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
 
 
 def _motion_beyond(experiment: Experiment, chosen: float) -> Iterator[Finding]:
-    """Whether the motion stands above its readings' scatter beyond a bandwidth that was chosen."""
+    """A finding where the motion exceeds the noise of its readings above the chosen bandwidth."""
     highest = motion_beyond(experiment, chosen)
     if highest is None:
         return

@@ -1,4 +1,4 @@
-"""Which effects a record can show, which only if they are large, which not at all, and why."""
+"""Which effects a record can show, which only if they are large, and which not at all, and why."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ROW = 88
 def check_excitation(
     model: Model, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[Finding, ...]:
-    """Findings about the motion of each body and what it can show, from the fit records."""
+    """Findings on the motion of each body and the effects that it shows, from fit records."""
     base = estimate(model, _drop_folds(prepared), effort=EFFORTS.rough)
     floor = noise_floor(base.model, prepared, generator, use="fit")
     motions = [s.motion for s in prepared.of("fit")]
@@ -63,7 +63,7 @@ def check_excitation(
 
 
 def _drop_folds(prepared: Prepared) -> Prepared:
-    """Records with one as check record: errors of held-out blocks are not needed here."""
+    """Records with check records; without these the fit records, to save held-out blocks."""
     if prepared.of("check"):
         return prepared
     again = tuple(replace(s, use="check") for s in prepared.of("fit"))
@@ -78,7 +78,7 @@ def _summary(
     floor: float,
     place: str,
 ) -> Finding:
-    """A line for each kind: shown, shown if large, not shown and why; rows of what can be shown."""
+    """A finding with the effects that the records can show, only if large, or not, with reasons."""
     # to six digits: two that are the same force stay in the order of the catalogue, on any machine
     in_order = sorted(visible_effects, key=lambda v: round_near(v.size, digits=6))
     shown = [v for v in in_order if v.size <= LARGE]
@@ -124,7 +124,7 @@ def _summary(
 
 
 def _rows(items: Sequence[str]) -> str:
-    """Items in two columns, down first, or in one if they are long; a row begins with spaces."""
+    """Items in two columns, or in one where they are long; each row is indented."""
     ended = [f"{item}," for item in items[:-1]] + [f"{item}." for item in items[-1:]]
     half = (len(ended) + 1) // 2
     left, right = ended[:half], ended[half:]
@@ -148,7 +148,7 @@ def _list_waiting_effects(model: Model, place: str) -> list[str]:
 
 
 def _describe_smallest(v: Visibility, model: Model, share: float | None = None) -> str:
-    """An effect, the parameter that makes it visible and from which value, and its force there."""
+    """An effect with its strength parameter, the least visible value, and the force there."""
     effect = v.candidate.effect
     name, value = next(iter(v.strength.items()))
     unit = unit_of(effect.parameters[name].quantity, model.body(v.candidate.at).axis)
@@ -160,7 +160,7 @@ def _describe_smallest(v: Visibility, model: Model, share: float | None = None) 
 
 
 def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
-    """Why an effect is invisible: its numbers, and what the motion lacks."""
+    """Why an effect is invisible: its numbers, and the signals that the motion lacks."""
     signals = list(list_needed_signals(v.candidate.effect))
     if v.silent:
         why = "it makes no force here"
@@ -180,10 +180,10 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
 
 
 def list_needed_signals(effect: Effect) -> tuple[str, ...]:
-    """Signals that an effect's law and hidden states follow.
+    """Signals that an effect's law and hidden states depend on.
 
-    Friction always follows the velocity; what stands between command and force shows in a force
-    that does not pass through it.
+    Friction always depends on the velocity. An effect of the actuation shows where another force
+    acts that does not pass the actuator.
     """
     laws = [effect.expression(), *effect.rates().values()]
     names = [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
@@ -193,7 +193,7 @@ def list_needed_signals(effect: Effect) -> tuple[str, ...]:
 
 
 def _look_alikes(visible_effects: Sequence[Visibility], place: str) -> list[Finding]:
-    """Effects whose marks have the same shape: the record would not say which it is."""
+    """Findings on effects whose changes of the residual have the same shape on these records."""
     visible = [v for v in visible_effects if v.size <= 1.0]
     groups: list[set[str]] = []
     for a, b in combinations(visible, 2):

@@ -1,13 +1,14 @@
-"""Scale, sign and timing of each force, from how it balances with the others along the motion.
+"""Scale, sign and timing of each force, from the balance of all forces along the motion.
 
-    lead(t + shift) + gain other(t + shift') = sum of strength_j column_j + what the model says else
+    lead(t + shift) + gain other(t + shift') = sum of strength_j column_j + rest of the model
 
-By linear least squares, unbounded, on the rows where the body surely moves. `lead` is the
-actuator force (the interaction force where nothing is commanded); columns are the tangents of the
-user's model by its inertia and by every strength in which its force is linear, and a constant force
-where the model has none. A force that is turned gives a negative gain, a motion that is turned
-negative strengths, a unit that is off a strength that is off by its factor. Shifts come from the
-forces' derivatives, solved again about each shift, first at low frequency, where a period is long.
+This is solved by linear least squares, without bounds, on the rows where the body surely moves.
+`lead` is the actuator force (the interaction force where nothing is commanded). The columns are the
+tangents of the user's model by its inertia and by every strength in which its force is linear, and
+a constant force where the model has none. A force with the wrong sign gives a negative gain, a
+motion with the wrong sign negative strengths, and a wrong unit a strength that is wrong by its
+factor. Shifts come from the forces' derivatives, solved again at each shift, first at low
+frequency, where a period is long.
 """
 
 from __future__ import annotations
@@ -51,22 +52,23 @@ class Estimate:
 
     @property
     def sure(self) -> int:
-        """Sign of an estimate that is five standard errors away from zero, else 0."""
+        """Sign of an estimate that differs from zero by five standard errors, else 0."""
         return int(np.sign(self.value)) if abs(self.value) > 5.0 * self.error else 0
 
 
 @dataclass(frozen=True)
 class ForceBalance:
-    """How the forces on one body balance.
+    """The balance of the forces on one body.
 
-    lead: channel that the others are held against;  other: the second measured force, or ""
+    lead: channel that the other forces balance;  other: the second measured force, or ""
     gain: of the other force, 1 where its scale and sign are right, and 1 where there is none
     strengths: "inertia", "coulomb.level" ... -> estimate (SI)
-    power: of the inertia, and of each strength that takes energy from any motion, W, mean
+    power: mean power (W) of the inertia, and of each strength that always dissipates
     shifts: "actuator_force", "interaction_force" -> s by which its log lags the motion; "position"
-        -> s by which the motion's does, where that alone explains it; empty: no shift is reported
-    left, unshifted: force left unexplained over the measured force, with and without the shifts
-    rows: part of the record on which all this rests
+        -> s by which the position's log lags, where one common shift explains the rest; empty: no
+        shift
+    left, unshifted: residual over measured force (rms), with and without the shifts
+    rows: part of the record's rows in the balance
     """
 
     body: str
@@ -82,7 +84,7 @@ class ForceBalance:
 
 
 def strengths_of(body: Body) -> list[str]:
-    """The inertia, and the parameters whose being zero takes a force away altogether."""
+    """The inertia, and the parameters at whose zero an effect has no force."""
     names = ["inertia"]
     for effect in body.effects:
         if effect.role in ("force", "friction_level"):
@@ -95,10 +97,11 @@ def force_balance(
 ) -> ForceBalance | None:
     """The balance of one body; None where it hardly moves or no force is measured.
 
-    A weight or a pressure of many times the friction would have it drive, where a model lacks it.
-    So would the gravity of a pendulum have its inertia: where a force of the place takes away most
-    of what is left, it belongs to the balance.
-    stretches: those of this body;  timed: look for shifts
+    A constant force that the model lacks, such as a weight of many times the friction, would give
+    friction the wrong sign. Likewise, the gravity of a pendulum would give its inertia the wrong
+    sign. So a bias is always added, and a force of position where it removes most of the residual.
+
+    stretches: of this body;  timed: whether shifts are estimated
     """
     stated = strengths_of(body)
     body = _with_lacking(body, ["bias"])
@@ -112,7 +115,7 @@ def force_balance(
 
 
 def _with_lacking(body: Body, names: Sequence[str]) -> Body:
-    """The body with those of these effects that it lacks."""
+    """The body with all of these effects."""
     for name in names:
         body = body if body.has(name) else body.with_effect(EFFECTS[name])
     return body
@@ -121,7 +124,7 @@ def _with_lacking(body: Body, names: Sequence[str]) -> Body:
 def _balance_of(
     body: Body, stated: Sequence[str], stretches: Sequence[Stretch], *, timed: bool
 ) -> ForceBalance | None:
-    """The balance of a body;  stated: of its strengths, those that the user's model has."""
+    """The balance of a body;  stated: names of strengths that the user's model has."""
     names = [*stated, *(n for n in strengths_of(body) if n not in stated)]
     bands = {
         b: [transform_in_band(body, s, names, b) for s in stretches]
@@ -161,7 +164,7 @@ def _balance_of(
 
 
 def _brakes(body: Body, strength: str) -> bool:
-    """Whether a strength is that of an effect that takes energy from any motion."""
+    """Whether a strength is that of an effect that always dissipates."""
     return body.effect(strength.partition(".")[0]).energy == "dissipates"
 
 
@@ -179,7 +182,7 @@ def force_balances(
 
 
 def _name_shifts(fit: BalanceFit, steps: Sequence[Estimate]) -> dict[str, Estimate]:
-    """The shifts by channel; one that both forces share is the position's, the other way."""
+    """The shifts by channel; a shift of both forces is the position's, with opposite sign."""
     shifts: dict[str, Estimate] = {}
     for group, step in zip(fit.groups, steps, strict=True):
         late = fit.shifts[group[0]]
@@ -198,7 +201,7 @@ def _blocks(stretches: Sequence[Stretch], parts: Sequence[BandTransforms]) -> ND
 def _power(
     parts: Sequence[BandTransforms], columns: Array, strengths: Mapping[str, Estimate]
 ) -> dict[str, Estimate]:
-    """Mean power (W) that each strength takes out of the motion."""
+    """Mean power (W) that each strength dissipates in the motion."""
     velocity = np.concatenate([p.motion.velocity[p.keep] for p in parts])
     mean = columns @ velocity / len(velocity)
     return {

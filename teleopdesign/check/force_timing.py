@@ -1,9 +1,9 @@
-"""Timing of the forces on one body: by how much each one's log lags the motion.
+"""Timing of the forces on one body: the time by which each log lags the motion.
 
-A force that is late by t is f(t + shift) = f + shift df/dt + ...: its derivative is one more
-column of the balance. Each step moves the forces by the estimated shift; the first ones look at low
-frequency only, where a period is long. Forces that share one shift stand for a motion that is
-shifted itself.
+A force that is late by `shift` is corrected by f(t + shift) = f + shift df/dt + ..., so its
+derivative is one more column of the balance. Each step moves the forces by the estimated shift; the
+first steps use low frequencies only, where a period is long. If all forces share one shift, the log
+of the motion is shifted instead.
 """
 
 from __future__ import annotations
@@ -39,9 +39,10 @@ ON_TIME: Mapping[str, float] = {"actuator_force": 0.0, "interaction_force": 0.0}
 
 @dataclass(frozen=True)
 class BandTransforms:
-    """One stretch in one band: transforms of both forces; what the model needs besides, columns.
+    """One stretch in one band: transforms of both forces, and the other terms of the balance.
 
-    others: (1 + p, rows), already low-passed;  keep: the rows that count
+    forces: channel -> Fourier transform;  keep: the rows that count
+    others: (1 + p, rows) low-passed: the rest of the model, and the columns of the p strengths
     """
 
     motion: Motion
@@ -55,7 +56,7 @@ def transform_in_band(
 ) -> BandTransforms:
     """One stretch below `band` times the comparison's bandwidth.
 
-    names: the strengths that have columns
+    names: the strengths with columns
     """
     motion, s = stretch.motion, stretch.motion.spectrum
     along = residual_along(body, motion, names)
@@ -76,7 +77,7 @@ def transform_in_band(
 
 
 def phase_of_shift(stretches: Sequence[Stretch], body: str, seconds: float) -> float:
-    """Phase (rad) by which a shift turns a motion of nearly one frequency; 0 for other motions.
+    """Phase (rad) of a shift (s) for a motion of nearly one frequency; 0 for other motions.
 
     Velocity squared over position times acceleration, rms about their means: 1 for a sine.
     """
@@ -95,7 +96,7 @@ def phase_of_shift(stretches: Sequence[Stretch], body: str, seconds: float) -> f
 def rows_of(parts: Sequence[BandTransforms], shifts: Mapping[str, float]) -> Array:
     """Acting force, interaction force, their derivatives, the rest and the columns, (5 + p, rows).
 
-    shifts: s by which each force is late
+    shifts: channel -> s by which the force is late, corrected here
     """
     rows = []
     for part in parts:
@@ -112,7 +113,8 @@ class BalanceFit:
     """Time shifts of groups of forces after iteration, and the force balance at these shifts.
 
     solution: strengths, gain of the other force where there is one, last steps of the shifts
-    left: force left unexplained on each row;  jacobian: of it, by the solution
+    rows: of `rows_of` at these shifts
+    left: residual force (rows,);  jacobian: columns of the balance (rows, solution)
     """
 
     groups: Sequence[tuple[str, ...]]
@@ -124,7 +126,7 @@ class BalanceFit:
 
     @property
     def size(self) -> float:
-        """Rms of what is left."""
+        """Rms of the residual force."""
         return float(np.sqrt(np.mean(self.left**2)))
 
 
@@ -152,7 +154,7 @@ def _from_starts(
     groups: Sequence[tuple[str, ...]],
     measured: float,
 ) -> BalanceFit:
-    """Iterated from no shift, or from others where that leaves too much."""
+    """The balance iterated from zero shifts, or from other starts where that leaves too much."""
     best = fit_balance(bands, forces, groups, ON_TIME)
     if best.size < STARTS_ANEW * measured:
         return best
@@ -173,7 +175,7 @@ def fit_balance(
     shifts: Mapping[str, float],
     steps: Sequence[float] = BANDS,
 ) -> BalanceFit:
-    """Shifts after a step in each band, no further than an eighth of a second at once."""
+    """The balance after one step of the shifts in each band, of at most an eighth of a second."""
     timing, gain = dict(shifts), 1.0
     for band in (*steps, steps[-1]):
         rows = rows_of(bands[band], timing)
@@ -190,8 +192,9 @@ def fit_balance(
 def _solve(
     rows: Array, forces: Sequence[str], groups: Sequence[tuple[str, ...]], gain: float
 ) -> tuple[Array, Array, Array]:
-    """Strengths, gain of the other force, steps of the shifts; the columns; what is left.
+    """Solution of the balance, its columns, and the residual.
 
+    The solution has strengths, the gain of the other force, and steps of the shifts.
     gain: of the other force, from the step before
     """
     value = {"actuator_force": rows[0], "interaction_force": rows[1]}

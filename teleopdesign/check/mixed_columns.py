@@ -1,7 +1,7 @@
-"""Channels that are something else than they are said to be: a clock in ms, swapped columns.
+"""Channels whose content is not what their label says: a clock in ms, swapped columns.
 
-These show without a model: a force follows from inertia and friction of the motion, a position
-does not follow so from a force, and no machine is logged once in ten seconds.
+This shows without a model: inertia and friction explain a force by the motion, but not a position
+by a force, and no machine is logged once in ten seconds.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ AS_LOGGED, EXCHANGED = 0.25, 0.6
 
 
 def check_clock_unit(experiment: Experiment) -> Iterator[Finding]:
-    """A sample rate that no logger has: the time is in another unit than it is said to be."""
+    """Findings on a sample rate that no logger has: the unit of the time is wrong."""
     for record in experiment.records:
         rate = 1.0 / record.sample_time
         if SLOWEST <= rate <= FASTEST:
@@ -44,7 +44,7 @@ def check_clock_unit(experiment: Experiment) -> Iterator[Finding]:
 
 
 def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
-    """The columns of position and force exchanged within one body."""
+    """Findings on columns of position and force that are exchanged within one body."""
     record = experiment.fit_records[0]
     rows = max(record.segments, key=lambda s: s.stop - s.start)
     for body in experiment.bodies:

@@ -1,4 +1,4 @@
-"""How a body moves in a record, in numbers and words, and what its motion lacks."""
+"""The motion of a body in a record, in numbers and words, and what it lacks to show effects."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LIGHT = 0.1
 
 
 def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> dict[str, str]:
-    """What the motion of one body lacks: signal of a law -> in words, with the number."""
+    """Signal of a law -> in words, what the motion of one body lacks of it, with a number."""
     direction = np.concatenate([m.direction for m in motions])
     speed = np.abs(np.concatenate([m.velocity for m in motions]))
     forth, back = (float(np.mean(direction == way)) for way in (1, -1))
@@ -56,7 +56,10 @@ def _rms(parts: Sequence[Array]) -> float:
 def describe_motion(
     motions: Sequence[Motion], place: str, poor: Mapping[str, str], axis: str
 ) -> Finding:
-    """How one body moves, in numbers."""
+    """A finding with the motion of one body, in numbers.
+
+    poor: result of `missing_excitation`
+    """
     x = np.concatenate([m.position for m in motions])
     direction = np.concatenate([m.direction for m in motions])
     fastest = max(float(np.abs(m.velocity).max()) for m in motions)

@@ -1,7 +1,7 @@
 """Do forces, motion and model agree in sign, unit and time? Plain findings from `force_balance`.
 
-What these sentences rest on is one linear fit to the rows in motion: a warning is issued where the
-user's columns, as they are labelled, contradict each other by far more than an effect could.
+The findings come from one linear fit to the rows in motion. A warning is issued where the user's
+columns, as labelled, contradict each other by far more than an effect could.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ NOTHING = 0.9
 
 
 def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
-    """Findings about sign, unit and timing of the channels of every body."""
+    """Findings on sign, unit and timing of the channels of every body."""
     balances = force_balances(model, prepared)
     swapped = list(check_swapped(model, prepared, balances))
     if swapped:
@@ -62,7 +62,7 @@ def _name(prepared: Prepared, body: str, quantity: str) -> str:
 
 
 def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
-    """A force that drives where it should brake: something has the wrong sign."""
+    """A finding where friction drives or inertia is negative: a channel has the wrong sign."""
     inertia = balance.strengths["inertia"]
     braking = max(
         (p for n, p in balance.power.items() if n != "inertia"),
@@ -101,7 +101,7 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
 
 
 def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
-    """A second force whose scale is not that of the first."""
+    """A finding on a second force whose scale is far from that of the first: a wrong unit."""
     gain = balance.gain
     if not balance.other or balance.left > NOTHING or gain.sure <= 0:
         return
@@ -126,7 +126,7 @@ def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[F
 
 
 def _calibration(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
-    """A second force whose scale is that of the first but for a calibration or a constant."""
+    """A finding on a second force whose scale differs from the first by a calibration factor."""
     gain = balance.gain
     if not balance.other or balance.left > NOTHING or gain.error > UNSURE * gain.value:
         return
@@ -147,7 +147,7 @@ def _calibration(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]
 
 
 def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
-    """Strengths that all lie off the model's by what a slip of units makes."""
+    """A finding on strengths that differ from the model's by the factors of a wrong unit."""
     body = model.body(balance.body)
     ratios: dict[str, float] = {}
     for name, estimate in balance.strengths.items():
@@ -180,7 +180,7 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
 
 
 def _force_scale(balance: ForceBalance, ratios: Mapping[str, float]) -> Iterator[Finding]:
-    """Strengths that are all the same number of times the model's: the forces' scale is off."""
+    """A finding on strengths that all differ by one factor: the scale of the forces is wrong."""
     if len(ratios) < 2:
         return
     factor = math.exp(sum(math.log(v) for v in ratios.values()) / len(ratios))
@@ -201,7 +201,7 @@ def _force_scale(balance: ForceBalance, ratios: Mapping[str, float]) -> Iterator
 def _poor_guess(
     model: Model, balance: ForceBalance, ratios: Mapping[str, float]
 ) -> Iterator[Finding]:
-    """An inertia several times the model's: no agreement, though the first value may be a guess."""
+    """A finding on an inertia several times the model's, which may be a poor first value."""
     inertia = ratios.get("inertia", 1.0)
     if 1 / OFF_SCALE < inertia < OFF_SCALE:
         return
@@ -222,7 +222,7 @@ def _poor_guess(
 
 
 def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
-    """Channels that are late or early by half a sample or more."""
+    """A finding on channels that are late or early by half a sample or more."""
     h = max(s.motion.sample_time for s in prepared.of("fit") if s.motion.body == balance.body)
     late = {n: e.value for n, e in balance.shifts.items() if e.sure and abs(e.value) >= 0.5 * h}
     if not late:

@@ -1,4 +1,4 @@
-"""Before fitting: is the recording sound, and what can it show?"""
+"""Before a fit: is the recording sound, and what can it show?"""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _CONTRADICTIONS = ("signs", "units", "swapped columns")
 def check_experiment(
     experiment: Experiment, model: Model | None = None, *, seed: int = 0
 ) -> Findings:
-    """Plain findings about a recording: soundness, signs and units, what it can show.
+    """Findings on a recording in plain sentences: soundness, signs and units, what it can show.
 
-    model: what the user believes so far; default: the experiment's model
-    seed: of the draws for the noise floor
-    Signs, units, shifts and effects of a long experiment are judged on windows (`excerpt`).
-    What stands in the way of an answer (no inertia, a bandwidth too high) is a finding, no error.
+    model: the user's present model; None: the experiment's
+    seed: of the random numbers for the noise floor
+    Signs, units, shifts and effects of a long experiment are checked on windows (`excerpt`).
+    A reason why nothing can be checked (no inertia, a bandwidth too high) is a finding, no error.
     """
     return Findings(_findings(experiment, model, seed))
 
@@ -81,7 +81,7 @@ def _report_skipped(why: str, concern: Literal["note", "warning"]) -> Finding:
 
 
 def _guesses(experiment: Experiment) -> list[Finding]:
-    """What `teleopdesign new` guessed and nobody confirmed."""
+    """Findings on values that `teleopdesign new` guessed and the user has not confirmed."""
     return [
         Finding(
             "guesses",
@@ -94,7 +94,7 @@ def _guesses(experiment: Experiment) -> list[Finding]:
 
 
 def _list_resting_bodies(experiment: Experiment) -> list[str]:
-    """Bodies whose position is the same throughout every fit record."""
+    """Bodies whose position is constant throughout every fit record."""
     return [
         body
         for body in experiment.bodies

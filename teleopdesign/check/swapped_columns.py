@@ -1,4 +1,4 @@
-"""Swapped columns: two of one quantity, of two bodies, that fit far better the other way round."""
+"""Swapped columns of one quantity: those of two bodies, which fit far better exchanged."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNEXPLAINED, SWAPPED = 0.25, 0.5
 def check_swapped(
     model: Model, prepared: Prepared, balances: Mapping[str, ForceBalance]
 ) -> Iterator[Finding]:
-    """Columns that fit far better if swapped; tested only where the residual is large."""
+    """Findings on columns that fit far better if swapped, where the residual is large."""
     before = _find_worst(balances)
     if before < UNEXPLAINED or len(model.bodies) < 2:
         return

@@ -1,4 +1,4 @@
-"""Slips of units: one unit stated as another, seen by what it makes of the parameters."""
+"""Slips of units: one unit stated as another, recognised by its factors on the parameters."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ _INERTIA_SLIPS = {
 def slips(
     axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str], *, near: float = NEAR
 ) -> list[str]:
-    """The slips of units that put every strength near the model's, best first, in words.
+    """The slips of units that bring every strength near the model's, best first, in words.
 
-    ratios: strength -> what the motion asks for over what the model says;  quantities: of each
+    ratios: strength -> estimated over stated value;  quantities: strength -> its quantity
     near: decades that count as near
     """
     position, force, inertia = (unit_of(q, axis) for q in ("position", "force", "inertia"))
@@ -69,7 +69,7 @@ def slips(
 
 
 def scale_of_forces(ratios: Mapping[str, float]) -> list[str]:
-    """In words, that all strengths are about as many times the model's; none where they are not."""
+    """A sentence that all strengths differ from the model's by one factor; else empty."""
     if len(ratios) < 2:
         return []
     factor = 10 ** (sum(math.log10(r) for r in ratios.values()) / len(ratios))

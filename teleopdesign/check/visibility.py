@@ -1,10 +1,10 @@
-"""How large each effect would have to be for these records to show it.
+"""The least size of each effect that these records can show.
 
-The effect is put into the fitted model at some strength. By how much that changes the residual
-along the measured motion is its mark; what the model's parameters cannot imitate of it (the
-part outside the span of their columns) is what a fit would see. The strength is then turned down,
-or up, until that part stands as far above the noise floor as the diagnosis asks for. Effects are
-known here by their declared parameters only, so that a user's effects are judged like any other.
+The effect is added to the fitted model at some strength. The change of the residual along the
+measured motion is its mark. A fit can detect only the part of the mark that the model's parameters
+cannot imitate, which is outside the span of their columns. The strength is then changed until this
+part exceeds the noise floor by the factor that a diagnosis requires. Effects are known here by
+their declared parameters only, so a user's effects are treated like all others.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ WEAKEST, STRONGEST, FARTHEST = 1e-6, 1e4, 7.0
 class Visibility:
     """The smallest visible strength of one effect.
 
-    size: force that the effect makes at the least strength that shows, relative to the measured
-        force (both rms, low-passed); inf where no strength shows
-    strength: parameter -> value (SI) there;  shape: of its other parameters
+    size: force of the effect at the least visible strength, relative to the measured force (both
+        rms, low-passed); inf where no strength is visible
+    strength: parameter -> value (SI) at this strength;  shape: the same for its other parameters
     unique_share: part of its mark that the model's parameters cannot imitate, 0 to 1
-    imitated: the model's parameters that imitate the rest best
-    mark: direction of that part, (rows,), length 1;  silent: it makes no force at all
+    imitated: the model's parameters that imitate the rest of it best
+    mark: direction of that part, (rows,), length 1;  silent: whether the effect has no force at all
     """
 
     candidate: Candidate
@@ -61,7 +61,11 @@ class Visibility:
 
 @dataclass(frozen=True)
 class _Scene:
-    """The fitted model, its records and what rises above their noise (all rows weighted)."""
+    """The fitted model, its records, and the threshold of visibility (all rows weighted).
+
+    residual: (rows,);  span: (rows, k) orthonormal, of the model's parameters
+    measured: root of the measured squares;  threshold: least visible part, relative to it
+    """
 
     base: Fit
     stretches: Sequence[Stretch]
@@ -73,7 +77,10 @@ class _Scene:
 
 @dataclass(frozen=True)
 class _Trial:
-    """One strength: its whole mark and the part outside the span, rms over the measured force."""
+    """One strength: its whole mark and the part outside the span, rms over the measured force.
+
+    factor: strength over the first one;  whole, part: sizes of mark (rows,) and rest (rows,)
+    """
 
     model: Model
     factor: float
@@ -139,15 +146,15 @@ def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> 
 def _find_best(
     candidate: Candidate, shapes: Sequence[Model], factor: float, scene: _Scene
 ) -> tuple[_Trial, Model]:
-    """The shape that shows most at equal strength; one that nothing imitates goes first."""
+    """The most visible shape at equal strength, with shapes that are not imitated preferred."""
     trials = [(_trial(candidate, m, factor, scene), m) for m in shapes]
     return max(trials, key=lambda t: (t[0].unique_share >= CRITERIA.least_unique_share, t[0].part))
 
 
 def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[Model]:
-    """The model with the effect at its first strength, and a few of its other parameters' starts.
+    """The model with the effect at its first strength, for a few values of its other parameters.
 
-    One phase stands for all: how much it shows hardly depends on it.
+    Only one phase is used, because visibility hardly depends on it.
     """
     effect, place = candidate.effect, candidate.at
     added = model.with_effect(effect, at=place)
@@ -169,7 +176,7 @@ def _keep_within_bounds(model: Model, values: dict[str, float]) -> Model:
 
 
 def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) -> _Trial:
-    """The effect at `factor` times its first strength; next to it where that means absence."""
+    """The effect at `factor` times its first strength, which is not that of absence."""
     effect, place = candidate.effect, candidate.at
     values = {}
     for name, absent in effect.absent.items():
@@ -193,10 +200,10 @@ def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) ->
 def _strength_at_threshold(
     candidate: Candidate, first: _Trial, shaped: Model, scene: _Scene
 ) -> _Trial:
-    """The least strength at which what shows reaches the threshold; `first` if none does.
+    """The least visible strength; the most visible one where none reaches the threshold.
 
-    Secants of the logarithms, and halves of the factor between a strength that shows and one that
-    does not, for an effect such as a limit sets in all at once.
+    By secants of the logarithms, and bisection between a visible and an invisible factor, for
+    effects such as a limit that appear suddenly.
     """
     trials, slope = [first], 1.0
     for _ in range(CORRECTIONS):
@@ -218,7 +225,7 @@ def _strength_at_threshold(
 
 
 def _slope(one: _Trial, two: _Trial, before: float) -> float:
-    """Power of the strength with which what shows grows; linear to begin with."""
+    """Exponent by which the visible part grows with the strength; `before` if not known."""
     if min(one.part, two.part) <= 0.0 or one.factor == two.factor or one.part == two.part:
         return before
     exponent = math.log(two.part / one.part) / math.log(two.factor / one.factor)
@@ -234,7 +241,7 @@ def _values(candidate: Candidate, model: Model) -> tuple[dict[str, float], dict[
 
 
 def _list_imitators(trial: _Trial, scene: _Scene) -> tuple[str, ...]:
-    """The model's free parameters that take up most of a mark, those with a third of it or more."""
+    """At most two free parameters of the model that imitate a third of a mark or more."""
     columns, names = scene.base.jacobian, scene.base.free
     size = np.linalg.norm(columns, axis=0)
     size[size == 0.0] = 1.0

@@ -41,12 +41,13 @@ __all__ = [
 def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     """The model with its free parameters re-estimated on the fit records, with standard errors.
 
-    Effects that are still absent (as `with_effect` leaves them) start from values of the record's
-    scale. As in `find_missing`, what reading the motion by sensors does to the estimates is
-    taken off them where the model leaves only noise, and widens their standard errors where it
-    leaves more; of long records, windows are fitted.
+    Effects that `with_effect` added without values start from values of the size that the records
+    show.
+    As in `find_missing`, errors of the sensor readings are corrected: where the model leaves only
+    noise, their effect on the estimates is subtracted; where it leaves more, they widen the
+    standard errors. Of long records, only windows are fitted.
 
-    seed: of the draws for the noise floor and for the simulated readings
+    seed: of the random numbers for the noise floor and for the simulated readings
     raises ExperimentError: the experiment lacks what the comparison needs
     """
     return corrected_fit(search_for(experiment, model, seed=seed)).model
@@ -55,7 +56,7 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
 def rank(model: Model, experiment: Experiment) -> Ranking:
     """Effects that the model may lack, best first.
 
-    Each candidate is added to the model and all free parameters are estimated again.
+    Each candidate is added to the model, and all free parameters are estimated again.
     returns: candidates with their fits and errors on fit and check records
     """
     prepared = prepare(experiment)

@@ -1,5 +1,6 @@
-"""Adequacy: whether the remaining error is noise, by noise floor, hum and single moments.
+"""Adequacy: whether the remaining error is noise.
 
+The error is compared with the noise floor. A hum, or a single moment, may hold all the rest.
 Every threshold is a field of `Criteria`.
 """
 
@@ -24,9 +25,9 @@ from .ranking import Ranking
 class Floors:
     """The noise floor of a model: as drawn, and limited by the error of the model.
 
-    drawn: what its readings, drawn anew, leave
-    allowed: what counts as noise in decisions: never above what the records themselves leave, nor
-        far above the floor of the user's model
+    drawn: the error that newly drawn readings of the model's motion leave
+    allowed: the floor used in decisions: never above the error that the records themselves leave,
+        nor far above the floor of the user's model
     """
 
     drawn: NoiseFloor
@@ -34,11 +35,12 @@ class Floors:
 
 
 def limit_noise_floor(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
-    """The noise floor, at most the error of the model or of any identifiable candidate.
+    """The noise floor, at most the error of the model or of any candidate that counts.
 
-    Without what is missing a parameter may be led where sensor noise would ask for any force: what
-    the records themselves leave shows that it does not. Moments of reading that jitter are seen in
-    the readings, though: a candidate that leaves less than they make weakens what they make.
+    While an effect is missing, a parameter may take a value with which sensor noise would cause any
+    force. The error that the records themselves leave shows that the noise is smaller.
+    A jitter of the reading moments is known from the readings. A candidate that leaves less than
+    the jitter causes only weakens this error, so candidates do not limit the floor then.
     """
     left = [here.check_error]
     if not drawn.jitters:
@@ -51,7 +53,8 @@ def allowed_floor(
 ) -> NoiseFloor:
     """A noise floor, limited by the first floor or by the error of the user's fitted model.
 
-    An effect that makes sensors count for much more would hide what it leaves in their noise.
+    An effect that multiplies the influence of the sensors would hide its remaining error in their
+    noise.
     """
     most = max(criteria.louder * first.value, criteria.hidden * stated.check_error)
     return bounded.at_most(most)
@@ -63,16 +66,16 @@ def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRIT
 
 
 def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether a plain tone explains all but noise."""
+    """Whether a single sine explains all of a fit's error except noise."""
     squares = check_squares(fit)
     left = fit.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
     return is_noise(left, floor, criteria=criteria)
 
 
 def is_adequate(fit: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the error on the check records counts as noise, as a force and at the command.
+    """Whether the check error counts as noise, both of the force and referred to the command.
 
-    A model that is blind in much of the motion says too little to be adequate.
+    A model that is blind in much of the motion is not adequate: there its command shows nothing.
     """
     command_error = fit.at_command
     at_command = (
@@ -83,21 +86,24 @@ def is_adequate(fit: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -
 
 
 def floors_left(fit: Fit, floor: NoiseFloor) -> float:
-    """Check error in noise floors: of the force or at the command, the larger."""
+    """Check error as a multiple of the noise floor: of the force or at the command, the larger.
+
+    inf where the floor is zero or the error at the command is not finite
+    """
     if not (floor.value and math.isfinite(fit.at_command.error)):
         return float("inf")
     return max(fit.check_error / floor.value, fit.at_command.error / floor.value_at_command)
 
 
 def records_differ(fit: Fit, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether a model leaves much more of the check records than of the fit records."""
+    """Whether the relative error on the check records is much larger than on the fit records."""
     return fit.check_error >= criteria.differ * fit.fit_error > 0.0
 
 
 def moment_above_noise(
     fit: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> Moment | None:
-    """The one moment that holds all that a model leaves above noise; None where none does."""
+    """The one moment that holds all of a model's residual above noise; None: there is none."""
     if is_adequate(fit, floor, criteria=criteria):
         return None
     moment = worst_moment(fit, prepared, floor)

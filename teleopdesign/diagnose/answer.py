@@ -100,7 +100,7 @@ def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _moment(moment: Moment | None) -> dict[str, Any] | None:
-    """The moment that holds all residual above noise."""
+    """The moment that holds all of the residual above noise, as plain data."""
     if moment is None:
         return None
     return {
@@ -113,12 +113,12 @@ def _moment(moment: Moment | None) -> dict[str, Any] | None:
 
 
 def place_data(key: tuple[str, str]) -> dict[str, str]:
-    """An effect and where it acts, as answers write it."""
+    """An effect and its place, as answers write them."""
     return {"effect": key[0], "at": key[1]}
 
 
 def _missing_place(rung: Rung) -> dict[str, str]:
-    """What a rung added, with the effect of the user's model that it takes the place of."""
+    """The effect that a rung added, with the effect of the user's model that it replaces."""
     assert rung.added is not None
     place = place_data(rung.added.key)
     instead = rung.instead_of
@@ -139,7 +139,10 @@ def _parameter(model: Model, name: str) -> dict[str, Any]:
 
 
 def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
-    """Parameters of a fit with standard errors and units; without: effects left out, by places."""
+    """Parameters of a fit with standard errors and units.
+
+    without: effects to leave out, as "PLACE.EFFECT"
+    """
     skip = set(without)
     return {
         n: _parameter(fit.model, n)
@@ -149,12 +152,12 @@ def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
 
 
 def untold_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What the records cannot tell of accepted effects, in a sentence each."""
+    """What the records cannot determine about accepted effects: one sentence each."""
     return [place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.untold]
 
 
 def set_aside_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Effects that were accepted and are not there, and why."""
+    """Effects that were accepted and later removed, each with the reason."""
     return [
         place_data(one.candidate.key) | {"check_error": one.check_error, "reason": one.reason}
         for one in diagnosis.set_aside
@@ -162,7 +165,10 @@ def set_aside_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Every candidate, most probable first: at the step that accepted it, or at its best step."""
+    """Every candidate, most probable first, with its fit at one step of the ladder.
+
+    The step is the one that accepted the candidate, else the one where it was most probable.
+    """
     if diagnosis.recorded is not None:
         return list(diagnosis.recorded["candidates"])
     best: dict[tuple[str, str], CandidateEvidence] = {}
@@ -211,7 +217,7 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
 def write_answer(
     diagnosis: Diagnosis, path: str | Path, *, simulation: SimulationComparison | None = None
 ) -> None:
-    """Write the answer as JSON, with where its experiment is, as seen from the answer.
+    """Write the answer as JSON, with the path of its experiment relative to the answer.
 
     simulation: a comparison by simulation, where one was made
     """
@@ -224,7 +230,7 @@ def write_answer(
 def with_folder(
     content: dict[str, Any], experiment: Experiment, path: str | Path
 ) -> dict[str, Any]:
-    """An answer with where its experiment is, as seen from the answer's path."""
+    """An answer with the folder of its experiment, relative to the answer's path."""
     folder = experiment.folder
     if not folder.is_dir():  # an experiment of arrays has none
         return content
@@ -234,10 +240,10 @@ def with_folder(
 
 
 def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
-    """Write measured and modelled force, a row a sample of every record; .csv or .csv.gz.
+    """Write measured and modelled forces: one row per sample of every record; .csv or .csv.gz.
 
-    `BODY.measured` is actuator plus interaction force as recorded; residuals are not low-passed
-    beyond the smoothing of the motion, so that their low-passed figures can be recomputed.
+    `BODY.measured` is the actuator force plus the interaction force as recorded. Residuals are
+    low-passed only by the smoothing of the motion, so their low-passed values can be recomputed.
     """
     path = Path(path)
     bodies = list(diagnosis.experiment.bodies)
@@ -262,7 +268,10 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
 
 @contextmanager
 def open_for_writing(part: Path, path: Path) -> Iterator[TextIO]:
-    """A text file to write to, packed where the name says so; the name within is the path's."""
+    """A text file to write to, compressed where the path ends in .gz.
+
+    part: the file that is written;  path: its final name, also written into the compressed file
+    """
     with part.open("wb") as raw:
         if path.suffix != ".gz":
             with TextIOWrapper(raw, encoding="utf-8", newline="") as file:

@@ -43,9 +43,10 @@ def floor_between_rows(
     *,
     criteria: Criteria = CRITERIA,
 ) -> NoiseFloor:
-    """The noise floor, with the scatter of sampled commands where all of the above holds.
+    """The noise floor, with the scatter of sampled commands where all conditions above hold.
 
-    fit: the last of a ladder;  learned: what a black box learns of what it leaves, None: not asked
+    fit: the last of a ladder
+    learned: the part of this fit's residual that a black box learns; None: not computed
     """
     if is_adequate(fit, floor, criteria=criteria) or learned is None:
         return floor
@@ -65,13 +66,13 @@ def floor_between_rows(
 
 
 def is_amid_a_row(shift: RecordShift, *, clock: LoggerClock = CLOCK) -> bool:
-    """Whether a command, which was not measured, is surely late by about half a row."""
+    """Whether a command, whose force was not measured, is surely late by about half a row."""
     rows, error = shift.late / shift.row, shift.stderr / shift.row
     return not shift.measured and abs(rows - 0.5) + error <= clock.amid
 
 
 def command_scatter(experiment: Experiment, bodies: set[str]) -> Mapping[str, float]:
-    """Channel ("device.actuator_force") -> rms scatter of its rows, where no noise is stated."""
+    """Channel ("device.actuator_force") -> rms scatter between rows, where no noise is stated."""
     scatter = {}
     for body in bodies:
         name = f"{body}.actuator_force"
@@ -82,7 +83,7 @@ def command_scatter(experiment: Experiment, bodies: set[str]) -> Mapping[str, fl
 
 
 def with_noise(experiment: Experiment, noise: Mapping[str, float]) -> Experiment:
-    """The experiment with these channels' noise (rms, SI) stated."""
+    """The experiment with the noise of these channels (rms, SI) stated."""
     channels = {
         name: replace(channel, noise=noise[name]) if name in noise else channel
         for name, channel in experiment.channels.items()

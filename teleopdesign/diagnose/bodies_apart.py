@@ -23,9 +23,10 @@ from .residual import relative_residuals
 
 @dataclass(frozen=True, eq=False)
 class Apart:
-    """Stretches that share parameters, those of one body.
+    """Stretches of some bodies whose parameters act on no other body.
 
-    rows: theirs among the rows of all stretches;  bodies: that they belong to
+    rows: indices of these stretches' rows among the rows of all stretches
+    bodies: names of the bodies that the stretches belong to
     """
 
     stretches: tuple[Stretch, ...]
@@ -42,7 +43,7 @@ class Apart:
 
 
 def separate_bodies(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
-    """The stretches of each body; all in one where what the links of an arm can do joins them."""
+    """The stretches of each body; all together where an arm's shared link parameters join them."""
     names = list(dict.fromkeys(s.motion.body for s in stretches))
     if any(s.shared is not None for s in stretches):
         return (_select_stretches(stretches, names),)
@@ -50,7 +51,7 @@ def separate_bodies(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
 
 
 def select_bodies(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
-    """The stretches of these bodies, with those that they are joined to."""
+    """The stretches of these bodies, and of the bodies that are joined to them."""
     joined = (part.bodies for part in separate_bodies(stretches) if part.bodies & set(bodies))
     return _select_stretches(stretches, frozenset().union(*joined))
 
@@ -63,7 +64,7 @@ def _select_stretches(stretches: Sequence[Stretch], bodies: Collection[str]) -> 
 
 @dataclass(frozen=True, eq=False)
 class _Memory:
-    """Where a body was computed last, in search coordinates, with its residual and jacobian."""
+    """The last computed point of a body, in search coordinates, with its residual and Jacobian."""
 
     x: Array
     residual: Array
@@ -71,7 +72,7 @@ class _Memory:
 
 
 def _is_near(x: Array, other: Array) -> bool:
-    """Whether tangents may be followed from one place to the other."""
+    """Whether the tangents at one point may be used to extrapolate to the other."""
     sizes = np.maximum(np.abs(other), 1.0)
     return bool(np.all(np.abs(x - other) <= EFFORTS.followed_within * sizes))
 
@@ -79,10 +80,12 @@ def _is_near(x: Array, other: Array) -> bool:
 def body_by_body(
     model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
 ) -> Callable[[Model, Array, Array], tuple[Array, Array]]:
-    """A function that returns residual (rows,) and jacobian (rows, p) of all stretches.
+    """A function that returns residual (rows,) and Jacobian (rows, p) of all stretches.
 
-    names: the p parameters and shifts;  tolerance: relative change of squares that a fit resolves
-    The function takes the model, its parameters as they are searched, and their units there.
+    names: the p parameters and shifts
+    tolerance: relative change of the squares that a fit resolves
+    The function takes a model, its parameters in search coordinates (p,), and the units of these
+    coordinates (p,).
     """
     parts = separate_bodies(stretches)
     places = [model.locate(name)[0] for name in names]

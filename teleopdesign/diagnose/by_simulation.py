@@ -1,13 +1,13 @@
 """Comparison by simulation: the model moves freely under the recorded forces.
 
-The force error asks what force a model leaves along the measured motion. Here the recorded command
-and interaction force drive the model, which starts on the measured motion and is then left alone
-for a horizon: how far it comes away, in position and velocity. Without a loop that holds it, a
-small constant force leads it away with t^2, and friction decides where it stops: short horizons
-test the model, the whole record tests what it adds up to.
+The force error says what force a model leaves along the measured motion. Here the recorded command
+and interaction force drive the model from a point of the measured motion for a horizon; the error
+is the deviation of its position and velocity. Without a loop that holds the model, a small constant
+force leads it away with t^2, and friction decides where it stops. Short horizons test the model;
+the whole record tests the sum of its errors.
 
-In the recorded closed loop a controller pulls. Its force is the recorded command, and beside it
-what it answers to the deviation: for a spring and damper -(K + B s)(x - x_measured), whatever the
+In the recorded closed loop a controller pulls the model back. Its force is the recorded command
+plus its response to the deviation: for a spring and damper -(K + B s)(x - x_measured), whatever the
 reference was.
 """
 
@@ -50,7 +50,7 @@ BRISTLE_SHARE = 2e-5
 class RecordedLoop:
     """The controller of the device during the recording, as a spring and a damper.
 
-    stiffness: N/m or N m/rad;  damping: N s/m or N m s/rad
+    stiffness: N/m or N m/rad;  damping: N s/m or N m s/rad;  both finite and not negative
     """
 
     stiffness: float
@@ -66,10 +66,10 @@ class RecordedLoop:
 
 @dataclass(frozen=True)
 class HorizonError:
-    """Errors of one body, each time left alone for the horizon.
+    """Errors of one body that restarts on the measured motion after each horizon.
 
-    horizon: s; inf: over each whole stretch of a record
-    position, velocity: rms difference from the measured motion (SI); inf: motion beyond all bounds
+    horizon: s; inf: each whole stretch of a record
+    position, velocity: rms difference from the measured motion (SI); inf: the motion is not finite
     of_travel, of_speed: the same over the standard deviation of the position, the rms velocity
     """
 
@@ -86,9 +86,10 @@ class HorizonError:
 class SimulationComparison(ByValue):
     """A model compared with an experiment by simulation, without estimation.
 
-    fit_error, check_error: relative force errors beside it (NaN where there is no such record)
+    fit_error, check_error: relative force errors, for comparison (NaN where there is no such
+        record)
     errors: for each use and body, the shortest horizon first
-    loop: what holds the body, or joint -> what holds that joint of an arm; None: nothing does
+    loop: controller that holds the body, or joint -> controller of that joint of an arm; None: none
     """
 
     model: Model
@@ -99,9 +100,10 @@ class SimulationComparison(ByValue):
     loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None
 
     def error(self, horizon: float, *, use: str = "check", at: str | None = None) -> HorizonError:
-        """The errors of one horizon (s; inf: the whole record); at: default the only body.
+        """The errors of one horizon (s; inf: the whole record).
 
-        raises ModelError: there is none of that horizon, use and body
+        at: name of the body; None: the first body with such an error
+        raises ModelError: there is no error of that horizon, use and body
         """
         for one in self.errors:
             if (one.horizon, one.use) == (horizon, use) and at in (None, one.at):
@@ -111,7 +113,7 @@ class SimulationComparison(ByValue):
 
     @property
     def title(self) -> str:
-        """What was compared, in words."""
+        """A title in words: whether a loop held the model."""
         how = "freely" if self.loop is None else "in its loop"
         return f"Simulation, driven {how} by the recorded command"
 
@@ -153,7 +155,7 @@ class SimulationComparison(ByValue):
 
 @dataclass(frozen=True)
 class _Driven:
-    """A body ready to be driven along one stretch, and the rows of its motion that count."""
+    """A body to be driven along one stretch, and the rows first to end that count in errors."""
 
     led: LedBody
     motion: Motion
@@ -194,7 +196,7 @@ def compare_by_simulation(
 
 
 def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
-    """The comparison as an answer writes it: SI; `null`: the whole record, beyond all bounds."""
+    """The comparison as an answer writes it, in SI units; `null`: infinite."""
     axes = {place: body.axis for place, body in comparison.model.bodies.items()}
     loop = comparison.loop
     return {
@@ -229,7 +231,7 @@ def _loop_data(loop: RecordedLoop | None) -> dict[str, float] | None:
 def _driven_stretches(
     model: Model, prepared: Prepared, use: str, place: str, loop: RecordedLoop | None
 ) -> list[_Driven]:
-    """The stretches of one use and body, each with the body as its record has it."""
+    """The stretches of one use and body, each with the body corrected by its record's offsets."""
     stretches = prepared.of(use)
     loop = loop or RecordedLoop(0.0)
     driven = []
@@ -249,7 +251,7 @@ def _driven_stretches(
 
 
 def _error(driven: Sequence[_Driven], use: str, place: str, horizon: float) -> HorizonError:
-    """Errors over one horizon (s), all stretches together."""
+    """Errors over one horizon (s), of all stretches together."""
     parts = map_in_threads(lambda d: _deviations(d, horizon), driven)
     x, v = (np.concatenate([part[i] for part in parts]) for i in range(2))
     rows = [(d.motion, d.first, d.end) for d in driven]
@@ -264,9 +266,10 @@ def horizon_error(
     velocity: Array,
     rows: Sequence[tuple[Motion, int, int]],
 ) -> HorizonError:
-    """The errors of a body by what it comes away over one horizon, at all rows together.
+    """The errors of a body over one horizon, from its deviations at all rows together.
 
-    position, velocity: simulated less measured;  rows: motions, the first row that counts, the end
+    position, velocity: simulated less measured, (rows,)
+    rows: of each stretch its motion, the first row that counts and the row after the last one
     """
     measured = {
         name: np.concatenate([getattr(m, name)[first:end] for m, first, end in rows])
@@ -290,7 +293,7 @@ def _rms(values: Array) -> float:
 
 
 def _deviations(driven: _Driven, horizon: float) -> tuple[Array, Array]:
-    """Simulated less measured position and velocity along one stretch, set back each horizon."""
+    """Simulated less measured position and velocity along one stretch, restarted each horizon."""
     motion, first, end = driven.motion, driven.first, driven.end
     rows = end - first
     each = rows if np.isinf(horizon) else max(round(horizon / motion.sample_time), 2)

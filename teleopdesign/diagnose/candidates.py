@@ -1,4 +1,4 @@
-"""Which effects may be missing: those of the catalogue that the model could take."""
+"""Candidates: effects of the catalogue that the model lacks and could have."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from ..model import Model
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect at a place."""
+    """An effect at a place of the model."""
 
     effect: Effect
     at: str
@@ -62,15 +62,16 @@ def candidates(
 ) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
 
-    One that would stand for others as well while they are missing waits for them (`Effect.after`).
+    An effect that could imitate other effects is a candidate only after these were added
+    (`Effect.after`). An effect whose law uses a channel that the records lack is no candidate. Nor
+    is an effect of the position, where a body never returns to a place at another time: there it
+    cannot be separated from a drift. A periodic effect also returns after each of its periods. Nor
+    is an effect of time, where the speed itself follows time.
 
-    motions: all that the records hold; where a body never comes to a place at another time, no
-        effect of the place differs from a drift: it is no candidate there; nor is one whose law
-        uses a channel that they have not. What repeats along the way comes back to the same place
-        of its period. Nor is an effect that follows time where the speed does so too
-    separate_zeros: files whose positions cannot be compared with those of others
-    measured: bodies whose actuator's force was measured, not commanded: a limit, a lag or a delay
-        has acted already, and is no candidate; its scale may still be wrong, or vary
+    motions: of all records
+    separate_zeros: files whose positions cannot be compared with those of other files
+    measured: bodies whose actuator force was measured, not commanded: a limit, a lag or a delay has
+        acted already and is no candidate; the scale of the force may still be wrong, or vary
     """
     possible = []
     for place in model.places:
@@ -96,7 +97,10 @@ def candidates(
 
 
 def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
-    """Effects that the model lacks, at the same place, of which one is the commoner (`Effect`)."""
+    """Effects that the model lacks and that look like the candidate, at the same place.
+
+    One of the two is the commoner by its file (`Effect.commoner`).
+    """
     body, at = model.body(candidate.at), candidate.at
     return [
         Candidate(e, at)
@@ -106,13 +110,13 @@ def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
 
 
 def bodies_with_measured_force(experiment: Experiment) -> set[str]:
-    """Bodies whose actuator's force was measured, as their channels say."""
+    """Bodies whose actuator force was measured, as their channels state."""
     return {c.body for c in experiment.channels.values() if c.measured and c.body is not None}
 
 
 @lru_cache(maxsize=256)
 def _acts_before_what_is_measured(effect: Effect) -> bool:
-    """Whether an actuation does more to a command than to scale it."""
+    """Whether an actuation effect does more to a command than scale it."""
     if effect.role != "actuation":
         return False
     law = effect.expression()
@@ -123,7 +127,10 @@ def _acts_before_what_is_measured(effect: Effect) -> bool:
 def _is_distinguishable(
     effect: Effect, motions: Sequence[Motion], separate_zeros: Collection[str]
 ) -> bool:
-    """Whether these motions can separate an effect of the place, or one of time, from another."""
+    """Whether the motions separate an effect of position or time from effects that look like it.
+
+    An effect of position must differ from one of time, and an effect of time from one of speed.
+    """
     if motions and depends_on_time(effect) and not tells_speed_from_time(motions):
         return False
     if not motions or not depends_on_position(effect):
@@ -137,10 +144,10 @@ def _is_distinguishable(
 def tells_place_from_time(
     motions: Sequence[Motion], *, separate_zeros: Collection[str] = (), turn: float | None = None
 ) -> bool:
-    """Whether a body comes to the same places at different times, over all of its motions together.
+    """Whether a body returns to the same places at different times, in all of its motions together.
 
-    separate_zeros: files whose positions cannot be compared with those of others
-    turn: places one such period apart are the same
+    separate_zeros: files whose positions cannot be compared with those of other files
+    turn: period (m, rad); places that differ by a multiple of it are the same; None: no period
     """
     groups: dict[str, list[Motion]] = {}
     for motion in motions:
@@ -163,8 +170,8 @@ def tells_place_from_time(
 def tells_speed_from_time(motions: Sequence[Motion]) -> bool:
     """Whether a body has the same speeds at different times of its records, all taken together.
 
-    Where each record is one run that grows faster, a friction that changes with time is one that
-    follows the speed.
+    Where the speed only grows in each record, friction that changes with time cannot be separated
+    from friction that changes with speed.
     """
     speed = np.concatenate([np.abs(m.velocity) for m in motions])
     time = np.concatenate([m.time for m in motions])
@@ -176,7 +183,7 @@ def tells_speed_from_time(motions: Sequence[Motion]) -> bool:
 
 
 def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, float]:
-    """Weighted squares of time about its mean at equal values, and about its mean of all."""
+    """Weighted squares of time: about its mean at equal values, and about its overall mean."""
     size = float(np.ptp(values)) or 1.0
     bins = np.minimum(((values - values.min()) / size * PLACES).astype(int), PLACES - 1)
     there = np.bincount(bins, weight, PLACES)
@@ -188,8 +195,8 @@ def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, f
 def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
     """The model with its absent effects at each combination of their starting values.
 
-    scale: quantity -> the record's size of it (SI)
-    returns: the model itself where no effect is absent
+    scale: quantity -> its size in the records (SI)
+    returns: the model alone where no effect is absent
     """
     models = [model]
     for name, place in model.absent:

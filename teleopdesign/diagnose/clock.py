@@ -1,16 +1,16 @@
-"""Delay of a log against its position: when is the delay accepted, and when is it physics?
+"""Delay of a log against its position: when it is accepted, and when it is a physical dead time.
 
 With a model that lacks much, a shift may imitate a part of the missing force, as a wrong effect
 would. So, like an effect, a shift must not raise the error on the check records.
 
-A shift at its bound describes a part of a dead time that is longer than a logger's. If a dead time
-instead of the shift surely leaves less on the check records, the whole delay is physics, and the
+A shift at its bound stands for a part of a dead time that is longer than a logger's. If a dead time
+instead of the shift surely leaves less on the check records, the whole delay is physical, and the
 shift is set to zero, so that candidates can explain it. Otherwise the error with a shift at its
 bound may be too small for a search, and a late actuator would seem adequate.
 
 The filter of a force sensor delays the hand's force against the command, and an `actuator_lag` can
 imitate this. So the time constant of the filter is estimated where more than noise is left. It is
-accepted if it explains surely more than chance and more than every effect.
+accepted if its gain is surely more than chance and more than that of every effect.
 """
 
 from __future__ import annotations
@@ -36,10 +36,11 @@ from .simulated_course import dead_times
 
 
 def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
-    """The fit, or one that began with a log much later than a row, where that leaves less.
+    """The fit, or a fit that started from a log late by many rows, where that leaves less.
 
-    Beside the fit of a log that is late by many rows lies a poor one that is late by few, and its
-    parameters lead nowhere else.
+    A log that is late by many rows has a second, worse minimum at a delay of few rows, which a
+    search from small delays does not leave.
+
     fit: of the model as its user stated it
     """
     for shift in shifts_of(fit.model, prepared.stretches):
@@ -55,10 +56,12 @@ def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
 
 
 def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
-    """The fit with each body's shift estimated, or zero, whichever has the lower check error.
+    """The fit with each body's shift estimated or zero, whichever has the lower check error.
 
-    One at its bound is held at none too where it stands for a dead time.
-    fit: with shifts of either kind;  returns: the fit itself where the other kind leaves no less
+    A shift at its bound is set to zero too where it stands for a dead time.
+
+    fit: with shifts of either kind
+    returns: the fit itself where no change leaves less
     """
     for place, late in fit.model.record_shift.items():
         again = _with_shift(fit, place, Value(0.0, fixed=not late.fixed), prepared)
@@ -80,9 +83,12 @@ def with_late_hand(
     *,
     criteria: Criteria = CRITERIA,
 ) -> Fit | None:
-    """The fit without the low-pass of a hand's sensor; None where an effect, or nothing, is better.
+    """The fit with the low-pass of a hand's force sensor estimated; None where it is not accepted.
 
-    supported: the effects that the records support beside the fit
+    It is accepted where the fit leaves more than noise, the low-pass lowers the error enough, and
+    no supported effect lowers it more.
+
+    supported: effects that the records support in addition to the fit
     """
     least = min((check_squares(r.fit) for r in supported), default=float("inf"))
     if is_adequate(fit, floor, criteria=criteria):
@@ -104,19 +110,19 @@ def with_late_hand(
 
 
 def _with_shift(fit: Fit, place: str, shift: Value, prepared: Prepared) -> Fit:
-    """The fit of the same model with another kind of shift of one body's records."""
+    """The fit of the same model with another shift of one body's records."""
     shifts = {**fit.model.record_shift, place: shift}
     return estimate(fit.model.with_record_shift(shifts), prepared)
 
 
 def _stands_for_a_delay(fit: Fit, place: str, prepared: Prepared) -> bool:
-    """Whether a dead time in the place of a shift at its bound surely leaves less unseen."""
+    """Whether a dead time in place of a shift at its bound surely leaves less on check records."""
     late = _with_dead_time(fit.model, place, prepared)
     return late is not None and check_score(fit, estimate(late, prepared)) > CRITERIA.sure
 
 
 def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | None:
-    """The model with the shift as a dead time of the actuator; None where none could be missing."""
+    """The model with the shift as a dead time of the actuator; None: it cannot have one."""
     body = model.body(place)
     if dead_times(body) or place in bodies_with_measured_force(prepared.experiment):
         return None

@@ -2,8 +2,8 @@
 
 Over a part of a turn, a spring and the gravity of a link are nearly the same torque. If the
 remaining error is noise, either the records distinguish the two, or the simpler effect is named. If
-more than noise remains, something unknown acts too, and may be as large as the difference of the
-two effects. Then a smaller error, or one parameter less, says little, and the effect that most
+more than noise remains, an unknown effect acts too, and may be as large as the difference of the
+two effects. Then a smaller error, or one parameter less, is weak evidence, and the effect that most
 machines have is named. The file of an effect says which effect is more common (`commoner`), and on
 which travel the two are hardly distinguished (`untold`).
 """
@@ -24,10 +24,12 @@ from .rungs import estimate_without, reorder_and_refit
 
 
 def compare_look_alikes(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with one effect in the place of another that the records hardly tell from it.
+    """The ladder with one effect replaced by another that the records hardly distinguish from it.
 
-    Where more than noise is left: the more common effect, such as gravity for a spring. Where noise
-    is left: the simpler one. None: the records distinguish them, or the right ones are there.
+    Where more than noise is left, the more common effect is preferred, such as gravity to a spring;
+    where only noise is left, the simpler one.
+    returns: None where the records distinguish the effects, or the preferred ones are present
+        already
     """
     noise = is_adequate(state.fit, state.floor, criteria=search.criteria)
     for rung in state.rungs[1:]:
@@ -40,7 +42,7 @@ def compare_look_alikes(search: LadderSearch, state: LadderState) -> LadderState
 
 
 def _list_rivals(added: Candidate, state: LadderState, *, simpler: bool) -> list[Candidate]:
-    """Look-alikes that may stand for an effect: the simpler ones, or else the more common ones."""
+    """Look-alikes that may replace an effect: the simpler ones, or else the more common ones."""
     alike = [c for c in list_look_alikes(added, state.fit.model) if c.key not in state.gone]
     if simpler:
         return [
@@ -54,7 +56,7 @@ def _list_rivals(added: Candidate, state: LadderState, *, simpler: bool) -> list
 def _exchange_for(
     search: LadderSearch, state: LadderState, rung: Rung, other: Candidate
 ) -> LadderState | None:
-    """The ladder with a look-alike in the place of a rung's effect; None: it is not supported."""
+    """The ladder with a look-alike in place of a rung's effect; None: it is not supported."""
     model, criteria, added = state.fit.model, search.criteria, rung.added
     assert added is not None
     if (

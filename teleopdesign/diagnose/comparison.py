@@ -1,4 +1,4 @@
-"""Where a model fails: measured and modelled force side by side, as labelled data."""
+"""Where a model fails: measured and modelled forces together, as labelled data."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Comparison(ByValue):
     """A model compared with an experiment, without estimation.
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
-    data: per sample of every record and body (dimension "sample"): record, body, segment, time,
-        position, velocity, direction, measured, model and residual force, the three low-passed,
-        and whether the sample counts in the error (the ends do not)
+    data: per sample of every record and body (dimension "sample"): record, use, body, segment,
+        time, position, velocity, direction, the low-passed measured, model and residual force, and
+        whether the sample counts in the error (samples at the ends do not)
     """
 
     model: Model
@@ -53,7 +53,7 @@ class Comparison(ByValue):
         return plot_comparison(self)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write the data with its units."""
+        """Write the data with units to a NetCDF file."""
         write_netcdf(path, self.data)
 
     def _repr_html_(self) -> str:
@@ -98,13 +98,13 @@ def compare(
 ) -> Comparison | SimulationComparison:
     """Compare the model with every record of the experiment, without estimation.
 
-    by: "force": what the model leaves of the force along the measured motion; "simulation": how far
-        the model moves away when the recorded forces drive it
-    loop: of a simulation, the controller that held the device, of an arm each joint, or joint ->
-        its controller; None: nothing holds the model
-    seed: of the draws for the noise floor
+    by: "force": the force that the model leaves along the measured motion; "simulation": how far
+        the model deviates when the recorded forces drive it
+    loop: for a simulation, the controller that held the device or each joint of an arm, or a
+        mapping joint -> controller; None: nothing holds the model
+    seed: of the random numbers for the noise floor
     raises ExperimentError: the experiment lacks what the comparison needs
-    raises ModelError: a loop without a simulation, a model that cannot be simulated
+    raises ModelError: a loop is given without a simulation, or the model cannot be simulated
     """
     if by == "simulation":
         if experiment.arm is not None:
@@ -126,7 +126,7 @@ def compare(
 
 
 def residual_data(model: Model, prepared: Prepared) -> Dataset:
-    """Forces of the model along every measured motion; see `Comparison.data`."""
+    """Forces of the model along every measured motion, as in `Comparison.data`."""
     import xarray as xr
 
     columns: dict[str, list[Any]] = {}

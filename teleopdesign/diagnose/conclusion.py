@@ -1,7 +1,8 @@
 """The end of a diagnosis: correction of reading errors, errors on whole records, verdict.
 
-The model that an answer ends with holds what its ladder shows. What is not there by the errors that
-the answer states is set aside before; what stays and is not named is said to be unexplained.
+The final model holds exactly the effects that its ladder shows. Effects that are absent by the
+final errors are set aside before. Effects that stay but are not probable enough are called
+unexplained.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def conclude(
 ) -> Diagnosis:
     """The diagnosis that a ladder ends with.
 
-    rungs: those of the state with the reading error removed from the last fit; default: removed now
+    rungs: of the state, with the reading error removed from the last fit; None: it is removed here
     beside: of each stretch, the motions of an arm's other joints, from which trees learn too
     """
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
@@ -96,9 +97,9 @@ def conclude(
 
 
 def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
-    """A rung that is not named, with all else that explains a good part of what it does.
+    """A rung that is not named, with all other candidates that explain a good part of its gain.
 
-    One that stands for a group says already what it cannot be distinguished from.
+    A rung with alternatives lists already the effects that it cannot be distinguished from.
     """
     if rung.added is None or rung.added in named or rung.alternatives:
         return rung
@@ -112,7 +113,7 @@ def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
 
 
 def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | None:
-    """The last rung whose effect is absent or misnamed at the end, with the reason."""
+    """The last rung whose effect is uncertain or implausible in the final fit, with the reason."""
     last = rungs[-1].fit
     stands_for = implausible_effects(last.model, prepared) if len(rungs) > 1 else {}
     for before, rung in reversed(list(pairwise(rungs))):
@@ -129,10 +130,10 @@ def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung,
 def find_hidden_rung(
     rungs: Sequence[Rung], *, criteria: Criteria = CRITERIA
 ) -> tuple[Rung, str] | None:
-    """The first rung that leaves the command too little influence to be believed; and why.
+    """The first rung that leaves the command too little influence to be believed, with the reason.
 
-    It was asked when the rung was ranked, too. A share near its limit changes with the last fit,
-    and from the windows that were searched to the whole records.
+    The same was checked when the rung was ranked. A share near its limit changes with the last fit,
+    and from the searched windows to the whole records.
     """
     for before, rung in pairwise(rungs):
         why = refusal(before.fit, rung.fit, criteria=criteria)
@@ -144,9 +145,10 @@ def find_hidden_rung(
 def remove_doubtful_rung(
     search: LadderSearch, state: LadderState, rungs: Sequence[Rung]
 ) -> LadderState | None:
-    """The ladder without the last effect that is doubtful at its end; None: none is, or was before.
+    """The ladder without the last effect that is doubtful at its end.
 
     rungs: of the state, with the errors that the answer would state
+    returns: None where no effect is doubtful, or the effect was removed before
     """
     doubted = find_doubtful_rung(rungs, search.prepared)
     doubted = doubted or find_hidden_rung(rungs, criteria=search.criteria)
@@ -168,7 +170,7 @@ def remove_doubtful_rung(
 
 
 def with_last_corrected(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
-    """The rungs with the reading error removed from the last fit, unless its error grows."""
+    """The rungs with the reading error removed from the last fit, unless an error then rises."""
     search.progress("reading the model's own motion")
     last = correct_fit(search, state.fit, state.floor)
     rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=last))
@@ -176,7 +178,7 @@ def with_last_corrected(search: LadderSearch, state: LadderState) -> tuple[Rung,
 
 
 def _evaluate_on_all(fit: Fit, whole: Prepared) -> Fit:
-    """A fit made on windows, with its errors on the whole records."""
+    """A fit made on windows, with its errors evaluated on the whole records."""
     fit_error = force_error(fit.model, whole.of("fit"))
     check = whole.of("check")
     if not check:

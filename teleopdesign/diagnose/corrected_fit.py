@@ -14,7 +14,7 @@ from .stated_fit import estimate_stated
 
 
 def corrected_fit(search: LadderSearch) -> Fit:
-    """The fit of the stated model as reported by a diagnosis that adds no effect."""
+    """The corrected fit of the stated model, as a diagnosis that adds no effect reports it."""
     fit = estimate_stated(search.stated, search.prepared)
     fit = with_paying_shift(fit, search.prepared)
     drawn = noise_floor(fit.model, search.prepared, search.generator())
@@ -24,8 +24,8 @@ def corrected_fit(search: LadderSearch) -> Fit:
 def correct_fit(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
     """A fit without its reading error if it leaves only noise; else with wider standard errors.
 
-    So where the corrected fit leaves clearly more (`Criteria.of_floor`): what was simulated is not
-    what was recorded, then.
+    The standard errors are widened too where the corrected fit leaves clearly more
+    (`Criteria.of_floor`). Then the simulated readings do not describe the recorded ones.
     """
     criteria = search.criteria
     most = (1.0 + criteria.of_floor) * check_squares(fit)

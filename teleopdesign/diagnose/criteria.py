@@ -1,6 +1,6 @@
 """Thresholds of a diagnosis, each with its unit, its origin and the effect of another value.
 
-A stricter value misses more of what is there; a looser one names more of what is not.
+A stricter value misses more effects that are present; a looser one names more that are absent.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Decisions of a diagnosis: which effects count, and the verdict.
 
-Every threshold is a field of `Criteria`. What counts as noise: `adequacy`. Which of several
-candidates is taken: `order`.
+Every threshold is a field of `Criteria`. `adequacy` decides what counts as noise, and `order` which
+of several candidates is accepted.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .rung import Rung
 def explained_share(before: Fit, after: Fit, floor: NoiseFloor) -> float:
     """Share of the squares above the noise floor that the effects added between two fits explain.
 
-    Of the force or seen at the command, the smaller part.
+    The smaller of two shares: of the force, and of the force referred to the command.
     """
     of_force = _removed_share(before.check_error, after.check_error, floor.value)
     return min(
@@ -42,14 +42,14 @@ def _removed_share(before: float, after: float, floor: float) -> float:
 
 
 def lowers_check_squares(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether `other` leaves fewer squares on the check records, by enough to matter."""
+    """Whether `other` leaves clearly fewer squares on the check records."""
     return check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
 
 
 def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
     """Why an addition to `base` does not count (a key of `REFUSALS`); "" where it may count.
 
-    What makes the recorded force unpredictable has not explained it.
+    An addition that makes the recorded force unpredictable has not explained it.
     """
     already = base.at_command.blind if base.at_command.blind > criteria.blind else 0.0
     if other.at_command.blind - already > criteria.blind:
@@ -63,8 +63,8 @@ def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
 def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether `other` has the smaller check error by more than chance and by enough to matter.
 
-    In both figures: of the force, and seen at the command, where less force acting gains nothing.
-    A force that is only smaller relative to what acts is no gain either.
+    Both the error of the force and the error referred to the command must fall. At the command, a
+    smaller acting force is no gain. Nor is an error that falls only relative to the acting force.
     """
     before = check_squares(base)
     of_force = (before - check_squares(other)) / before
@@ -87,7 +87,7 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
 
 
 def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria) -> bool:
-    """Whether `other` is an adequate model where the base was not."""
+    """Whether `other` is an adequate model and the base is not."""
     adequate = is_adequate(other, floor, criteria=criteria)
     return adequate and not is_adequate(base, floor, criteria=criteria)
 
@@ -95,7 +95,7 @@ def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria
 def is_supported(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> bool:
-    """Whether a candidate is identifiable, lowers the check error enough, and nothing bars it."""
+    """Whether a candidate is identifiable, lowers the check error enough, and no rule bars it."""
     return (
         ranked.is_identifiable
         and not objection(base, ranked, floor, criteria=criteria)
@@ -108,9 +108,9 @@ def objection(
 ) -> str:
     """The rule that excludes a candidate whatever it explains, in words; "" where none does.
 
-    One that drives a parameter of the model to its bound, and whose effect the model still has,
-    describes the records, but is no missing physics beside the model's effects. One that needs a
-    parameter at its bound is itself another effect, unless it leaves noise only.
+    A candidate may drive a parameter of the model to a bound although the records showed its
+    effect. Then it describes the records, but is no effect that the model lacks. A candidate with a
+    parameter at a bound is another effect itself, unless it makes the model adequate.
     """
     if ranked.refused or ranked.implausible:
         return REFUSALS.get(ranked.refused, ranked.implausible)
@@ -131,14 +131,17 @@ def objection(
 
 
 def _is_taken_over(name: str, candidate: Candidate) -> bool:
-    """Whether a parameter is of an effect whose force a candidate may take over whole."""
+    """Whether the candidate may replace the whole effect that a parameter belongs to."""
     return any(name.startswith(f"{candidate.at}.{e}.") for e in candidate.effect.takes_over)
 
 
 def helps_but_is_barred(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> str:
-    """The rule that excludes a candidate that lowers the check error by enough; "" if none."""
+    """The rule that excludes a candidate that lowers the check error by enough.
+
+    returns: "" where no rule does, or the candidate does not lower the error enough
+    """
     less = ranked.fit.check_error**2 < (1.0 - criteria.relevant) * base.check_error**2
     if not (less or lowers_check_squares(base, ranked.fit, criteria=criteria)):
         return ""
@@ -146,10 +149,10 @@ def helps_but_is_barred(
 
 
 def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> list[str]:
-    """Parameters driven to a bound whose effect the records tell from its absence in the base.
+    """Parameters driven to a bound although the records showed their effect in the base.
 
-    least: standard errors from absence. Of one that hardly differs from it nothing is known that a
-    candidate could contradict: it bars none
+    least: standard errors by which the effect must differ from its absence. A weaker effect is too
+        uncertain to exclude a candidate
     """
     driven = set(fit.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n, least))
@@ -158,7 +161,7 @@ def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> lis
 def _is_there(base: Fit, name: str, least: float) -> bool:
     """Whether the records show that the effect of a parameter is present.
 
-    By all that it cannot be without; what is optional may be open.
+    The parameter and all that are not optional must differ from absence by `least` standard errors.
     """
     effect = name.rpartition(".")[0]
     values = {
@@ -174,10 +177,11 @@ def _is_there(base: Fit, name: str, least: float) -> bool:
 def find_superfluous_effect(
     base: Fit, fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA
 ) -> Candidate | None:
-    """The one effect of the base that a candidate at its place makes superfluous; None or several.
+    """The one effect of the base that a candidate at its place makes superfluous.
 
-    Its strength surely differed from zero, and beside the candidate it ends where it is absent; or,
-    where no effect does so, it surely differed from zero before and no longer does.
+    The strength of this effect surely differed from zero, and beside the candidate it lies at its
+    bound of absence. Where no effect ends so: its strength no longer differs surely from zero.
+    returns: None where there is no such effect, or more than one
     """
     gone, ended, open_now = set(list_displaced_parameters(base, fit)), [], []
     for effect in base.model.body(candidate.at).effects:
@@ -206,7 +210,7 @@ def find_superfluous_effect(
 
 
 def _is_near_absence(fit: Fit, name: str, absent: float) -> bool:
-    """Whether a parameter that was driven to a bound lies at the one where its effect is absent."""
+    """Whether the bound that a parameter was driven to is the one where its effect is absent."""
     declared = fit.model.declared(name)
     value = fit.model.parameters[name].value
     near_lower = abs(value - declared.lower) <= abs(value - declared.upper)
@@ -216,9 +220,9 @@ def _is_near_absence(fit: Fit, name: str, absent: float) -> bool:
 def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> float:
     """Predicted gain, as a share of the base's squares, from which a search continues.
 
-    The floor is never above what a candidate leaves. So beside a base that leaves little more than
-    its floor, only what takes away of_floor / (1 + of_floor) of the squares can be better: a first
-    step that promises less than a third of that is not followed.
+    The floor is never above a candidate's error. So if the base leaves little more than its floor,
+    a candidate is better only if it removes of_floor / (1 + of_floor) of the squares. A start whose
+    first step promises less than a third of that is not followed.
     """
     least = criteria.of_floor / (1.0 + criteria.of_floor)
     only_noise = criteria.of_floor * floor.value**2 >= least * base.check_error**2
@@ -234,7 +238,7 @@ def verdict(
 ) -> str:
     """ "effects_missing", "model_adequate" or "undecided".
 
-    moment: as `moment_above_noise` says; what is left at one moment only is no missing physics
+    moment: from `moment_above_noise`; a residual at one moment only is no missing physics
     """
     added = [r for r in rungs if r.added is not None]
     if not added:

@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class OpenQuestion(ByValue):
-    """An accepted effect (None: none was accepted) and the rivals that could replace it.
+    """An accepted effect and its rivals that the records cannot exclude.
 
-    others: each with the fit that it was compared by
+    added: the accepted effect; None: none was accepted
+    others: each rival with the fit that it was compared by
     """
 
     added: Candidate | None
@@ -71,20 +72,21 @@ class Diagnosis(ByValue):
     floor: the noise floor: the error that the sensors alone would leave
     moment: the single time span that holds all of the residual above noise; None: there is no such
         span
-    open: questions that the records leave open; stated for a diagnosis that was read from a file,
-        which has no rankings
+    open: questions that the records leave open, where they are stored: in a diagnosis read from a
+        file, or of an arm's joint; None: they follow from the rankings
     named: accepted effects that are probable enough to be called missing
     learnable: how much of the residual a black box can learn; None without the extra `learn`
     near_reversals: the check error near reversals of the motion; None where there are none
-    left_out: what a full search includes and this one did not, in words
-    untold: what the records cannot tell of the accepted effects
-    set_aside: effects that were accepted first and removed again: with the errors that the answer
-        states, they are not there
-    on_all_records: check error of the final model estimated on all records; None: it was not
-        asked, for the check records leave no more than the fit records do
-    sensor_floor: what the sensors alone leave, by which effects are believed; None: the floor.
-        Where a command's scatter is noise too (`between_rows`), effects may stand in for it
-    recorded: the answer file that the diagnosis was read from, with its candidates; else None
+    left_out: parts of a full search that this one left out, in words
+    untold: what the records cannot determine about the accepted effects
+    set_aside: effects that were accepted first and removed again, because the final errors do not
+        support them
+    on_all_records: check error of the final model estimated on all records; None: not computed,
+        because the check error is not much larger than the fit error
+    sensor_floor: error that the sensors alone leave, used for the probability of effects; None:
+        equal to the floor. Where the scatter of a command is noise too (`between_rows`), an effect
+        may imitate it
+    recorded: content of the answer file that the diagnosis was read from; else None
     """
 
     experiment: Experiment
@@ -108,26 +110,26 @@ class Diagnosis(ByValue):
 
     @property
     def before(self) -> Fit:
-        """The user's model, re-estimated."""
+        """The fit of the user's model, re-estimated."""
         return self.rungs[0].fit
 
     @property
     def after(self) -> Fit:
-        """The model with every accepted effect."""
+        """The fit of the model with every accepted effect."""
         return self.rungs[-1].fit
 
     @property
     def model(self) -> Model:
-        """The model that the diagnosis ends with."""
+        """The final model of the diagnosis."""
         return self.after.model
 
     @property
     def missing(self) -> tuple[Candidate, ...]:
-        """Effects that can be named, in the order added; none where the verdict is undecided."""
+        """Effects that are called missing, in the order added; none where they cannot be named."""
         return self.named if self.verdict == "effects_missing" else ()
 
     def reason_set_aside(self, key: tuple[str, str]) -> str:
-        """Why an effect (name, place) that was accepted once is not there; "" for all others."""
+        """Why an effect (name, place) was accepted and removed again; "" for all other effects."""
         return next((one.reason for one in self.set_aside if one.candidate.key == key), "")
 
     @property
@@ -138,7 +140,7 @@ class Diagnosis(ByValue):
 
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:
-        """Effects that explain the records equally well, named one first."""
+        """Groups of effects that explain the records equally well, the accepted one first."""
         return tuple(
             (r.added, *r.alternatives) for r in self.rungs if r.added is not None and r.alternatives
         )
@@ -147,7 +149,8 @@ class Diagnosis(ByValue):
     def look_alikes(self) -> tuple[tuple[Candidate, Candidate], ...]:
         """Accepted effects, each with one that gives nearly the same force over this travel.
 
-        Named nonetheless: by an effect's file one of the two is the commoner (`Effect.commoner`).
+        They are named nonetheless, because one of the two is the commoner by its file
+        (`Effect.commoner`).
         """
         if self.prepared.is_of_an_arm:  # its links have gravity
             return ()
@@ -161,25 +164,25 @@ class Diagnosis(ByValue):
 
     @property
     def may_be_noise(self) -> bool:
-        """Whether all that is left may be noise, for by the final model sensors leave as much.
+        """Whether the whole residual may be noise: sensors alone leave as much of the final model.
 
-        The floor that counts was held below that, so that nothing hides in it.
+        The noise floor in use was limited below that value, so that no effect hides in it.
         """
         drawn = replace(self.floor, value=self.floor.drawn)
         return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)
 
     @property
     def floor_of_belief(self) -> NoiseFloor:
-        """The noise floor by which effects are believed."""
+        """The noise floor that the probabilities of effects are computed with."""
         return self.floor if self.sensor_floor is None else self.sensor_floor
 
     @property
     def left(self) -> float:
-        """Final error in noise floors: of the force or at the command, the larger."""
+        """Final error over the noise floor: of the force or at the command, the larger ratio."""
         return floors_left(self.after, self.floor)
 
     def plot(self) -> Figure:
-        """The figure: forces, residual over time, velocity and position, ladder (a Figure)."""
+        """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
         from ..plot.diagnosis import plot_diagnosis
 
         return plot_diagnosis(self)

@@ -1,4 +1,4 @@
-"""Accuracy of a fit for each purpose: how many iterations, how small a change."""
+"""Accuracy of a fit for each purpose: number of evaluations and relative change of squares."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Effort:
-    """When a fit ends: relative change of squares and parameters, and most evaluations."""
+    """When a fit ends: relative change of the sum of squares, and most evaluations."""
 
     tolerance: float
     evaluations: int
@@ -15,7 +15,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Efforts:
-    """An effort for each purpose; `EFFORTS` are those in use. Less is faster."""
+    """An effort for each purpose; `EFFORTS` are those in use. Less effort is faster."""
 
     #: a few real steps: enough to see which of many starts lead down
     first_steps: Effort = Effort(1e-3, 4)

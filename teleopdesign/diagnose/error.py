@@ -1,9 +1,9 @@
-"""The force error: what a model leaves of the measured force, as one figure.
+"""The force error: rms of the residual force relative to the measured force.
 
-    error = rms(LP residual) / rms(LP (actuator force + interaction force)),  record less its ends
+    error = rms(LP residual) / rms(LP (actuator force + interaction force)),  without the ends
 
 LP is the zero-phase low-pass at the comparison's bandwidth; sums of squares run over all bodies,
-records and segments of one use ("fit" or "check").
+records and segments of one use ("fit" or "check"). The ends of each record do not count.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from .residual import residuals
 
 
 def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:
-    """The force error of these stretches from their low-passed residuals."""
+    """The force error of these stretches, from the low-passed residual of each (N or N m)."""
     left = sum(s.weight * float(np.sum(r**2)) for s, r in zip(stretches, values, strict=True))
     whole = sum(s.measured for s in stretches)
     return float(np.sqrt(left / whole))
 
 
 def force_error(model: Model, stretches: Sequence[Stretch]) -> float:
-    """Relative force error of the model as it stands, on these stretches; NaN if there are none."""
+    """Relative force error of a model on these stretches, without estimation; NaN: no stretch."""
     if not stretches:
         return float("nan")
     return error_of(stretches, [r for r, _ in residuals(model, stretches)])

@@ -1,8 +1,8 @@
-"""The residual as an error of the recorded command.
+"""The residual referred to the command: an error of the recorded command.
 
-A model in which less force acts has less force to explain, but may ignore the recorded command. So
-the force error is also computed from the residual mapped back to the command, and an effect must
-lower both errors.
+In a model in which less force acts, less force remains to be explained, but such a model may ignore
+the recorded command. So the force error is also computed from the residual mapped back to the
+command, and an effect must lower both errors.
 """
 
 from __future__ import annotations
@@ -27,11 +27,12 @@ from .record_offsets import apply_offset_groups, offset_groups
 class AtCommand:
     """Residual of a model on some stretches, as an error of the recorded forces.
 
-    residual: per stretch, low-passed, on the rows that count; in blind rows as it acts
+    residual: per stretch, low-passed, on the rows that count; in blind rows the acting residual
     sighted: per stretch, the rows that are not blind
-    error: relative, over the rows that are not blind, above the line and below; NaN: there are none
+    error: rms residual over rms measured force, both over the rows that are not blind; NaN: there
+        are none
     blind: share of blind samples among those where the body slides
-    weak: an actuator cannot deliver, at any command, what its model needs to slide
+    weak: whether an actuator cannot deliver the force that its model needs to slide, at any command
     """
 
     residual: tuple[Array, ...]
@@ -44,8 +45,9 @@ class AtCommand:
 def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     """Residual of the model as an error of the recorded forces: see `seen_at_command`.
 
-    Equal to `residuals` where nothing stands between the recorded forces and the body. What a model
-    keeps of the interaction force from a body is made up for by the scale of the rest.
+    Equal to `residuals` where no effect lies between the recorded forces and the body. Where the
+    model withholds a part of the interaction force from a body, the residual is scaled up
+    accordingly.
     """
     groups = offset_groups(model, stretches)
     along = apply_offset_groups(model, stretches, groups)
@@ -95,7 +97,7 @@ def _scale_to_command(
 ) -> list[Array]:
     """Residuals scaled as if all of the interaction force reached the body.
 
-    motions: those of the stretches, as logged
+    motions: of the stretches, as logged;  values: residual of each stretch
     """
     values = list(values)
     for body in {s.motion.body for s in stretches}:

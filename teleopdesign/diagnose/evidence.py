@@ -1,9 +1,10 @@
 """Is one error smaller than another by more than chance? Scores of residuals in blocks.
 
-Two models leave residuals r_before and r_after. Their squares differ by d^2 + 2 d r_after with
-d = r_before - r_after: the first part is what the better model explains, the second is chance. Its
-size is estimated from blocks of a quarter of a second, for residuals are correlated within
-fractions of a second, and the gain is measured in it.
+Two models leave residuals r_before and r_after. Their squares differ by d^2 + 2 d r_after with d =
+r_before - r_after. The first part is the force that the better model explains; the second part is
+chance. Residuals are correlated within fractions of a second, so the standard deviation of the
+chance part is estimated from blocks of a quarter of a second. The score is the gain divided by this
+standard deviation.
 """
 
 from __future__ import annotations
@@ -34,24 +35,27 @@ def gain_score(before: Array, after: Array, blocks: NDArray[np.intp]) -> float:
 
 
 def chance(score: float) -> float:
-    """Probability that chance alone brings a score of this size or more (one-sided, normal)."""
+    """Probability that chance alone gives this score or a higher one (one-sided, normal)."""
     return float(ndtr(-score))
 
 
 def check_squares(fit: Fit) -> float:
-    """Sum of squares on the check records, relative to the force that acts by the model."""
+    """Sum of squares on the check records, relative to the force that acts in the model."""
     return float(fit.check_residual @ fit.check_residual)
 
 
 def check_score(before: Fit, after: Fit) -> float:
-    """Score by which `after` has the smaller force error on the check records."""
+    """Score of `after` against `before` by the force error on the check records.
+
+    positive: `after` has the smaller error
+    """
     return gain_score(before.check_residual, after.check_residual, after.check_blocks)
 
 
 def score_at_command(before: Fit, after: Fit) -> float:
-    """Score by which `after` has the smaller error at the command, on the check records.
+    """Score of `after` against `before` by the error at the command, on the check records.
 
-    On the rows that both can tell: what a model is blind to speaks for neither.
+    Only rows that are blind in neither model count.
     """
     rows = before.at_command.sighted & after.at_command.sighted
     return gain_score(
@@ -60,10 +64,11 @@ def score_at_command(before: Fit, after: Fit) -> float:
 
 
 def gain_at_command(before: Fit, after: Fit) -> float:
-    """Share of the squares at the command that `after` removes, on rows sighted in both fits.
+    """Share of the squares at the command that `after` removes, on rows that both fits can judge.
 
-    No more than the error itself says of each model on its rows: to be blind to where most is
-    left is no gain.
+    Rows that are blind in a fit are left out. The share is at most the gain in the error at the
+    command, which each fit has on all of its sighted rows: a model gains nothing by being blind
+    where the residual is large.
     """
     rows = before.at_command.sighted & after.at_command.sighted
     whole, left = (float(np.sum(f.at_command.residual[rows] ** 2)) for f in (before, after))
@@ -72,7 +77,7 @@ def gain_at_command(before: Fit, after: Fit) -> float:
 
 
 def whole_score(before: Fit, after: Fit) -> float:
-    """Score by which `after` has the smaller force error on all records together."""
+    """Score of `after` against `before` by the force error on all records together."""
     shift = int(after.fit_blocks.max()) + 1
     return gain_score(
         np.concatenate([before.fit_residual, before.check_residual]),

@@ -18,9 +18,10 @@ WINDOW = 4.0
 
 
 def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
-    """The experiment with about `most` samples; itself where it is no longer than that.
+    """The experiment with about `most` samples; the experiment itself where it has no more.
 
-    Nothing is copied: the windows are segments of the records. Hidden states start anew at each.
+    Nothing is copied: the windows are segments of the records. Hidden states start anew in each
+        window.
     """
     total = sum(len(r.time) for r in experiment.records)
     if total <= most:
@@ -31,17 +32,17 @@ def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
 
 
 def cut_to_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
-    """The windows of prepared records that are searched; the records themselves if not long."""
+    """The windows of prepared records that are searched; the whole records where they are short."""
     if sum(len(r.time) for r in whole.experiment.records) <= plan.long:
         return whole
     return prepare(excerpt(whole.experiment, most=plan.windows), bandwidth=whole.bandwidth)
 
 
 def _windows(record: Record, part: float) -> tuple[slice, ...]:
-    """Windows that make up about `part` of a record, spread over its segments, one at least.
+    """Windows that make up about `part` of a record, spread over its segments; at least one.
 
-    Each segment contributes what its length and that of those before it owe: of many short ones
-    every n-th is taken.
+    The number of windows follows the total length of the segments so far: of many short segments,
+    every n-th becomes a window.
     """
     size = max(64, round(WINDOW / record.sample_time))
     windows, owed = [], 0.0

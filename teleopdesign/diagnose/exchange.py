@@ -1,9 +1,10 @@
-"""Exchange: an accepted effect is replaced by one that explains the records better beside the rest,
-or as well with fewer parameters.
+"""Exchange: an accepted effect is replaced by a better or simpler one.
 
+A better effect explains the records better together with all other effects; a simpler one explains
+them as well with fewer parameters.
 Effects are added one at a time, so an early effect may only imitate effects that were added later.
 If more than noise is left at the end, each effect that others followed is removed once, and the
-rivals that it beat when it was added are ranked at its place. Effects that explained the records
+rivals that it beat when it was added are ranked in its place. Effects that explained the records
 equally well when one of them was added are compared again together with later effects.
 """
 
@@ -29,11 +30,11 @@ from .rungs import estimate_without, reorder_and_refit
 
 @dataclass(frozen=True)
 class Exchange:
-    """One effect for another.
+    """The replacement of one effect by another.
 
-    dropped: the one that is replaced;  without: the fit that both are compared on
-    replacement: the one in its place, with the model fitted with it
-    ranking: all candidates for that place
+    dropped: the effect that is replaced;  without: the fit without it, which both are compared with
+    replacement: the new effect, with the model fitted with it
+    ranking: all candidates for this place
     """
 
     dropped: Candidate
@@ -43,7 +44,7 @@ class Exchange:
 
 
 def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder after the best exchange, without effects that it makes superfluous; None: none."""
+    """The ladder after the best exchange, without superfluous effects; None: no exchange."""
     criteria, prepared, floor = search.criteria, search.prepared, state.floor
     if state.exchanges >= search.plan.exchanges or is_adequate(state.fit, floor, criteria=criteria):
         return None
@@ -70,9 +71,10 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def compare_alternatives(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with fewer alternatives: beside what followed, the records may tell them apart.
+    """The ladder with fewer alternatives of a rung, as later effects may distinguish them.
 
-    The best of them is taken. None: they are as equal as before.
+    The best alternative becomes the effect of the rung, unless the accepted one is still as good.
+    returns: None where no rung has fewer alternatives than before
     """
     for rung in _list_followed(state):
         if rung.added is None or not rung.alternatives or rung.replaced is not None:
@@ -102,9 +104,9 @@ def compare_alternatives(search: LadderSearch, state: LadderState) -> LadderStat
 
 
 def _list_followed(state: LadderState) -> list[Rung]:
-    """Rungs that were ranked without all of the others: what is there now may change their place.
+    """Rungs that were ranked without all of the other effects; these may change their place.
 
-    The last is one of them only where an earlier one changed after it was added.
+    The last rung is included only where an earlier rung changed after it was added.
     """
     added = list(state.rungs[1:])
     last = state.rungs[-1].ranking
@@ -119,7 +121,10 @@ def rivals_of(
     *,
     criteria: Criteria = CRITERIA,
 ) -> list[Candidate]:
-    """Supported candidates of a ranking besides the accepted one, if the final model lacks them."""
+    """Supported candidates of a ranking that the final model lacks.
+
+    there: effects that are no rivals: those of the final model, and those that were set aside
+    """
     keys = {c.key for c in there}
     supported = [
         r.candidate
@@ -140,11 +145,11 @@ def best_exchange(
 ) -> Exchange | None:
     """The exchange with the smallest check error.
 
-    None: no exchange lowers the error clearly, and none is simpler and leaves no more.
-
-    present: the fit with all that was accepted
-    rivals: accepted effect -> what may take its place;  step: number of the rung that is sought
-    replaced: accepted effect -> what comes back to the model where the effect goes
+    present: the fit with all accepted effects
+    rivals: accepted effect -> candidates that may replace it
+    step: number of the rung that is searched
+    replaced: accepted effect -> effect that returns to the model when the accepted one is removed
+    returns: None where no exchange clearly lowers the error, and none is simpler and as good
     """
     criteria, exchanges = search.criteria, []
     for dropped, among in rivals.items():

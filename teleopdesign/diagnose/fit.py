@@ -1,4 +1,4 @@
-"""A fitted model: its parameters with standard errors, and its errors on both uses."""
+"""A fitted model: parameters with standard errors, and errors on fit and check records."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from .solve import BLOCK, Solution, solve
 class CommandError(ByValue):
     """Residual of a model on the check records, as an error at the command.
 
-    residual: of `Fit.check_residual`'s rows;  sighted: those of them that are not blind
-    error, blind, weak: as `AtCommand` has them
+    residual: on the rows of `Fit.check_residual`;  sighted: the rows that are not blind
+    error, blind, weak: as in `AtCommand`
     """
 
     residual: Array
@@ -38,17 +38,18 @@ class CommandError(ByValue):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit(ByValue):
-    """A fitted model: parameters with standard errors, and its errors on both uses.
+    """A fitted model: parameters with standard errors, and errors on fit and check records.
 
+    free: names of the p estimated parameters;  at_bound: those that end at a bound
     fit_error, check_error: relative force errors; NaN where there is no such record
     fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
-        the force that acts by the model (`relative_residuals`): what models are compared by
-    at_command: what is left on the check records as an error of the recorded forces: an
-        effect must lower it too
-    fit_blocks, check_blocks: number of the block of each of these rows
-    jacobian: (rows, p) of fit_residual by `free`, in units of `scale`
+        the force that acts in the model (`relative_residuals`); used to compare models
+    at_command: residual on the check records as an error of the recorded forces: an effect must
+        lower it too
+    fit_blocks, check_blocks: block number of each row of these residuals
+    jacobian: (rows, p) derivative of fit_residual by `free`, in units of `scale`
     scale: (p,) SI value of the unit of each free parameter in `jacobian`
-    by_shift: (rows, k) of fit_residual by those shifts of the records that are at no bound
+    by_shift: (rows, k) derivative of fit_residual by the k shifts of records that are at no bound
     """
 
     model: Model
@@ -73,7 +74,7 @@ class Fit(ByValue):
 
 
 def fit_squares(fit: Fit) -> float:
-    """Sum of squares on the fit records, relative to the force that acts by the model."""
+    """Sum of squares on the fit records, relative to the force that acts in the model."""
     return float(fit.fit_residual @ fit.fit_residual)
 
 
@@ -83,7 +84,7 @@ def free_parameters(model: Model) -> tuple[str, ...]:
 
 
 def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
-    """Number of the block (a quarter of a second of one stretch) of each row."""
+    """Block number of each row; a block is a quarter of a second of one stretch."""
     parts, first = [], 0
     for s in stretches:
         numbers = ((s.motion.time[s.keep] - s.motion.time[s.keep[0]]) / BLOCK).astype(int)
@@ -93,7 +94,10 @@ def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
 
 
 def weigh_residuals(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
-    """Residuals of all stretches in one, each row times the root of the rows it stands for."""
+    """Residuals of all stretches in one array, each row times the square root of its weight.
+
+    The weight of a row is the number of rows that it represents.
+    """
     parts = [np.sqrt(s.weight) * r for s, r in zip(stretches, values, strict=True)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
@@ -101,15 +105,15 @@ def weigh_residuals(stretches: Sequence[Stretch], values: Sequence[Array]) -> Ar
 def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine) -> Fit:
     """Re-estimate the parameters of the model that are not fixed, on the fit records.
 
-    Without check records, blocks of the fit records are held out in turn: what is reported as
-    check then comes from fits that have not seen those blocks.
+    Without check records, blocks of the fit records are held out in turn. The check error then
+    comes from fits without those blocks.
     """
     solution = solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
     return fit_of(solution, prepared)
 
 
 def fit_of(solution: Solution, prepared: Prepared) -> Fit:
-    """The fit that a solution on the fit records is, with its errors on both uses."""
+    """The fit of a solution on the fit records, with its errors on both uses."""
     stretches, free = prepared.of("fit"), free_parameters(solution.model)
     blocks = block_numbers(stretches)
     fitted = with_errors(_with_held_shifts(solution, stretches), free, blocks).canonical()
@@ -138,9 +142,10 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
 
 
 def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solution:
-    """The solution with slopes by shifts that are held too: errors hold what is left open of them.
+    """The solution with derivatives by the shifts that the search held, too.
 
-    A search holds them, and has none.
+    A search holds these shifts and computes no derivatives by them. The standard errors of the
+    parameters must include their uncertainty.
     """
     shifts = solution.shifts
     if not shifts.held.any():
@@ -152,7 +157,7 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
 
 
 def rough_fit(model: Model, prepared: Prepared) -> Fit:
-    """A fit close enough to be ranked: sought on few samples, then estimated on all of them."""
+    """A fit precise enough for a ranking: estimated on few samples first, then on all of them."""
     coarse, free = prepared.coarse, free_parameters(model)
     if coarse is prepared:
         return estimate(model, prepared, effort=EFFORTS.rough)
@@ -161,9 +166,9 @@ def rough_fit(model: Model, prepared: Prepared) -> Fit:
 
 
 def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.intp]) -> Model:
-    """The model of a solution with the standard errors of all that was estimated.
+    """The model of a solution, with standard errors of all that was estimated.
 
-    A shift at its bound is as sure as the bound is: others do not hold an error of it.
+    A shift at its bound counts as certain: it adds nothing to the other standard errors.
     """
     shifts, bound = solution.shifts, solution.shift_at_bound
     whole = np.hstack([solution.jacobian, np.where(bound, 0.0, solution.by_shift)])
@@ -218,11 +223,11 @@ def _fit_held_out(
 
 
 def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) -> Array:
-    """Standard errors that hold under residuals correlated within a block (sandwich estimate).
+    """Standard errors that hold for residuals correlated within a block (sandwich estimate).
 
-    jacobian: (rows, p);  residual: (rows,);  blocks: block number of each row
-    NaN where the parameter cannot be distinguished from the others, and for all parameters where
-        a search diverged until numbers overflow
+    jacobian: (rows, p);  residual: (rows,);  blocks: (rows,) block number of each row
+    returns: (p,) standard errors; NaN where the residual does not depend on the parameter, and for
+        all parameters where a search diverged until numbers overflow
     """
     p = jacobian.shape[1]
     if p == 0:

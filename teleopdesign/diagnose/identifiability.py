@@ -1,4 +1,4 @@
-"""Whether records determine what an effect adds to a model."""
+"""Whether records determine the parameters that an effect adds to a model."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ from .products import product_of
 def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether the new parameters are determined and the base's parameters cannot imitate them.
 
-    Each must be further from absence than its standard error (an angle within half a turn) unless
-    the effect is there without it or a product of its parameters is known; a strength by more, what
-    is essential to it surely so; and some must change the residual in a unique way. An effect
-    that explains most, and of which some product is known, may have open parameters.
+    Each new parameter must differ from its value of absence by more than its standard error (an
+    angle must be known within half a turn); a strength by more, an essential parameter by most.
+    Exempt are optional parameters, and those that are not essential in a product that is known.
+    An effect that explains most, and of which some product is known, may have further open
+    parameters.
+    At least one new parameter must change the residual in a way that the base's parameters cannot.
     """
     most = explains_most(base, fit, criteria=criteria)
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
@@ -54,7 +56,7 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
 def _errors_from_absence(model: Model, name: str, criteria: Criteria) -> float:
     """Standard errors by which a parameter must differ from the value where its effect is absent.
 
-    One, for what is neither essential nor a strength: the effect stands on the others.
+    One where the parameter is neither essential nor a strength: other parameters show the effect.
     """
     if model.declared(name).search.essential:
         return criteria.surely
@@ -62,10 +64,11 @@ def _errors_from_absence(model: Model, name: str, criteria: Criteria) -> float:
 
 
 def explains_most(before: Fit, after: Fit, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether an effect takes away most squares of both uses.
+    """Whether an effect removes most of the squares, on the fit records and on the check records.
 
-    Then one product of its parameters that is known is enough. Of a friction that falls with speed
-    only the end may be seen: its level and where it falls run together to any size.
+    Then one known product of its parameters is enough. For example, records may show only the end
+    of a friction that falls with speed: then its level and its characteristic speed can grow
+    together without limit.
     """
     return all(
         squares(after) < (1.0 - criteria.mostly) * squares(before)
@@ -74,7 +77,7 @@ def explains_most(before: Fit, after: Fit, *, criteria: Criteria = CRITERIA) -> 
 
 
 def is_strength(model: Model, name: str) -> bool:
-    """Whether an effect is absent where this parameter of it has a finite value, such as zero."""
+    """Whether an effect is absent at a finite value of this parameter, such as zero."""
     place, local_name = model.locate(name)
     effect, _, parameter = local_name.partition(".")
     absent = model.body(place).effect(effect).absent.get(parameter) if parameter else None
@@ -84,9 +87,10 @@ def is_strength(model: Model, name: str) -> bool:
 def list_known_in_product(
     fit: Fit, effect: str, *, criteria: Criteria = CRITERIA
 ) -> frozenset[str]:
-    """Parameters of an effect that differ surely from zero, the others of a product held.
+    """Parameters of an effect that surely differ from zero while the others of a product are held.
 
-    The effect is there, though along such a valley the records leave open by which of them.
+    The effect is then present, although the records leave open by which of these parameters.
+
     effect: with its place, "device.stribeck"
     """
     product = product_of(fit, effect)
@@ -103,11 +107,13 @@ def doubt(
     most: bool = False,
     criteria: Criteria = CRITERIA,
 ) -> str:
-    """Which parameter an accepted effect stands on and the stated errors do not tell from absence.
+    """Which essential parameter or strength of an accepted effect may be that of absence, in words.
 
-    By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
-    of its parameters may be open, and so may those of which a product is known. "": none
-    most: whether the effect took away most of what was left (`explains_most`)
+    The standard errors are those at the end of a ladder, with the errors of the readings. Other
+    parameters may be open, and so may parameters of a known product.
+
+    most: whether the effect removed most of the squares (`explains_most`)
+    returns: "" where there is no such parameter
     """
     start = f"{candidate.at}.{candidate.effect.name}"
     together = list_known_in_product(fit, start, criteria=criteria)

@@ -36,14 +36,14 @@ def find_missing(
 ) -> Diagnosis:
     """Compare a model with an experiment and add the effects that its check records support.
 
-    model: default: the one that the experiment describes
-    Of more than `SearchPlan.long` samples, effects are sought and parameters estimated on
-    `SearchPlan.windows` samples in windows spread evenly over the records; errors are those of the
-    whole records.
+    model: None: the model that the experiment describes
+    Of more than `SearchPlan.long` samples, only `SearchPlan.windows` samples are searched, in
+    windows spread evenly over the records; errors are those of the whole records.
     progress: called with a line of text at each step (a `ProgressLine` while candidates are fitted)
-    seed: of the draws for the noise floor;  plan: how much is searched, such as `QUICK`
-    among: names of the candidate effects; default: all that the model knows
+    seed: of the random numbers for the noise floor;  plan: extent of the search, such as `QUICK`
+    among: names of the candidate effects; None: all that the model knows
     raises ExperimentError: the experiment lacks what the comparison needs
+    raises ModelError: `among` holds an unknown name
     """
     if among is not None:
         model = restrict_candidates(among, model or Model.from_experiment(experiment))
@@ -57,13 +57,16 @@ def find_missing(
 
 
 def _diagnose(search: LadderSearch) -> Diagnosis:
-    """The diagnosis of one search, from the user's model to where its ladder ends."""
+    """The diagnosis of one search, from the user's model to the end of its ladder."""
     state, rungs = climb(search, begin(search), with_last_corrected)
     return conclude(search, state, rungs)
 
 
 def with_candidates_named(among: Collection[str] | None, diagnosis: Diagnosis) -> Diagnosis:
-    """The diagnosis with the effects that it was restricted to; among: None for no restriction."""
+    """The diagnosis, with the names of the candidates that its search was restricted to.
+
+    among: names of the effects; None: no restriction
+    """
     if among is None:
         return diagnosis
     words = f"only these effects were tried: {', '.join(sorted(among))}"
@@ -77,8 +80,8 @@ def climb(
 ) -> tuple[LadderState, tuple[Rung, ...]]:
     """The state where the ladder ends, and its rungs as the answer states them.
 
-    ended: the rungs of a state that no move leads on from, with the errors that the answer would
-        state; by these an effect is set aside, and the ladder goes on without it
+    ended: returns the rungs of a state that has no further move, with their final errors. By these
+        errors an effect may be set aside; the ladder then continues without it
     """
     while True:
         while (
@@ -103,10 +106,11 @@ def climb(
 def bar_what_explains_nothing(
     search: LadderSearch, state: LadderState, moved: LadderState
 ) -> LadderState | None:
-    """The state without the effects of a move that explain nothing; None: they explain something.
+    """The state before a move, with the move's new effects barred; None: they explain something.
 
-    Other values of the model do as much, or what the readings bring in is weakened and no more. A
-    move that takes the place of rungs is not asked: it may do as much as they did, more simply.
+    An effect is barred if it only does what other values of the model do as well, or only weakens
+    the errors of the readings. A move that replaces rungs is exempt: it may explain as much as they
+    did, more simply.
     """
     before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
@@ -134,11 +138,10 @@ def bar_what_explains_nothing(
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    Where no effect is supported alone, a straight line is fitted in place of bends, effects that
-    explained equally well are compared again, and a commoner effect takes the place of one that is
-    hardly told from it; then, where more than a tone is left, a pair is sought, then a transmission
-    with friction behind it, then an exchange, then a pair in place of all rungs, then many effects
-    at once.
+    First, a supported effect is added. Where there is none, a straight line replaces bends, effects
+    that explained equally well are compared again, and a commoner effect replaces a similar one.
+    Then, where more than a tone is left, these moves follow: a pair, a transmission with friction
+    behind it, an exchange, a pair in place of all rungs, many effects at once.
     """
     if state.step > search.plan.most_effects:
         return straighten(search, state)

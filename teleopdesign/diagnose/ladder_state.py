@@ -30,10 +30,11 @@ from .stated_fit import estimate_stated
 
 @dataclass(frozen=True)
 class LadderSearch:
-    """What stays the same during a diagnosis.
+    """All that stays the same during a diagnosis.
 
-    whole: the records, ready for comparison;  prepared: the windows of them that are searched
-    stated: the model as its user gave it;  seed: of the draws, the same ones for each noise floor
+    whole: the prepared records;  prepared: their windows that are searched
+    stated: the model as its user gave it
+    seed: of the random numbers; each noise floor uses the same ones
     progress: called with a line of text at each step
     """
 
@@ -47,7 +48,7 @@ class LadderSearch:
     progress: Callable[[str], None] = lambda _: None
 
     def generator(self) -> np.random.Generator:
-        """A generator that begins at the seed."""
+        """A new random generator that starts at the seed."""
         return np.random.default_rng(self.seed)
 
     def at(self, bandwidth: float) -> LadderSearch:
@@ -63,7 +64,7 @@ class LadderSearch:
         among: Collection[Candidate] | None = None,
         worth: float | None = None,
     ) -> Ranking:
-        """`rank_candidates` beside a fit; step: number of the rung that is sought."""
+        """`rank_candidates` on top of a fit; step: number of the rung that is searched."""
         return rank_candidates(
             base,
             self.prepared,
@@ -77,25 +78,23 @@ class LadderSearch:
 
 @dataclass(frozen=True)
 class LadderState:
-    """The rungs, and what `look` saw beside the last of them.
+    """The rungs of a ladder, and the results of `look` for the last of them.
 
-    A move changes the rungs; what it was judged by stays until the next `look`.
+    A move changes the rungs; the noise floors and rankings stay the same until the next `look`.
 
-    rungs: the user's model first, then one rung an effect
-    floors: noise floors of the last rung;  first: the one of the user's model, bounded
-    ranking: all candidates beside the last rung;  tone: the best tone from outside there
+    rungs: the user's model first, then one rung per effect
+    floors: noise floors of the last rung;  first: limited noise floor of the user's model
+    ranking: all candidates beside the last rung;  tone: the best external tone in its residual
     supported: candidates that the records support, in the order of the ranking
-    exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
-    straightened: whether a straight line took the place of forces of the place once
-    together: whether many effects at once took the place of all rungs
-    came_back: effects (name, place) that were replaced by another once, or came back beside it:
-        none of them is replaced again, so that two effects cannot take turns
-    set_aside: effects that were accepted and are not there by the errors that the answer would
-        state: none of them is added again
-    barred: effects that were supported and explain nothing: other values do as much where all
-        records tell them, or readings are weakened and no more. None of them is added again
-    visited: sets of effects that the models of earlier states had: a ladder that came back to one
-        would go round for ever
+    exchanges: number of exchanges made;  replaced: whether a pair once replaced all rungs
+    straightened: whether a straight line once replaced effects of the position
+    together: whether many effects at once replaced all rungs
+    came_back: effects (name, place) that were replaced once, or were added again beside their
+        replacement: none of them is replaced again, so that two effects cannot take turns
+    set_aside: accepted effects that the final errors do not support: none is added again
+    barred: supported effects that explain nothing: other values of the model do as much, or the
+        effect only weakens errors of the readings. None is added again
+    visited: effects of all earlier models: a ladder that returned to such a set would not end
     """
 
     rungs: tuple[Rung, ...]
@@ -130,16 +129,16 @@ class LadderState:
 
     @property
     def floor(self) -> NoiseFloor:
-        """What counts as noise."""
+        """The noise floor used in decisions."""
         return self.floors.allowed
 
     @property
     def step(self) -> int:
-        """Number of the rung that is sought."""
+        """Number of the rung that is searched."""
         return len(self.rungs)
 
     def with_rungs(self, rungs: Collection[Rung]) -> LadderState:
-        """The state with other rungs, judged by the same look."""
+        """The state with other rungs, and the results of the same `look`."""
         return replace(self, rungs=tuple(rungs))
 
 
@@ -151,7 +150,10 @@ def search_for(
     seed: int = 0,
     plan: SearchPlan = PLAN,
 ) -> LadderSearch:
-    """The search for what a model lacks (default: the model that the experiment describes)."""
+    """A search for the effects that a model lacks.
+
+    model: None: the model that the experiment describes
+    """
     whole = prepare(experiment)
     return LadderSearch(
         experiment=experiment,
@@ -165,7 +167,10 @@ def search_for(
 
 
 def restrict_candidates(among: Collection[str], model: Model) -> Model:
-    """The model to which only these effects may be added; raises ModelError: an unknown name."""
+    """The model to which only these effects may be added.
+
+    raises ModelError: the name of an effect is unknown
+    """
     return replace(model, known={n: find_effect(n, model.known, "among") for n in among})
 
 
@@ -179,11 +184,11 @@ def begin(search: LadderSearch) -> LadderState:
 def look(
     search: LadderSearch, rungs: tuple[Rung, ...], before: LadderState | None = None
 ) -> LadderState:
-    """Draw the noise floor of the last rung and rank every candidate beside it.
+    """Draw the noise floor of the last rung, and rank every candidate added to its model.
 
     before: the state that a move led to; None: the ladder begins
-    Where a late log of a hand's force explains more than every effect, and than a tone from
-    outside, the rung is fitted with it.
+    Where a low-pass of the hand's force sensor explains more than every effect and every external
+    tone, the rung is fitted with this low-pass, and all candidates are ranked again.
     """
     prepared, criteria = search.prepared, search.criteria
     here = with_paying_shift(rungs[-1].fit, prepared)

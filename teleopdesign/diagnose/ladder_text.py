@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 
 
 def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> str:
-    """The ladder as a table of a notebook;  floor: relative noise floor;  note: below the table."""
+    """The ladder as an HTML table for a notebook.
+
+    floor: relative noise floor;  note: text below the table
+    """
     rows = [
         (
             "(your model, re-estimated)" if r.added is None else f"+ {r.said}",
@@ -38,7 +41,7 @@ def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> 
 
 
 def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Offsets of single records by the final model of the diagnosis."""
+    """Offsets of single records, estimated with the final model of the diagnosis."""
     stretches, rows = diagnosis.prepared.stretches, []
     for group, offsets in offset_groups(diagnosis.model, stretches):
         motion = stretches[group[0]].motion
@@ -55,7 +58,7 @@ def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _estimate_text(value: Value, unit: str) -> str:
-    """A value with its error; one that was estimated without an error is not determined."""
+    """A value with its standard error; without one, it is called not determined."""
     text = f"{with_standard_error(value.value, value.stderr)}{unit_after_number(unit)}"
     if value.fixed or math.isfinite(value.stderr):
         return text
@@ -67,7 +70,7 @@ DIFFERENT = 0.02
 
 
 def command_error_text(fit: Fit) -> str | None:
-    """The error at the command and the blind share, if they differ from the check error."""
+    """The error at the command and the blind share; None where both add nothing."""
     command_error = fit.at_command
     alike = abs(command_error.error - fit.check_error) <= DIFFERENT * fit.check_error
     if alike and command_error.blind == 0.0:
@@ -79,7 +82,7 @@ def command_error_text(fit: Fit) -> str | None:
 
 
 def _percent(error: float) -> str:
-    """An error in percent; unknown for a model that is blind everywhere."""
+    """An error in percent; "unknown" where it is not finite: the model is blind everywhere."""
     return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
 
 
@@ -89,7 +92,7 @@ LESS = 0.02
 
 
 def refused_lines(diagnosis: Diagnosis) -> list[str]:
-    """What left less force than the model that the ladder ends with, and why it does not count."""
+    """Candidates that leave clearly less force than the final model, with why each is refused."""
     after, lines = diagnosis.after, []
     for r in diagnosis.last.ranked:
         why = helps_but_is_barred(diagnosis.last.base, r, diagnosis.floor)
@@ -102,7 +105,11 @@ def refused_lines(diagnosis: Diagnosis) -> list[str]:
 
 
 def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
-    """What else a rung could be: where the model before it left only noise, or it is not named."""
+    """Other effects that a rung could be; None where none need be named.
+
+    They are named where the model before the rung left only noise, or the rung's effect is not
+    named.
+    """
     if rung.could_be is None:
         return None
     others = ", ".join(map(str, rung.could_be))
@@ -116,7 +123,7 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
 
 
 def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
-    """What is said of the effect that a rung added: its parameters, and what else it could be."""
+    """Lines on the effect that a rung added: its parameters, and other effects that it could be."""
     assert rung.added is not None
     model, lines = diagnosis.model, []
     for p in rung.added.effect.parameters:
@@ -177,7 +184,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
 
 
 def _records_line(diagnosis: Diagnosis) -> str:
-    """That the check records leave more than the fit records, and what that may come from."""
+    """A sentence that the check error exceeds the fit error, with the likely cause."""
     after, on_all = diagnosis.after, diagnosis.on_all_records
     ratio = after.check_error / after.fit_error
     line = f"records: the error on the check records is {ratio:.2g} times that on the fit records"
@@ -199,7 +206,7 @@ def say_floors(left: float) -> str:
 
 
 def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict in words."""
+    """The verdict of a diagnosis in words."""
     left = say_floors(diagnosis.left)
     more = f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"
     if diagnosis.may_be_noise:
@@ -253,7 +260,7 @@ def sentence(diagnosis: Diagnosis) -> str:
 
 
 def _nearest(diagnosis: Diagnosis) -> str:
-    """The candidate that leaves least where none is supported; "" where none helps by much."""
+    """A sentence on the candidate with the least error where none is supported; "": none helps."""
     if diagnosis.open is not None:  # read from a file, which has no rankings
         others = [q.others[0] for q in diagnosis.open if q.added is None]
     else:

@@ -1,14 +1,13 @@
 """Learnable force: the part of the residual that boosted trees predict from the motion alone.
 
-Boosted trees learn the low-passed residual from the motion alone: position, velocity, acceleration,
-direction, time and travel since the last reversal. They predict records that they have not seen. So
-the force that they predict is a function of the motion, whatever its law. The rest does not repeat,
-or depends on quantities that were not measured. This limits models from above, as the noise floor
-does from below.
+The inputs are position, velocity, acceleration, direction, time and travel since the last reversal;
+the target is the low-passed residual. The trees predict records that they were not trained on. So
+the predicted force is a function of the motion, whatever its law. The rest does not repeat, or
+depends on quantities that were not measured. A complete model leaves at most this rest, and at
+least the noise floor.
 
-At a joint of an arm the inputs are the motions of all joints, because the joints are coupled.
-
-The commanded force is no input: a model that has it as an input predicts it from itself.
+At a joint of an arm the inputs are the motions of all joints, because the joints are coupled. The
+commanded force is no input: otherwise it would be predicted from itself.
 """
 
 from __future__ import annotations
@@ -49,11 +48,11 @@ SAID = 0.2
 
 @dataclass(frozen=True)
 class Learnable:
-    """What a black box reaches from the motion, on records that it has not seen.
+    """Relative errors with a black box that knows the motion only, on records not used in training.
 
-    left: check error of the model;  error: what is left of it beside the black box
+    left: check error of the model;  error: check error of the model and the black box together
     alone: check error of a black box without any model
-    where: in words, where most of what is learned lies; "" where that is everywhere or nothing
+    where: where most of the learned force lies, in words; "": everywhere, or nothing is learned
     """
 
     left: float
@@ -63,7 +62,7 @@ class Learnable:
 
     @property
     def part(self) -> float:
-        """How much of the error could be learned, at least nothing."""
+        """Part of the error that could be learned: left - error, at least zero."""
         return max(self.left - self.error, 0.0)
 
     def __str__(self) -> str:
@@ -81,7 +80,7 @@ class Learnable:
 class NearReversals:
     """Check error on the rows within `NEAR` of a reversal, relative to the force there.
 
-    share: their part of all rows that count
+    share: part of these rows among all rows that count
     """
 
     error: float
@@ -95,12 +94,12 @@ class NearReversals:
 
 
 def is_installed() -> bool:
-    """Whether the extra `learn` is there."""
+    """Whether the optional package for trees (extra `learn`) is installed."""
     return find_spec("sklearn") is not None
 
 
 def error_near_reversals(model: Model, prepared: Prepared) -> NearReversals | None:
-    """The error near reversals on the check records (else the fit records); None: none there."""
+    """The error near reversals on check records, else on fit records; None: no reversals."""
     stretches = prepared.of("check") or prepared.of("fit")
     left = force = 0.0
     rows = whole = 0
@@ -119,11 +118,13 @@ def learnable(
     beside: Sequence[Sequence[Motion]] = (),
     seed: int = 0,
 ) -> Learnable | None:
-    """What could be learned of what a model leaves; None without the extra `learn`.
+    """The part of a model's residual that could be learned; None without the extra `learn`.
 
-    Every check record is predicted by trees that have learned from all others; without check
+    Trees predict groups of check records after training on all other records. Without check
     records, blocks of the fit records are held out in turn.
+
     beside: of each stretch, the motions of the arm's other joints at the same rows
+    seed: of the random numbers of the trees
     """
     if not is_installed():
         return None
@@ -163,7 +164,7 @@ def _measure_learnable(
 
 
 def learnable_data(learned: Learnable | None, near: NearReversals | None) -> dict[str, Any]:
-    """The entries of an answer: `learnable`, `black_box` and `near_reversals`."""
+    """The entries `learnable`, `black_box` and `near_reversals` of an answer."""
     return {
         "learnable": None if learned is None else learned.error,
         "black_box": None
@@ -180,7 +181,7 @@ def learnable_data(learned: Learnable | None, near: NearReversals | None) -> dic
 
 
 def learnable_from(content: Mapping[str, Any]) -> Learnable | None:
-    """What `learnable_data` wrote of a black box."""
+    """The black box of an answer that `learnable_data` wrote; None: there is none."""
     error, box = content.get("learnable"), content.get("black_box")
     if error is None or box is None:
         return None
@@ -188,7 +189,7 @@ def learnable_from(content: Mapping[str, Any]) -> Learnable | None:
 
 
 def read_near_reversals(content: Mapping[str, Any]) -> NearReversals | None:
-    """What `learnable_data` wrote of the error near reversals."""
+    """The error near reversals of an answer that `learnable_data` wrote; None: there is none."""
     near = content.get("near_reversals")
     return None if near is None else NearReversals(float(near["check_error"]), float(near["share"]))
 
@@ -196,9 +197,9 @@ def read_near_reversals(content: Mapping[str, Any]) -> NearReversals | None:
 def _turns(
     model: Model, prepared: Prepared, stretches: Sequence[Stretch]
 ) -> Iterator[tuple[list[NDArray[np.bool_]], Model]]:
-    """Of each turn, the rows of `keep` of each stretch that are held out, and the model there.
+    """For each turn: a mask of held-out rows of each stretch's `keep`, and the model for them.
 
-    The model has not seen those rows: without check records it is estimated again without them.
+    Without check records the model of each turn is estimated again without those rows.
     """
     files = list(dict.fromkeys(s.motion.file for s in stretches if s.use == "check"))
     for group in (set(files[i::FOLDS]) for i in range(min(FOLDS, len(files)))):
@@ -214,7 +215,7 @@ def _turns(
 
 
 def _select_rows(stretch: Stretch, rows: NDArray[np.bool_]) -> Stretch:
-    """The stretch with some of its rows."""
+    """The stretch with some of its rows; rows: mask of `keep`."""
     force = measured_force(stretch)[rows]
     squares = stretch.weight * float(force @ force)
     return replace(stretch, keep=stretch.keep[rows], measured=squares)
@@ -227,7 +228,10 @@ def _predict_held_out(
     held: Sequence[NDArray[np.bool_]],
     seed: int,
 ) -> list[Array]:
-    """The target on the rows held out, low-passed as the error is, by what the others tell."""
+    """The predicted target on the held-out rows, low-passed like the error.
+
+    The trees of a body are trained on its other rows.
+    """
     predicted = [np.zeros(int(rows.sum())) for rows in held]
     for body in {s.motion.body for s in stretches}:
         mine = [i for i, s in enumerate(stretches) if s.motion.body == body]
@@ -245,7 +249,7 @@ def _predict_held_out(
 
 
 def _trees(inputs: Array, target: Array, seed: int) -> Any:
-    """Boosted trees that have learned the target (n,) from inputs (n, k)."""
+    """Boosted trees trained on the target (n,) with inputs (n, k)."""
     from sklearn.ensemble import HistGradientBoostingRegressor
 
     trees = HistGradientBoostingRegressor(
@@ -264,7 +268,10 @@ def _mark_near(motion: Motion) -> NDArray[np.bool_]:
 
 
 def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) -> str:
-    """Where most of the gain (squares, each row) lies, in words."""
+    """Where most of the gain lies, in words: range of speeds, and reversals; "": nowhere special.
+
+    gain: decrease of the squared residual in each row
+    """
     weight = np.concatenate([np.full(len(s.keep), s.weight) for s in stretches])
     each = weight * np.concatenate(gain)
     if not each.sum() > 0.0:
@@ -273,7 +280,7 @@ def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) ->
     near = np.concatenate([_mark_near(s.motion)[s.keep] for s in stretches])
 
     def excess(rows: NDArray[np.bool_]) -> float:
-        """By how much the rows' part of the gain exceeds their part of all rows."""
+        """Share of the gain in these rows, less their share of all rows."""
         return float(each[rows].sum() / each.sum() - weight[rows].sum() / weight.sum())
 
     axes = {model.body(s.motion.body).axis for s in stretches}

@@ -1,8 +1,8 @@
 """Bounded nonlinear least squares by damped Gauss-Newton steps.
 
-scipy's trust-region method creeps towards a bound through its interior, and most candidates of a
-diagnosis end at one (an effect that is not there). Here each step is a bounded linear problem in
-as many unknowns as there are parameters, by scipy's `lsq_linear`: a bound is reached at once.
+scipy's trust-region method approaches a bound slowly through the interior, and most candidates of a
+diagnosis end at one (an effect that is absent). Here each step is a bounded linear problem with one
+unknown per parameter, solved by scipy's `lsq_linear`: a bound is reached at once.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..measurement.filtering import Array
 
 @dataclass(frozen=True)
 class Minimum:
-    """Parameters (p,) of the least sum of squares, with the residual (n,) and jacobian there."""
+    """Parameters (p,) with the least sum of squares; residual (n,) and Jacobian (n, p) there."""
 
     values: Array
     residual: Array
@@ -34,9 +34,12 @@ def minimise(
     tolerance: float,
     evaluations: int,
 ) -> Minimum:
-    """Parameters that minimise the sum of squares of the residual, from a start within the bounds.
+    """Parameters that minimise the sum of squares of the residual, within bounds.
 
-    function: x (p,) -> residual (n,), jacobian (n, p);  tolerance: relative change of squares
+    function: x (p,) -> residual (n,), Jacobian (n, p)
+    start, lower, upper: (p,)
+    tolerance: relative change of squares at which the search ends
+    evaluations: most calls of the function
     """
     x = np.clip(start, lower, upper)
     residual, jacobian = function(x)
@@ -66,7 +69,10 @@ def minimise(
 
 
 def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:
-    """Damped Gauss-Newton step within the bounds, scaled by the columns of the jacobian."""
+    """Damped Gauss-Newton step within the bounds, scaled by the columns of the Jacobian.
+
+    below, above: bounds of the step (p,);  returns: (p,), NaN where the Jacobian is not finite
+    """
     size = np.linalg.norm(jacobian, axis=0)
     if not np.isfinite(size).all():
         return np.full(len(size), np.nan)

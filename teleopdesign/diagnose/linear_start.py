@@ -1,8 +1,9 @@
-"""Start values of an effect: its least-squares strength, for every form of the effect.
+"""Start values of an effect: its least-squares strength, for each value of its other parameters.
 
-An effect whose law is linear in its strength (an amplitude, a damping, an extra level) is fitted at
-zero strength: one column of tangents for each combination of its other parameters, or two where a
-phase turns a sine into a cosine. No steps are needed, so hundreds of forms can be fitted.
+An effect whose law is linear in its strength (an amplitude, a damping, an additional level) is
+fitted at zero strength. Each combination of its other parameters needs one column of tangents, or
+two where a phase turns a sine into a cosine. There are no iterations, so hundreds of combinations
+can be fitted.
 """
 
 from __future__ import annotations
@@ -34,7 +35,9 @@ AT_ONCE = 30
 class LinearStart:
     """A start with the best strength of the new effect, and the squares left after one step.
 
-    form: the model with the effect's other parameters;  best: strength, and phase, by full name
+    form: the model with the effect's other parameters
+    best: full name -> value of the strength, and of the phase where there is one
+    promised: sum of squares that the linear step leaves, relative as in `Fit`
     """
 
     form: Model
@@ -52,9 +55,9 @@ def linear_starts(
 ) -> list[LinearStart]:
     """Each model with its best strength (and phase) to first order; smallest error first.
 
-    models: the same model with the effect's other parameters at different values
-    base: the fit without the effect; its parameters and shifts of records take part in the step
-    raises ValueError: the effect has no strength that its law is linear in
+    models: the same model with different values of the effect's other parameters
+    base: the fit without the effect; its parameters and shifts of records change in the step too
+    raises ValueError: the law of the effect is linear in no strength
     """
     if effect.strength is None:
         raise ValueError(f"{effect.name}: the law is not linear in a strength")
@@ -100,7 +103,7 @@ def _size(columns: Array) -> Array:
 
 
 def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
-    """Derivatives (probes, rows) of the residual; each lies in one piece of memory."""
+    """Derivatives (probes, rows) of the residual by each probe, with contiguous rows."""
     stretches = prepared.of("fit")
     moved = select_bodies(stretches, {model.holder(probe.at) for probe in probes})
     _, slopes = moved.relative(model, probes)
@@ -110,7 +113,10 @@ def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
 
 
 def _best_multiples(rows: Array, target: Array) -> Array:
-    """Multiples of one or two rows, each of length 1 or 0, that come next to a target (n,)."""
+    """Multiples of one or two rows whose sum is nearest to a target (n,) in least squares.
+
+    rows: (1 or 2, n), each of length 1 or 0
+    """
     first = rows[0] @ target
     if len(rows) == 1:
         return np.array([first])
@@ -124,9 +130,10 @@ def _best_multiples(rows: Array, target: Array) -> Array:
 
 
 def _start(model: Model, effect: Effect, at: str, left: Array, slopes: Array) -> LinearStart:
-    """The strength, and phase, that takes most away from what is left.
+    """The start with the strength, and phase, that removes most of the residual.
 
-    slopes: (1 or 2, rows) of the residual, by the strength at each phase
+    left: (rows,) residual after the base's parameters
+    slopes: (1 or 2, rows) derivatives of the residual by the strength at each phase
     """
     assert effect.strength is not None
     if not np.isfinite(slopes).all():  # no finite motion with these values

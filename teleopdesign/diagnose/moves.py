@@ -1,7 +1,7 @@
-"""Moves of a ladder by one effect: add one, or remove one that others have made superfluous.
+"""Moves of a ladder by one effect: add an effect, or remove one that others made superfluous.
 
-A move takes a search and a state and returns the next state, or None: no such move is
-supported. It is judged by the noise floor that the state holds.
+A move takes a search and a state and returns the next state, or None where no such move is
+supported. Decisions use the noise floor of the state.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from .rungs import estimate_without, reorder_and_refit
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The simplest effect that explains the records as well as the best that they support.
+    """The ladder with one more effect: the simplest that explains the records as well as the best.
 
-    It may take the place of an effect of the user's model, or of one that was added before.
+    The effect may replace an effect of the user's model, or one that was added before.
     """
     criteria = search.criteria
     supported = [r for r in state.supported if not _takes_back(r, state)]
@@ -36,7 +36,7 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def _takes_back(ranked: Ranked, state: LadderState) -> bool:
-    """Whether a candidate would take the place of an effect that came back once already."""
+    """Whether a candidate would replace an effect of `LadderState.came_back`."""
     return ranked.instead_of is not None and ranked.instead_of.key in state.came_back
 
 
@@ -72,7 +72,7 @@ def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> La
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Remove an effect that later effects made superfluous, and fit the others again."""
+    """Remove one effect that later effects made superfluous, and fit the others again."""
     last = state.fit
     for rung in state.rungs[1:-1]:
         without = estimate_without(last.model, rung, search.prepared)
@@ -85,10 +85,10 @@ def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def _is_enough(search: LadderSearch, without: Fit, state: LadderState) -> bool:
-    """Whether a fit with an effect less does as well as the last, or leaves what sensors make.
+    """Whether a fit with one effect less is as good as the last, or leaves only sensor noise.
 
-    A clock that jitters asks for force that never acted: what weakens it leaves less, and is no
-    effect where the model without it leaves no more than the jitter makes of that model.
+    A clock that jitters seems to demand a force that never acted. An effect that weakens this error
+    is no physical effect if the model without it leaves no more than the jitter causes.
     """
     if not is_better(without, state.fit, state.floor, criteria=search.criteria):
         return True

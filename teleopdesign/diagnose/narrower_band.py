@@ -1,10 +1,10 @@
 """Bandwidth of a comparison that is too wide: the same model leaves far less in a narrower band.
 
-Steps that the filter of a firmware has smoothed, or steps coarser than stated, look like a motion.
-Their second derivative is an acceleration that no force explains. Example: a trolley with a
-filtered potentiometer, where the model leaves 80 % up to 9.4 Hz, and 18 % up to 2.3 Hz, there with
-mass and friction near the documented ones. An effect at high frequencies only, such as a resonance,
-looks the same.
+A position sensor may be coarser than stated, or its steps may be smoothed by the filter of a
+firmware. Such steps look like a motion, and their second derivative is an acceleration that no
+force explains. Example: a trolley with a filtered potentiometer. The model leaves 80 % up to 9.4
+Hz, and 18 % up to 2.3 Hz, there with mass and friction near the documented ones. An effect at high
+frequencies only, such as a resonance, looks the same.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ from .prepare import Prepared, prepare
 
 @dataclass(frozen=True)
 class NarrowerBand:
-    """A bandwidth (Hz) and what a model leaves there, beside the chosen one and what it leaves."""
+    """A narrower bandwidth (Hz) and the error there, with the chosen bandwidth and its error.
+
+    error, error_at_chosen: relative force errors of the same model, estimated in each band
+    """
 
     bandwidth: float
     error: float
@@ -43,9 +46,11 @@ class NarrowerBand:
 def narrower_band(
     model: Model, prepared: Prepared, *, criteria: Criteria = CRITERIA
 ) -> NarrowerBand | None:
-    """The widest band in which a model leaves far less than in the band of the comparison.
+    """The widest narrower band in which a model leaves far less than in the band of the comparison.
 
-    None: nowhere, or the experiment states its bandwidth
+    A half and a quarter of the bandwidth are compared.
+    returns: None where there is none, where the experiment states its bandwidth, or where a quarter
+        is too low
     """
     experiment, chosen = prepared.experiment, prepared.bandwidth
     if experiment.bandwidth is not None or 0.25 * chosen < LOWEST:
@@ -66,9 +71,9 @@ def narrower_band(
 def narrower_to_search(
     diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA
 ) -> NarrowerBand | None:
-    """The band in which a search is made once more, where the first one leaves much unexplained.
+    """The band for a second search, where the first search leaves more than noise.
 
-    None: all is explained, or the user's model leaves no less in a narrower band
+    returns: None where only noise is left, or the user's model leaves no less in a narrower band
     """
     if not diagnosis.more_is_missing:
         return None
@@ -76,10 +81,10 @@ def narrower_to_search(
 
 
 def choose_band(wide: Diagnosis, narrow: Diagnosis, *, criteria: Criteria = CRITERIA) -> Diagnosis:
-    """The diagnosis in the narrower band, if its final model leaves far less there; else the first.
+    """The diagnosis in the narrower band if its final model leaves far less; else the first one.
 
-    Where an effect explains the high frequencies, such as a resonance, its error is small in the
-    wide band too.
+    Where the final model explains the high frequencies, such as a resonance, its error is small in
+    the wide band too.
     """
     if not criteria.falls * _error(narrow.after) < _error(wide.after):
         return wide
@@ -93,5 +98,5 @@ def choose_band(wide: Diagnosis, narrow: Diagnosis, *, criteria: Criteria = CRIT
 
 
 def _error(fit: Fit) -> float:
-    """Error on the check records, or on the fit records where there are no others."""
+    """Error on the check records; on the fit records where there is no check error."""
     return fit.fit_error if math.isnan(fit.check_error) else fit.check_error

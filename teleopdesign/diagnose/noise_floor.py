@@ -1,12 +1,13 @@
 """The noise floor: the force error that sensor errors alone would leave with a right model.
 
-The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
-random zero, and the stated noise is drawn. Where the record's readings scatter the more the faster
-they move, its clock jitters, and so do the moments of those drawn anew. By how much that changes
-the residual is the floor; the directions of motion stay those that the record's readings showed.
-Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
-their content near the Nyquist frequency, and the answer says so. Where one is, so is the noise of
-measured forces of which none is stated.
+Readings are simulated: the smoothed motion is read by an encoder of the stated step with a random
+    zero, and the stated noise is added. Where the scatter of the recorded readings grows with
+    speed, the clock jitters, and the simulated readings jitter too. The floor is the change of the
+    residual by the simulated readings, as a relative force error. The directions of motion stay
+    those of the recorded readings. Where no resolution is stated, steps and noise of all channels
+    are estimated from the readings, from their content near the Nyquist frequency, and the answer
+    says so. Where a resolution is stated, only noise of measured forces that is not stated is
+    estimated in this way.
 """
 
 from __future__ import annotations
@@ -32,13 +33,15 @@ DRAWS = 3
 
 @dataclass(frozen=True, eq=False)
 class NoiseFloor(ByValue):
-    """The floor as a relative force error, and where its numbers come from.
+    """The noise floor as a relative force error, and the origin of its numbers.
 
-    drawn: what the readings drawn anew left;  value: what counts of it
-    at_command: what sensors leave seen at the command (`error_at_command.at_command`), over what
-        they leave of the force: 1 where nothing stands between
-    held: kept below what this model makes of sensor errors, or what it leaves would hide in them
-    jitters: whether the readings themselves show that their moments jitter
+    value: the part that counts as noise;  drawn: the error that simulated readings left
+    source: origin of step and noise of the sensors, in words
+    held: whether `value` was limited, so that the residual of this model cannot hide in sensor
+        errors
+    at_command: floor of the error at the command (`refer_to_command`) over that of the force: 1
+        where no effect lies between command and body; never less
+    jitters: whether the readings show that their moments jitter
     """
 
     value: float
@@ -50,7 +53,7 @@ class NoiseFloor(ByValue):
 
     @property
     def value_at_command(self) -> float:
-        """The floor of the error seen at the command."""
+        """The floor of the error at the command."""
         return self.value * self.at_command
 
     @property
@@ -59,7 +62,7 @@ class NoiseFloor(ByValue):
         return self.value / self.drawn if self.drawn else 1.0
 
     def at_most(self, value: float) -> NoiseFloor:
-        """The floor, held at that value where it is above."""
+        """The floor, limited to a value."""
         if self.value <= value:
             return self
         return replace(self, value=value, held=True)
@@ -68,7 +71,11 @@ class NoiseFloor(ByValue):
 def noise_floor(
     model: Model, prepared: Prepared, generator: np.random.Generator, *, use: str = "check"
 ) -> NoiseFloor:
-    """Force error that a right model would show on the records of one use, by drawing them anew."""
+    """Force error that a right model would show on the records of one use, by simulated readings.
+
+    use: "fit" or "check"; without such records, the fit records
+    generator: of the random errors of the readings
+    """
     stretches = prepared.of(use) or prepared.of("fit")
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
@@ -95,7 +102,7 @@ def noise_floor(
 def _draw_reading(
     stretch: Stretch, prepared: Prepared, generator: np.random.Generator, draw: int
 ) -> Stretch:
-    """The stretch read once more, with the directions that were determined."""
+    """The stretch with simulated readings, and with the directions of the recorded readings."""
     motion = read_again(stretch, prepared, generator)
     if stretch.motion.links is not None:
         motion = replace(motion, links=stretch.motion.links.drawn[draw])
@@ -103,7 +110,7 @@ def _draw_reading(
 
 
 def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:
-    """The motion of a stretch in a new reading by its sensors."""
+    """The motion of a stretch as the sensors would read it in another measurement."""
     motion, channels = stretch.motion, prepared.experiment.channels
     side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
@@ -135,7 +142,7 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
 
 
 def _jitter(stretch: Stretch, prepared: Prepared) -> float:
-    """By how much (s, rms) the readings of a stretch are early or late, as they themselves show."""
+    """The rms error (s) of the moments of a stretch's readings, estimated from the readings."""
     motion = stretch.motion
     record = next(r for r in prepared.experiment.records if r.file == motion.file)
     longest = max(record.segments, key=lambda rows: rows.stop - rows.start)
@@ -146,10 +153,10 @@ def _jitter(stretch: Stretch, prepared: Prepared) -> float:
 
 
 def _side(position: Array) -> float:
-    """1 or -1: to which side a motion first leaves its start.
+    """1 or -1: the direction in which a motion first leaves its start.
 
-    Errors of sensors are drawn as seen from that side: an axis that is turned round turns them
-    with it, and estimates stay the same.
+    Sensor errors are drawn relative to this direction. If the sign of an axis is reversed, the
+    errors are reversed too, and estimates stay the same.
     """
     moved = np.flatnonzero(position != position[0])
     return 1.0 if len(moved) == 0 or position[moved[0]] > position[0] else -1.0

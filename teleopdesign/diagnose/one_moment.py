@@ -1,8 +1,8 @@
 """A single moment of the check records that holds all of the error above the noise.
 
-Physics that is missing shows again and again, wherever the motion asks for it. Where all but one
-block of the check records is noise, something happened then, or readings misled: no law follows
-from it, and the records do not say that the model lacks one.
+A missing effect acts again and again, in each similar motion. If only one moment of the check
+records holds more than noise, a single event occurred then, or readings were wrong. No law follows
+from it, and the records do not show that the model lacks one.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ MOMENTS = 10
 
 @dataclass(frozen=True)
 class Moment:
-    """Half a second of a check record, and how many noise floors are left without it.
+    """Half a second of a check record, and the error without it in noise floors.
 
-    file, body: where;  begin, end: s, of the rows that it holds
+    file, body: record and body;  begin, end: s, first and last row
+    without: check error at the command without this moment, over the noise floor
     """
 
     file: str
@@ -38,7 +39,10 @@ class Moment:
 
 
 def worst_moment(fit: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
-    """The two consecutive blocks with the largest residual; None: fewer than `MOMENTS` blocks."""
+    """The two consecutive blocks with the largest residual at the command.
+
+    returns: None without check records, floor or residual, or with fewer than 2 `MOMENTS` blocks
+    """
     stretches = prepared.of("check")
     if not stretches or not floor.value:
         return None

@@ -11,10 +11,10 @@ from .search_plan import PLAN
 
 
 def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
-    """What `rivals_of` makes rivals of, before anything is fitted anew.
+    """Open questions for the next experiment, from the fits of the diagnosis alone.
 
-    One entry an accepted effect that others could replace; and what would be added next, where
-    the verdict is undecided or more than noise is left.
+    There is one question per accepted effect that others could replace. There is one more, on the
+    effect that would be added next, where the verdict is undecided or more than noise is left.
     """
     if diagnosis.open is not None:
         return diagnosis.open
@@ -34,7 +34,7 @@ def _is_short(diagnosis: Diagnosis) -> bool:
 
 
 def _question_of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
-    """The accepted effect of a rung and what may stand in its place."""
+    """The accepted effect of a rung, and the candidates that could replace it."""
     assert rung.added is not None and rung.ranking is not None
     alternatives = {c.key for c in rung.alternatives}
     ranked = [r for r in rung.ranking.ranked if r.candidate.key != rung.added.key]
@@ -46,7 +46,7 @@ def _question_of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
 
 
 def _is_open(ranked: Ranked, rung: Rung, diagnosis: Diagnosis) -> bool:
-    """Whether a candidate could have been accepted too, and the records leave it open."""
+    """Whether a candidate could have been accepted too, and the check errors do not exclude it."""
     assert rung.ranking is not None and rung.added is not None
     added = next(r for r in rung.ranking.ranked if r.candidate.key == rung.added.key)
     more = ranked.fit.check_error**2 - added.fit.check_error**2

@@ -1,8 +1,8 @@
 """The order of candidates, and the choice among candidates that explain the records equally well.
 
 Candidates that count come first, then those that leave fewer squares on the check records
-(`rank_key`). Among those that the records do not tell from the best, the simplest is taken
-(`select_simplest`).
+(`rank_key`). Among the candidates that the records cannot distinguish from the best, the simplest
+is accepted (`select_simplest`).
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from .ranking import Ranked, Ranking
 
 
 def rank_key(ranked: Ranked) -> tuple[bool, float]:
-    """Sort key of a ranking: candidates that count first, then by squares on the check records.
+    """Sort key of a ranking: candidates that count come first, then those with fewer check squares.
 
-    To six digits, which is what a search resolves: two that are the same force stay in the order of
-    the catalogue, on any machine.
+    The squares are rounded to six digits, which is the accuracy of a search. So candidates with the
+    same force keep the order of the catalogue, on any machine.
     """
     return not ranked.counts, float(f"{check_squares(ranked.fit):.6g}")
 
@@ -40,10 +40,10 @@ def _is_equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
 
 
 def select_simplest(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
-    """Of the supported candidates, in order, the simplest that explains as well as the best.
+    """The simplest supported candidate that explains the records as well as the best one.
 
-    What the user's model has is believed: an effect in the place of another only where it is
-    better.
+    supported: in the order of the ranking
+    A candidate that replaces an effect of the model is preferred only where it is better.
     """
     equal = select_equals(supported, criteria=criteria)
     return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r.candidate)))
@@ -57,9 +57,10 @@ def alternatives_of(
     *,
     criteria: Criteria = CRITERIA,
 ) -> tuple[Candidate, ...]:
-    """Candidates that the records cannot distinguish from this one.
+    """Supported candidates that the records cannot distinguish from this one.
 
-    One that needs more parameters to do as well explains nothing that the simpler does not.
+    Only candidates with as many necessary parameters count: one that needs more is no simpler
+    explanation.
     """
     supported = [r for r in ranking.ranked if is_supported(base, r, floor, criteria=criteria)]
     return tuple(
@@ -70,10 +71,10 @@ def alternatives_of(
 
 
 def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
-    """Other effects that remove at least half as much as the best, by chance or not.
+    """Other effects that remove at least half as many check squares as the best, by chance or not.
 
-    To be said where the model before left only noise: there a gain is small, and what brings it
-    about may be something else.
+    They are named where the model before left only noise: there the gain is small, and another
+    effect may cause it.
     """
     whole = check_squares(ranking.base)
     least = 0.5 * (whole - check_squares(best.fit))
@@ -86,10 +87,10 @@ def is_simpler(
 ) -> bool:
     """Whether a candidate of the same role is simpler than an effect and leaves no more.
 
-    A transmission may leave no more than friction does for it passes on less of what sensors read.
-    Of two that are hardly told apart the one that acts on most machines stays.
+    The role must be the same: a transmission may leave as little as friction only because it
+        transmits less of the sensor errors. A rarer look-alike of the effect does not replace it.
 
-    present: the fit with the effect that it takes the place of
+    dropped: the effect that the candidate replaces;  present: the fit with that effect
     """
     if ranked.candidate.effect.commoner == dropped.effect.name:
         return False
@@ -103,9 +104,9 @@ def is_simpler(
 
 
 def simplicity(candidate: Candidate) -> tuple[int, int, int]:
-    """Parameters that must be estimated, effects that must be there, and optional parameters.
+    """Numbers of necessary parameters, of effects that must be present, and of optional parameters.
 
-    Fewer is simpler.
+    Fewer is simpler; compared in this order.
     """
     effect = candidate.effect
     optional = sum(p.optional for p in effect.parameters.values())

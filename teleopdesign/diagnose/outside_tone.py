@@ -1,15 +1,15 @@
-"""A tone from outside: a force at one frequency that does not follow the motion, such as hum.
+"""External tone: a force at one frequency that does not depend on the motion, such as hum.
 
 A tone moves the machine a little, at its frequency. A model with a lightly damped tip that
-resonates there moves in the same way without any force, so absent effects can imitate the tone. So
-an effect counts only if it leaves surely less than a plain tone does. This test is made where the
-motion, its direction and its size have hardly any part at the frequency of the tone.
-
+resonates there moves in the same way without any force, so effects that are absent can imitate the
+tone. So an effect counts only if it leaves surely less than a single tone does. This test is made
+only where the motion, its direction and its speed have hardly any power at the frequency of the
+tone.
 Hum of the mains moves the machine itself, so the motion contains the tone. At the frequency of the
-mains the tone is compared with effects unless most of the motion is at this frequency.
+mains the tone is compared with effects unless a large part of the motion is at this frequency.
 
-A stuck body does not show the tone, because friction balances it. So the tone is subtracted from
-the residual or applied as a force on the body, whichever leaves less.
+A body that is stuck does not show the tone, because friction balances it. So the tone is subtracted
+from the residual or applied as a force on the body, whichever leaves less.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ from .search_plan import PLAN
 
 @dataclass(frozen=True)
 class Tone:
-    """Residuals of the check records after the best tone on one of the bodies.
+    """Residual of the check records after the best tone on one of the bodies.
 
-    residual: as `Fit.check_residual`; None: there is none that the motion does not hold itself
+    residual: as `Fit.check_residual`; None: no tone, or the motion itself contains it
     """
 
     residual: Array | None = None
 
     @property
     def squares(self) -> float:
-        """Check squares (as `check_squares`); inf: there is none."""
+        """Sum of squares of the residual (as `check_squares`); inf where there is no tone."""
         return float("inf") if self.residual is None else float(self.residual @ self.residual)
 
     def is_beaten_by(self, fit: Fit) -> bool:
-        """Whether a fit leaves less by more than chance."""
+        """Whether a fit leaves less than the tone by more than chance."""
         if self.residual is None:
             return True
         return gain_score(self.residual, fit.check_residual, fit.check_blocks) > CRITERIA.close
@@ -56,8 +56,7 @@ class Tone:
 def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
     """The tone that removes most of the residual of a model.
 
-    Its frequency is estimated on the fit records; amplitude and phase are those of each check
-    stretch.
+    The frequency is estimated on the fit records, amplitude and phase on each check stretch.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
     if not check:
@@ -84,13 +83,13 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
 
 
 def is_of_mains(frequency: float) -> bool:
-    """Whether a frequency (Hz) is the mains' or twice it, as rectifiers and magnets have it."""
+    """Whether a frequency (Hz) is that of the mains or its double, as of rectifiers and magnets."""
     tones = [n * mains for mains in MAINS for n in (1, 2)]
     return any(abs(frequency - tone) <= CRITERIA.mains_within * tone for tone in tones)
 
 
 def _fit_beside_tone(fit: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
-    """Check residual of the model, estimated again, where a tone acts on the body as a force."""
+    """Check residual of the model, estimated again with the tone as a force on the body."""
     stretches = prepared.stretches
     for _ in range(PLAN.tone_estimates):
         stretches = tuple(
@@ -102,9 +101,10 @@ def _fit_beside_tone(fit: Fit, prepared: Prepared, body: str, frequency: float) 
 
 
 def _drive_by_tone(model: Model, stretch: Stretch, frequency: float) -> Stretch:
-    """The stretch with the tone, of any amplitude and phase, among the forces that act.
+    """The stretch with the tone, of the best amplitude and phase, among the acting forces.
 
-    What sticks hides a part of it from each turn; the residual shows it low-passed.
+    A stuck body hides a part of the tone, so amplitude and phase are estimated several times. The
+    tone is low-passed before it is compared with the residual.
     """
     waves = _waves(stretch, frequency)
     shown = stretch.motion.lowpassed(waves.T).T[stretch.keep]
@@ -130,7 +130,7 @@ def _waves(stretch: Stretch, frequency: float) -> Array:
 
 
 def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
-    """Frequency (Hz) of the tone that takes most from these residuals; 0: there are no rows."""
+    """Frequency (Hz) of the tone that removes most of these residuals; 0: there are no rows."""
     parts = [(s, r) for s, r in parts if len(r) > 2 and r.any()]
     if not parts:
         return 0.0
@@ -155,13 +155,13 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
 
 
 def _tone_squares(stretch: Stretch, residual: Array, frequency: float) -> float:
-    """Squares that a tone of any amplitude and phase takes from one residual."""
+    """Decrease of the squares of a residual by the best tone of this frequency (Hz)."""
     left = _remove_tone(stretch, residual, frequency)
     return float(residual @ residual - left @ left)
 
 
 def _remove_tone(stretch: Stretch, residual: Array, frequency: float) -> Array:
-    """A residual less the tone, of any amplitude and phase, that takes most from it."""
+    """A residual without the tone of this frequency (Hz), of the best amplitude and phase."""
     if len(residual) < 3:
         return residual
     waves = _waves(stretch, frequency)[stretch.keep]
@@ -170,10 +170,10 @@ def _remove_tone(stretch: Stretch, residual: Array, frequency: float) -> Array:
 
 
 def _share(stretch: Stretch, frequency: float) -> float:
-    """Largest part of the squares of what the motion may bring about near that frequency.
+    """Largest share of the power near a frequency (Hz), of three signals of the motion.
 
-    Of the velocity; and of its direction and its size, for friction of a periodic motion has odd
-    and even harmonics that the motion itself lacks.
+    The signals are the velocity, its sign and its magnitude: friction of a periodic motion has odd
+    and even harmonics that the velocity lacks.
     """
     motion = stretch.motion
     n = len(motion.velocity)

@@ -1,4 +1,4 @@
-"""Moves of a ladder by two effects at once: each of two can mask the other."""
+"""Moves of a ladder by two effects at once, for effects that mask each other."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from .rungs import estimate_without, order_by_falling_error
 
 
 def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Add two effects that the records support only together.
+    """Add two effects that the records support only together; only as the first move.
 
-    Beside effects that are accepted already a pair costs more time than it is worth.
+    Beside accepted effects, the search for a pair costs more time than it gains.
     """
     if state.step > 1:
         return None
@@ -31,12 +31,13 @@ def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Replace the rungs, once, by two effects that explain most of what these leave.
+    """Replace the rungs, once, by two effects that explain most of the remaining error.
 
-    Where two are missing, a third can explain more than either does alone, and stand in their way:
-    Maxwell slip explains part of what a spring and a bristle do. The second need explain nothing
-    alone: beside rigid friction no fall of Stribeck's shows where bristles bend. Where only noise
-    is left, a pair is sought in place of an effect with many parameters, which may imitate two.
+    Where two effects are missing, a third may explain more than either alone, and is accepted
+    first: Maxwell slip explains a part of a spring and a bristle. The second effect may explain
+    nothing alone: with rigid friction, the Stribeck effect cannot be observed where bristles bend.
+    Where only noise is left, a pair may replace an effect with many parameters, which may imitate
+    two effects.
     """
     ranking = state.rungs[1].ranking if state.step > 1 else None
     if state.replaced or ranking is None:
@@ -55,7 +56,7 @@ def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | N
 
 
 def _has_many_parameters(search: LadderSearch, state: LadderState) -> bool:
-    """Whether an added effect has so many parameters that it may stand in for two."""
+    """Whether an added effect has so many parameters that it may imitate two effects."""
     added = (rung.added for rung in state.rungs if rung.added is not None)
     return any(len(one.effect.parameters) >= search.plan.many_parameters for one in added)
 
@@ -67,7 +68,7 @@ def _is_better_and_no_larger(search: LadderSearch, state: LadderState, both: Fit
 
 
 def _explains_most(search: LadderSearch, state: LadderState, both: Fit) -> bool:
-    """Whether a fit leaves only noise, or less than half of what the last rung leaves above it."""
+    """Whether a fit leaves only noise, or less than half of the last rung's squares above it."""
     criteria, floor = search.criteria, state.floor
     if is_adequate(both, floor, criteria=criteria):
         return True
@@ -83,11 +84,11 @@ def _best_pair(
     ranking: Ranking,
     among: Collection[Candidate] | None = None,
 ) -> tuple[Rung, ...] | None:
-    """The best pair of rungs on the user's model; None where no pair is supported.
+    """The best pair of rungs added to the user's model; None where no pair is supported.
 
-    The best few of the ranking beside the user's model are added on trial, and everything (or those
-    in `among`) is ranked anew beside each; a pair counts where it explains most of what is missing
-    and neither of the two can be left out.
+    Each of the best few candidates of the ranking is added, and all candidates (or those in
+    `among`) are ranked again on top of it. A pair counts where it explains most of the missing
+    force and neither effect can be left out.
     """
     base, floor, criteria = state.rungs[0], state.floor, search.criteria
     here = base.fit
@@ -132,7 +133,7 @@ def _best_pair(
 def _needs_both(
     search: LadderSearch, base: Fit, rungs: tuple[Rung, ...], floor: NoiseFloor
 ) -> bool:
-    """Whether two effects together explain most of what is missing and both are needed."""
+    """Whether two effects together explain most of the missing force and both are needed."""
     both, first, criteria = rungs[-1].fit, rungs[0], search.criteria
     if not is_better(base, both, floor, criteria=criteria):
         return False

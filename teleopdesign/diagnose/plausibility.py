@@ -1,7 +1,7 @@
-"""Plausible parameters: does a fitted effect deserve its name, by the rules in its file?
+"""Plausible parameters: whether a fitted effect deserves its name, by the rules in its file.
 
-One rule holds for every force, a user's effects too: along the motion it cannot vary by more
-than what was measured, or another effect cancels what it adds.
+One rule holds for every force, also for a user's effects: along the motion it cannot vary by more
+than the acting forces, unless another effect cancels it.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from .prepare import Prepared, Stretch
 
 
 def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
-    """(effect, place) -> what it stands for instead, of each whose parameters do not fit its name.
+    """(effect, place) -> a sentence on what the effect stands for, where its name is implausible.
 
-    raises ModelError: an effect's check fails, or says something else than None or a sentence
+    raises ModelError: the check in an effect's file fails, or returns neither None nor a sentence
     """
     meanings = {}
     for place, body in model.bodies.items():
@@ -49,7 +49,7 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
 
 
 def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str | None:
-    """What the file of an effect says about parameters that these records do not determine; None.
+    """A sentence of an effect's file on parameters that these records do not determine; None: none.
 
     raises ModelError: as `implausible_effects`
     """
@@ -60,9 +60,9 @@ def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str 
 def _explain_cancelled(
     effect: Effect, alongs: Sequence[tuple[Along, Stretch]], facts: RecordFacts
 ) -> str | None:
-    """Whether a force varies along the motion by more than all that act together.
+    """A sentence where a force varies along the motion by more than all acting forces; else None.
 
-    Half of its range against the largest of what acts.
+    Half of its range is compared with the largest acting force.
     """
     law = effect.expression()
     if effect.states or law.has(SIGNALS["acting_force"]):
@@ -79,7 +79,7 @@ def _explain_cancelled(
 
 
 def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:
-    """Largest force that the inertia and the links of an arm take along the motion."""
+    """Largest sum of inertial force and force of an arm's links along the motion (N, N m)."""
     needed = 0.0
     for s in stretches:
         carried = 0.0 if s.motion.carried is None else np.abs(s.motion.carried[s.keep]).max()
@@ -88,7 +88,11 @@ def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:
 
 
 def _ask_effect(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
-    """What the effect's `plausible` or `untold` says; None where it has none."""
+    """The sentence of the effect's `plausible` or `untold`; None where it has none.
+
+    hook: "plausible" or "untold"
+    raises ModelError: it fails, or returns neither None nor a sentence
+    """
     check: Callable[[Any, RecordFacts], str | None] | None = getattr(effect, hook)
     if check is None:
         return None
@@ -107,7 +111,7 @@ def record_facts(
 ) -> RecordFacts:
     """Facts of all records about the body at that place.
 
-    numbers: the body's, by their names; default: those of the model
+    numbers: parameters of the body by name; None: those of the model
     """
     stretches = [s for s in prepared.stretches if s.motion.body == place]
     motions = [s.motion for s in stretches]
@@ -133,7 +137,7 @@ def record_facts(
 
 
 def _film(body: Body, speed: float, numbers: Mapping[str, float]) -> float:
-    """Friction at a speed by the effects of a body that depend on the velocity alone."""
+    """Friction at a speed (SI) by those effects of a body that depend on the velocity alone."""
     at = {s: numbers[n] for n, s in body.symbols().items()} | {SIGNALS["velocity"]: speed}
     signals = set(SIGNALS.values())
     laws = (
@@ -146,7 +150,7 @@ def _film(body: Body, speed: float, numbers: Mapping[str, float]) -> float:
 
 
 def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
-    """Positions of all records together; those with a separate encoder zero stand alone."""
+    """Positions of all records together; a record with a separate encoder zero stands alone."""
     groups: dict[str, list[np.ndarray]] = {}
     for s in stretches:
         groups.setdefault(s.motion.file if s.has_zero_offset else "", []).append(s.motion.position)

@@ -1,4 +1,4 @@
-"""An experiment made ready for comparison: smoothed, differentiated, cut, at one bandwidth."""
+"""An experiment prepared for comparison: smoothed, differentiated and cut, at one bandwidth."""
 
 from __future__ import annotations
 
@@ -38,14 +38,15 @@ FOLDS = 4
 
 @dataclass(frozen=True, eq=False)
 class Stretch(ByValue):
-    """One body along one segment with its use, and the rows that count.
+    """One body along one segment of a record, with the rows that count.
 
-    keep: the rows that count, thinned to what the low-pass leaves
-    weight: rows that each of them stands for
+    use: "fit" or "check"
+    keep: the rows that count, thinned to the samples that the low-pass requires
+    weight: number of rows that each of them represents
     measured: sum of squares of the low-passed measured force over the rows that count
-    offset_names: in which the record may differ from the others
-    shared: of an arm's joint, what takes the freedom of the links out of residuals; None: nothing
-    force_is_sensed: whether the actuator's force was measured, not commanded
+    offset_names: quantities in which the record may have an offset against the others
+    shared: for an arm's joint: removes the estimated link parameters from residuals; else None
+    force_is_sensed: whether the actuator force was measured, not commanded
     """
 
     motion: Motion
@@ -70,7 +71,7 @@ class Stretch(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Prepared(ByValue):
-    """An experiment made ready for comparison at one bandwidth (Hz)."""
+    """An experiment prepared for comparison at one bandwidth (Hz)."""
 
     experiment: Experiment
     bandwidth: float
@@ -82,23 +83,23 @@ class Prepared(ByValue):
 
     @property
     def is_of_an_arm(self) -> bool:
-        """Whether the records are those of an arm's joint, whose links are estimated with it.
+        """Whether the records are of an arm's joint, whose link parameters are estimated too.
 
-        Its effects are held against the whole arm, and against the noise that they weaken, where
-        all joints are estimated together (`arms/refusal.py`).
+        Effects at such a joint are tested where all joints are estimated together, by the error of
+        the whole arm and by the noise that they weaken (`arms/refusal.py`).
         """
         return any(s.motion.links is not None or s.shared is not None for s in self.stretches)
 
     @cached_property
     def scales(self) -> dict[str, float]:
-        """Quantity -> typical size of it along the fit records (SI)."""
+        """Quantity -> its typical size along the fit records (SI)."""
         return scales([s.motion for s in self.of("fit")], self.bandwidth)
 
     @cached_property
     def coarse(self) -> Prepared:
-        """The fit records with as few samples as effects can be sought on; itself if not fewer.
+        """The fit records with few samples, for the search; unchanged where none can be dropped.
 
-        The effects are estimated and judged on the samples of the records themselves.
+        The effects are then estimated and judged on all samples of the records.
         """
         stretches = self.of("fit")
         if self.is_of_an_arm:
@@ -112,8 +113,9 @@ class Prepared(ByValue):
 def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepared:
     """Smooth, differentiate and cut the records of an experiment for comparison.
 
-    bandwidth: Hz; default: the experiment's, or chosen from the record
-    raises ExperimentError: bandwidth too high for the sample rate, or no stretch long enough
+    bandwidth: Hz; None: the experiment's, or chosen from the records
+    raises ExperimentError: an arm, a bandwidth too high for the sample rate, or no fit stretch that
+        is long enough
     """
     if experiment.arm is not None:
         raise ExperimentError(
@@ -141,9 +143,9 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
 
 
 def stretch_of(motion: Motion, use: str, bandwidth: float, offset_names: frozenset[str]) -> Stretch:
-    """A motion with the rows of it that count at this bandwidth (Hz).
+    """A motion with those of its rows that count at this bandwidth (Hz).
 
-    offset_names: in which its record may differ from the others
+    offset_names: quantities in which its record may have an offset against the others
     """
     n, rate = len(motion.time), 1.0 / motion.sample_time
     trim = min(int(TRIM * rate), n // 3)
@@ -155,7 +157,7 @@ def stretch_of(motion: Motion, use: str, bandwidth: float, offset_names: frozens
 
 
 def _thin(stretch: Stretch) -> Stretch:
-    """The stretch with `SOUGHT` samples per second and hertz; itself where it has few already."""
+    """The stretch with `SOUGHT` samples per second and hertz; unchanged where it has fewer."""
     motion, keep = stretch.motion, stretch.keep
     every = int(1.0 / (SOUGHT * motion.bandwidth * motion.sample_time))
     if every < 2:
@@ -169,7 +171,7 @@ def _thin(stretch: Stretch) -> Stretch:
 
 
 def _thin_motion(motion: Motion, count: int) -> Motion:
-    """A motion at every so many samples; its held command is the same at those samples."""
+    """A motion at every `count`-th sample; its held command is the same at those samples."""
     at = slice(None, None, count)
     fine = motion.spectrum
     coarse = spectrum(len(motion.time[at]), count * motion.sample_time)
@@ -199,7 +201,7 @@ def _thin_motion(motion: Motion, count: int) -> Motion:
 def folds(
     stretches: Sequence[Stretch],
 ) -> list[tuple[tuple[Stretch, ...], tuple[Stretch, ...]]]:
-    """The stretches with `FOLDS` blocks of each held out in turn: (seen, held out)."""
+    """The stretches with `FOLDS` blocks of each held out in turn: (kept, held out)."""
     pairs = []
     for i in range(FOLDS):
         kept, held_out = [], []

@@ -1,13 +1,13 @@
 """Probability that a candidate is the missing effect, from its fits along the ladder.
 
-Calibrated on diagnoses of an independent simulator's cases, not by a formula that supposes white
-noise. What an accepted effect's truth depends on there is what is left in the end: where that is
-noise, nearly all accepted effects are true; where much more is left, a wrong one may well have
-stood in for what the catalogue does not have. On a real machine more than noise is nearly always
-left. There an effect is believed by how far what it explains outweighs what is left: a stand-in
-leaves a part of the order of what it explains, or a better one would not be worth looking for. Of
-what is left, that counts which another effect could still explain: where a black box does as well
-from the motion alone, what it cannot learn does not repeat, and hides no other effect.
+It is calibrated on diagnoses of cases from an independent simulator, not by a formula that assumes
+white noise. In these cases the final error decides whether an accepted effect is true: where it is
+noise, nearly all accepted effects are true; where it is much larger, a wrong effect may have
+imitated one that the catalogue lacks. On a real machine more than noise is nearly always left.
+There the probability follows from the ratio of explained to remaining squares: an effect that only
+imitates the true one leaves a part as large as it explains. Of the remaining squares, only those
+count that another effect could still explain: where a black box that knows the motion only does as
+well as the model, a residual that it cannot learn does not repeat, and hides no other effect.
 """
 
 from __future__ import annotations
@@ -31,18 +31,19 @@ from .rung import Rung
 
 @dataclass(frozen=True)
 class CandidateEvidence:
-    """What one step of a ladder says of a candidate.
+    """The evidence of one step of a ladder for a candidate.
 
-    accepted: it was added on this step;  as_good: it explains the records as well as the added one
-    share: its part among the candidates that this step cannot tell apart; they sum to one
-    explained: part of the squares above the noise floor that it takes away on this step
+    accepted: it was added on this step;  as_good: it explains the records as well as the added
+        effect
+    share: its probability among the candidates that this step cannot distinguish; they sum to one
+    explained: part of the squares above the noise floor that it removes on this step
     left: error after the last step, in noise floors
-    barred: which check it failed on this step, whatever it explains; "" where none
-    outweighs: squares that it takes away on this step over these and what the last step leaves
-        above the noise floor and another effect could explain, 0 to 1; of the force or seen at the
-        command, the smaller
-    from_noise: the step began at a model that leaves no more than may be noise
-    at_most: probability of the accepted effects that it needs: it is not there without them
+    barred: the rule that excludes it on this step, whatever it explains; "" where none
+    outweighs: G / (G + L), 0 to 1, with G: squares that it removes on this step, and L: squares
+        that the last step leaves above the noise floor and another effect could explain; of the
+        force or at the command, the smaller
+    from_noise: the step began with a model that leaves only noise
+    at_most: probability of the accepted effects that it requires: it cannot act without them
     """
 
     ranked: Ranked
@@ -71,7 +72,7 @@ class CandidateEvidence:
 
 
 def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
-    """The evidence for every candidate on every step."""
+    """The evidence for every candidate at every step."""
     evidence = _evidence_alone(diagnosis)
     accepted = {one.ranked.candidate.key: one.probability() for one in evidence if one.accepted}
     most = _limit_by_requirements(diagnosis, accepted)
@@ -84,7 +85,7 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
 def _limit_by_requirements(
     diagnosis: Diagnosis, accepted: Mapping[tuple[str, str], float]
 ) -> dict[tuple[str, str], float]:
-    """Largest probability of each accepted effect at which all that it needs is as likely."""
+    """Largest probability of each accepted effect (name, place), by the effects it requires."""
     most: dict[tuple[str, str], float] = {}
     for level in sorted(set(accepted.values()), reverse=True):
         likely = {key for key, probability in accepted.items() if probability >= level}
@@ -94,7 +95,7 @@ def _limit_by_requirements(
 
 
 def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
-    """The evidence for every candidate on every step, whatever it needs."""
+    """The evidence for every candidate at every step, regardless of the effects it requires."""
     steps: list[tuple[Rung | None, Ranking]] = [
         (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
     ]
@@ -137,7 +138,10 @@ def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Ca
 def select_independent(
     diagnosis: Diagnosis, named: Collection[tuple[str, str]]
 ) -> tuple[Candidate, ...]:
-    """Accepted effects with these keys, in order, that need no accepted one without such a key."""
+    """Accepted effects with these keys, in order, without those that require an effect not named.
+
+    named: (name, place)
+    """
     model, there = diagnosis.before.model, []
     for rung in diagnosis.rungs:
         new = rung.added
@@ -150,11 +154,12 @@ def select_independent(
 
 
 def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
-    """Share of each candidate in what the ranking cannot tell apart; they sum to one.
+    """Share of each candidate among those that the ranking cannot distinguish; they sum to one.
 
-    What was accepted shares with those as good as it, and with a rarer one at its weight. A
-    candidate that takes the place of an effect that is there has no part, nor has one that was not
-    accepted and drives anything to a bound.
+    The accepted effect shares with those as good, and with a rarer look-alike at its weight. A
+    candidate that drives an effect of the base to its absence has no share, nor has one that was
+    not accepted and drives any parameter to a bound.
+    returns: all zero where no candidate has a share
     """
     accepted = rung is not None and rung.added is not None
     if rung is not None and rung.added is not None:
@@ -190,12 +195,13 @@ def list_rarer(added: Candidate, ranking: Ranking) -> list[Candidate]:
 
 
 def open_to_others(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> float:
-    """Part of the squares left that another effect could explain, 0 to 1; 1 without a black box.
+    """Part of the remaining squares that another effect could explain, 0 to 1.
 
-    Another effect would be a function of the motion. A black box that predicts the force from the
-    motion alone, and leaves no more than the model with its effects, sees all that is as large as
-    what is left; one that leaves twice the squares sees nothing so small. What it sees and cannot
-    learn does not repeat, but for what it may have missed.
+    Another effect would be a function of the motion. If a black box that predicts the force from
+    the motion alone leaves no more than the model, it would detect any force as large as the
+    residual; if it leaves twice the squares, it would not. A residual that it would detect but
+    cannot learn does not repeat, except for a part (`Criteria.missed`) that it may miss.
+    returns: 1 without a black box
     """
     box, after = diagnosis.learnable, diagnosis.after.check_error
     if box is None or not (after > 0.0 and box.left > 0.0):
@@ -206,7 +212,7 @@ def open_to_others(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> fl
 
 
 def _outweighs(diagnosis: Diagnosis, base: Fit, fit: Fit) -> float:
-    """What a candidate takes away on its step, over that and what the last step leaves open."""
+    """Squares that a candidate removes on its step, over their sum with the squares left open."""
     last, floor, part = diagnosis.after, diagnosis.floor_of_belief, open_to_others(diagnosis)
     errors = (f.check_error for f in (base, fit, last))
     at_command = (f.at_command.error for f in (base, fit, last))

@@ -1,8 +1,8 @@
-"""Products of parameters that the records determine, where they determine no single factor.
+"""Products of parameters that the records determine, although no single factor is determined.
 
 Examples are a friction level and the speed below which it acts, or a spring and the mass on it.
-Along a valley of nearly equal squares each parameter changes much, but a product of powers hardly
-does.
+Along a valley of nearly equal squares each parameter changes much, but a product of their powers
+hardly changes.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ POWER = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Product:
-    """The product of powers of an effect's open parameters that is known best.
+    """The best determined product of powers of an effect's open parameters.
 
-    names: in full, of those that count;  powers: the largest is 1
-    errors: relative standard errors of each alone;  known: that of the product
+    names: full names of the parameters;  powers: the largest is 1
+    errors: relative standard error of each parameter alone
+    known: relative standard error of the product
     """
 
     names: tuple[str, ...]
@@ -39,9 +40,11 @@ class Product:
 
 
 def product_of(fit: Fit, effect: str) -> Product | None:
-    """The product of an effect's parameters with the least error; None: fewer than two count.
+    """The product of an effect's parameters with the least error; None: fewer than two take part.
 
-    Parameters that are zero, angles and those at a bound have no part in a product.
+    Parameters that are zero, at a bound or without standard error, and angles, have no part in a
+    product.
+
     effect: with its place, "device.stribeck"
     """
     start, model = f"{effect}.", fit.model
@@ -71,10 +74,11 @@ def product_of(fit: Fit, effect: str) -> Product | None:
 
 
 def best_product(columns: Array, errors: Array) -> tuple[Array, float]:
-    """Powers (k,), the largest 1, of the product that is known best, and its relative error.
+    """Powers (k,), the largest 1, of the best determined product, and its relative standard error.
 
-    columns: (rows, k) of the residual by relative changes, what others can make up for taken out
-    errors: (k,) relative standard errors of each alone
+    columns: (rows, k) derivatives of the residual by relative changes, without the span of the
+        other parameters
+    errors: (k,) relative standard error of each parameter alone
     """
     shares = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
     spread = np.sqrt(np.maximum(np.diag(shares), 1e-300))
@@ -86,7 +90,7 @@ def best_product(columns: Array, errors: Array) -> tuple[Array, float]:
 
 
 def _relative_columns(fit: Fit, names: Sequence[str], values: Array) -> Array:
-    """Residual by relative changes of parameters (rows, k), without what the others make up for."""
+    """Derivatives (rows, k) by relative changes, less their projection on the other parameters."""
     ours = [fit.free.index(n) for n in names]
     rest = [i for i in range(len(fit.free)) if i not in ours]
     columns = fit.jacobian[:, ours] / fit.scale[ours] * values

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 
 class ProgressLine(str):
-    """A line of text, such as "step 2: stribeck at device (14 of 38)".
+    """A line of text with a count, such as "step 2: stribeck at device (14 of 38)".
 
-    stage: what it is part of, such as "step 2"; "" for no part
-    begun, total: of the parts of that stage
+    stage: the stage that the line belongs to, such as "step 2"; "": none
+    begun, total: parts of this stage: those that have started, and all
     """
 
     stage: str

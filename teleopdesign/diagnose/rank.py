@@ -1,4 +1,7 @@
-"""Rank candidate effects: each is added, everything is re-estimated, the check records decide."""
+"""Rank candidate effects: each is added, and all parameters are re-estimated.
+
+Candidates that count come first, in the order of their errors on the check records.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ from .width import OpenWidths
 
 
 def _is_part_of(small: Candidate, large: Candidate) -> bool:
-    """Whether one effect has the parameters of another, at the same place, and more."""
+    """Whether the large effect has all parameters of the small one, at the same place, and more."""
     ours, theirs = ({n: p.quantity for n, p in c.effect.parameters.items()} for c in (small, large))
     alike = small.at == large.at and small.effect.role == large.effect.role
     return alike and ours.items() < theirs.items()
@@ -37,7 +40,8 @@ def _from_kin(
 ) -> tuple[Candidate, Fit]:
     """The fit, started again from a larger effect that contains this one and has a smaller error.
 
-    The larger one may find a way round: a gap that closes leads to the compliance behind it.
+    The larger effect may avoid a local minimum: a gap that closes leads to the compliance behind
+    it.
     """
     candidate, rough = attempt
     kin = [(c, f) for c, f in attempts if _is_part_of(candidate, c)]
@@ -56,7 +60,7 @@ def _from_kin(
 def _refine_candidate(
     attempt: tuple[Candidate, Fit], worthless: float, prepared: Prepared, stated: Model | None
 ) -> tuple[Candidate, Fit]:
-    """A fine fit, for a candidate that is there with less than `worthless` squares."""
+    """A fine fit for a candidate that is present and leaves at most `worthless` squares."""
     candidate, rough = attempt
     if (candidate.effect.name, candidate.at) in rough.model.absent:
         return attempt
@@ -76,9 +80,9 @@ def _contenders_refined(
     stated: Model | None,
     widths: OpenWidths,
 ) -> list[tuple[Candidate, Fit]]:
-    """The attempts with fine fits of those that contend.
+    """The attempts, with fine fits of the best ones.
 
-    The leading ones are first: what their fine fits leave says which others contend.
+    The leading attempts are refined first: their fine fits decide which others are close enough.
     """
     attempts, refined = list(attempts), set[int]()
     for contending in (PLAN.leading, PLAN.contending):
@@ -100,10 +104,10 @@ def _contenders_refined(
 def _least_squares_that_count(
     attempts: Collection[tuple[Candidate, Fit]], base: Fit, widths: OpenWidths
 ) -> float:
-    """Least squares of an attempt that counts; all do where none counts.
+    """Least squares of an attempt that counts; of all attempts where none counts.
 
-    One that is refused, is not identifiable, deserves no name or leaves more unseen is no measure
-    of what others must reach.
+    An attempt does not count if it is refused, not identifiable or implausible, or leaves more on
+    the check records.
     """
     criteria = widths.criteria
     for candidate, fit in sorted(attempts, key=lambda attempt: fit_squares(attempt[1])):
@@ -128,14 +132,14 @@ def rank_candidates(
     criteria: Criteria = CRITERIA,
     progress: Callable[[ProgressLine], None] | None = None,
 ) -> Ranking:
-    """Try every candidate on top of a fitted model.
+    """Add every candidate in turn to a fitted model, and rank the fits.
 
-    base: the fitted model that something may be missing in
-    among: the candidates, of all that the model could take
-    stated: the model as its user gave it; its values are starts too
-    worth: part of the base's squares on the fit records below which a gain is not pursued; default:
+    base: the fitted model that may lack an effect
+    among: the candidates to rank; None: all that the model could take
+    stated: the model as its user gave it; its values are used as starts too
+    worth: part of the base's squares on the fit records below which a gain is not pursued; None:
         that of the criteria
-    progress: called before each candidate
+    progress: called before each candidate, from several threads
     """
     worth = criteria.worth if worth is None else worth
     begun = count(1)
@@ -183,10 +187,11 @@ def make_ranked(
     criteria: Criteria = CRITERIA,
     widths: OpenWidths | None = None,
 ) -> Ranked:
-    """A candidate that was fitted on top of a base, as the first of a ranking.
+    """A candidate that was added to a base, as the first of a ranking.
 
     instead_of: effect of the base that the fitted model lacks
-    widths: asked of a candidate that gains enough to matter; None: none is asked
+    widths: checks parameters whose values stay open, if the gain is large enough; None: no such
+        check
     """
     implausible = _implausible(base, candidate, fit, prepared)
     gains = lowers_check_squares(base, fit, criteria=criteria)
@@ -205,9 +210,9 @@ def make_ranked(
 
 
 def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) -> str:
-    """What the candidate stands for instead of its name, or an effect that fitted its name before.
+    """Why the candidate, or an effect of the base beside it, is implausible; "": neither is.
 
-    An effect of the base that did not deserve its name before is no fault of the candidate's.
+    Effects that were implausible in the base do not count against the candidate.
     """
     stands_for = implausible_effects(fit.model, prepared)
     if candidate.key in stands_for:
@@ -219,7 +224,7 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
 def _select_new(
     stands_for: Mapping[tuple[str, str], str], base: Fit, prepared: Prepared
 ) -> dict[tuple[str, str], str]:
-    """Those of the implausible effects of a fit that deserved their names in the base."""
+    """The implausible effects of a fit that were plausible in the base."""
     before = implausible_effects(base.model, prepared) if stands_for else {}
     return {key: said for key, said in stands_for.items() if key not in before}
 
@@ -227,10 +232,11 @@ def _select_new(
 def _find_discredited_effect(
     base: Fit, fit: Fit, candidate: Candidate, prepared: Prepared
 ) -> Candidate | None:
-    """The one effect of the base, at the candidate's place, that loses its name beside it.
+    """The one effect of the base, at the candidate's place, that is implausible beside it.
 
-    It may have stood in for the candidate: a bristle for friction beyond a transmission, say, and
-    beside that it is too stiff to be seen. None: there is none, or the candidate loses its name too
+    This effect may have imitated the candidate: for example a bristle instead of friction beyond a
+    transmission; beside that friction the bristle becomes too stiff to be identified.
+    returns: None where there is no such effect, or more than one is implausible
     """
     new = _select_new(implausible_effects(fit.model, prepared), base, prepared)
     if len(new) != 1:
@@ -242,7 +248,7 @@ def _find_discredited_effect(
 
 
 def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:
-    """The candidate beside the base, or in the place of an effect that it makes superfluous."""
+    """The candidate added to the base, or in place of an effect that it makes superfluous."""
     candidate, fit = fitted
     prepared, criteria = widths.prepared, widths.criteria
     beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria, widths=widths)

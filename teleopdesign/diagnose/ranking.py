@@ -18,7 +18,7 @@ REFUSALS = {
 
 
 def named_instead(candidate: Candidate, instead_of: Candidate | None) -> str:
-    """A candidate in words, with the effect that it takes the place of, if any."""
+    """A candidate in words, with the effect that it replaces, if any."""
     return str(candidate) + ("" if instead_of is None else f" instead of {instead_of.effect.name}")
 
 
@@ -28,10 +28,10 @@ class Ranked(ByValue):
 
     score: how surely it lowers the error on the check records (standard deviations)
     behind: how surely the best candidate has the smaller error on all records; 0 for the best
-    is_identifiable: its parameters are determined, beside those of the model it was added to
-    refused: why it does not count though it may leave less force (a key of `REFUSALS`), or ""
-    implausible: what its file, or that of an effect beside it, says that its parameters stand
-        for instead of what its name says; ""
+    is_identifiable: whether its parameters are determined, beside those of the base
+    refused: why it does not count although it may leave less force (a key of `REFUSALS`), or ""
+    implausible: what its parameters stand for instead of its name, by its file or that of an effect
+        beside it; ""
     instead_of: effect of the base that it makes superfluous, and that its model lacks; None
     """
 
@@ -46,17 +46,17 @@ class Ranked(ByValue):
 
     @property
     def counts(self) -> bool:
-        """Whether the records can support it: identifiable, not refused, and what its name says."""
+        """Whether the records can support it: identifiable, not refused and not implausible."""
         return self.is_identifiable and not self.refused and not self.implausible
 
     @property
     def said(self) -> str:
-        """The candidate, with what it takes the place of: "... at device instead of viscous"."""
+        """The candidate, with the effect that it replaces: "... at device instead of viscous"."""
         return named_instead(self.candidate, self.instead_of)
 
     @property
     def note(self) -> str:
-        """A remark beside the numbers; "" for none."""
+        """A remark for the table of candidates; "" for none."""
         if self.candidate.key in self.fit.model.absent:
             return "gains nothing"
         if self.refused or self.implausible:
@@ -71,7 +71,8 @@ class Ranked(ByValue):
 class Ranking(ByValue):
     """Candidates, best first, and the fit that they are compared with.
 
-    base: the model without any of them;  ranked: by `order.rank_key`, those that count first
+    base: the model without any of them
+    ranked: in the order of `order.rank_key`: those that count come first
     """
 
     base: Fit

@@ -1,14 +1,14 @@
 """Effect of sensor readings on estimates: their spread and their bias.
 
-Where readings show no direction, friction may have any value up to its level, and follows noise on
-one side only. Noise in an acceleration makes an inertia look smaller. Such shifts are small, but
-larger than residuals suggest, because residuals are smallest at the optimum. So the final model is
-simulated along the records. Its true parameters are known. The stated sensors read its motion, and
-the parameters are estimated from these readings. The error of this estimate is that of the first
-estimate (a parametric bootstrap: Efron, Tibshirani, An Introduction to the Bootstrap, 1993,
-chapters 6 and 10). Where the error is large, it is estimated again at the corrected values, until
-they agree (indirect inference: Gourieroux, Monfort, Renault, J. Applied Econometrics 8, 1993). An
-example is a tip that resonates within the bandwidth: noise makes its damping look larger.
+Where readings show no direction, friction may have any value up to its level, so noise changes it
+to one side only. Noise in an acceleration makes an estimated inertia smaller. Such shifts are
+small, but larger than residuals suggest, because residuals are smallest at the optimum. So the
+final model is simulated along the records. Its true parameters are known. The stated sensors read
+its motion, and the parameters are estimated from these readings. The error of this estimate is that
+of the first estimate (a parametric bootstrap: Efron, Tibshirani, An Introduction to the Bootstrap,
+1993, chapters 6 and 10). Where the error is large, it is estimated again at the corrected values,
+until they agree (indirect inference: Gourieroux, Monfort, Renault, J. Applied Econometrics 8,
+1993). An example is a tip that resonates within the bandwidth: noise makes its damping look larger.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ ROUNDS = 4
 
 @dataclass(frozen=True)
 class ReadingError:
-    """Shift and spread (p,) of the free parameters, in `coordinates`."""
+    """Bias and spread (p,) that readings cause in the free parameters, in `coordinates`."""
 
     shift: Array
     spread: Array
@@ -59,7 +59,7 @@ def _decades(model: Model, names: tuple[str, ...]) -> Array:
 
 
 def coordinates(model: Model, names: tuple[str, ...]) -> Array:
-    """Values (p,) of parameters, logarithms of those that are estimated over decades."""
+    """Values (p,) of parameters; logarithms of those that are estimated over decades."""
     values = np.array([model.parameters[n].value for n in names], dtype=float)
     decades = _decades(model, names)
     values[decades] = np.log(np.maximum(values[decades], 1e-300))
@@ -69,9 +69,9 @@ def coordinates(model: Model, names: tuple[str, ...]) -> Array:
 def reading_error(
     fit: Fit, prepared: Prepared, generator: np.random.Generator
 ) -> ReadingError | None:
-    """Error of estimates from simulated readings, whose true values are known.
+    """Errors of the estimates from simulated readings, for which the true values are known.
 
-    None: the model's motion cannot be simulated
+    returns: None where the motion of the model cannot be simulated, or an estimate is not finite
     """
     # what is simulated is logged in time
     truth = _with_whole_dead_times(fit.model.with_record_shift({}), prepared)
@@ -110,7 +110,11 @@ def _with_whole_dead_times(model: Model, prepared: Prepared) -> Model:
 def _simulate_records(
     model: Model, prepared: Prepared, deflection: float, damping_ratio: float
 ) -> list[Stretch] | None:
-    """The fit records with the model's exact courses in place of theirs; None if it has none."""
+    """The fit records with simulated motions of the model in place of the recorded ones.
+
+    deflection: bristle length in encoder steps;  returns: None where the model has no simulated
+        motion near the record
+    """
     stretches = list(prepared.of("fit"))
     made = []
     for stretch, (body, motion) in zip(
@@ -129,15 +133,16 @@ def _simulate_records(
 
 
 def as_read(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:
-    """A stretch of exact signals as the sensors read it."""
+    """A stretch of exact signals as the sensors would read it."""
     motion = read_again(stretch, prepared, generator)
     return stretch_of(motion, stretch.use, prepared.bandwidth, stretch.offset_names)
 
 
 def _subtract_shift(fit: Fit, shift: Array) -> tuple[Model, Array]:
-    """The model of a fit with the shift taken off its estimates, and which of them moved.
+    """The model of a fit with the shift subtracted, and a mask (p,) of the estimates that changed.
 
-    What is at a bound stays there, and what the shift would lead to another magnitude.
+    Estimates at a bound do not change, nor those that the shift would move out of bounds or to
+    another magnitude.
     """
     model, moved = fit.model, np.zeros(len(fit.free), dtype=bool)
     there = coordinates(model, fit.free) - shift
@@ -158,9 +163,9 @@ def _subtract_shift(fit: Fit, shift: Array) -> tuple[Model, Array]:
 def _converge(
     fit: Fit, error: ReadingError, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[ReadingError, Model, Array]:
-    """The error at the corrected values, the model there, and which values moved.
+    """The reading error at the corrected values, the model there, and a mask (p,) of changes.
 
-    generator: each simulation draws the same from it, so that values alone make the difference
+    generator: copied for each simulation, so that only the values differ
     """
     values = np.array([fit.model.parameters[n].value for n in fit.free])
     errors = np.array([fit.model.parameters[n].stderr for n in fit.free])
@@ -190,11 +195,12 @@ def with_reading_error(
     *,
     adequate: Callable[[Fit], bool],
 ) -> Fit:
-    """The fit with the shift by its readings removed and standard errors that include their spread.
+    """The fit with the bias of its readings removed and standard errors that include their spread.
 
-    adequate: whether a fit leaves only noise. One that leaves more is not the model whose readings
-        would be simulated: there, as where a corrected fit would leave more, and for estimates that
-        would move to another magnitude, the shift widens the errors instead
+    adequate: whether a fit leaves only noise
+    The bias is not removed where the fit or the corrected fit is not adequate, nor from estimates
+    that would move to another magnitude. It widens their standard errors instead.
+    returns: the fit unchanged where its motion cannot be simulated
     """
     if not fit.free:
         return fit

@@ -1,9 +1,10 @@
-"""Record offsets: an encoder zero, a bias, a level of friction that belongs to one record.
+"""Record offsets: an encoder zero, a bias or a level of friction that belongs to one record.
 
-Where an experiment says that a record does not share one of these with the others, it is estimated
-anew on that record for every model, by least squares: two steps by the slopes of the residual,
-exact where force is linear in it. The slopes are then taken out of the residual and of its
-tangents, so that nothing else in a model is used for what belongs to one record.
+An experiment may state that a record does not share one of these with the others. Then the offset
+is estimated on that record for every model, by least squares: two steps by the derivatives of the
+residual, exact where force is linear in the offset. The residual and its tangents are then
+projected to be orthogonal to these derivatives, so that no other parameter of a model describes
+what belongs to one record.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ class RecordOffsets:
 
     values: "position_zero" (shift of the position, m or rad), "bias" (force that acts, N or N m),
         "friction_level" (over the model's)
-    body, motions: with these;  slopes: by each of them, (k, rows) for each motion
+    body, motions: with these offsets
+    slopes: derivatives of the residual by each of the k offsets, (k, rows) for each motion
     """
 
     values: dict[str, float]
@@ -50,7 +52,7 @@ class RecordOffsets:
     slopes: tuple[Array, ...]
 
     def cleared(self, parts: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
-        """Residuals (rows) and tangents (p, rows) without what the slopes can make of them."""
+        """Residuals (rows) and tangents (p, rows), orthogonal to the slopes of the offsets."""
         slopes = np.concatenate(self.slopes, axis=1)
         rows = np.vstack(
             [
@@ -67,9 +69,11 @@ class RecordOffsets:
 def find_offsets(
     body: Body, motions: Sequence[Motion], names: Collection[str], residual: ResidualFunction
 ) -> RecordOffsets:
-    """Find the offsets of one record.
+    """Estimate the offsets of one record.
 
-    motions: the body's, all of one record;  names: of "position_zero", "bias", "friction_level"
+    motions: of the body, all of one record
+    names: some of "position_zero", "bias", "friction_level"
+    residual: low-passed residual of a body along a motion; see `ResidualFunction`
     """
     steps = _steps(body, motions, names)
     values = dict.fromkeys(steps, 0.0)
@@ -94,7 +98,7 @@ def find_offsets(
 
 
 def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:
-    """Offsets that the record determines -> step over which the slope is taken."""
+    """Offsets that the record can determine -> step of the numerical derivative."""
     steps = {}
     if "position_zero" in names and any(
         e.expression().has(SIGNALS["position"]) for e in body.effects
@@ -123,7 +127,7 @@ def _set_offsets(
 def offset_groups(
     model: Model, stretches: Sequence[Stretch]
 ) -> list[tuple[list[int], RecordOffsets]]:
-    """(places of the stretches, their offsets) for each record with offsets."""
+    """For each record and body with offsets: indices of its stretches, and the estimates."""
     groups: dict[tuple[str, str], list[int]] = {}
     for i, stretch in enumerate(stretches):
         if stretch.offset_names:
@@ -143,7 +147,7 @@ def offset_groups(
 
 
 def as_logged(model: Model, motion: Motion) -> Motion:
-    """A motion with the model's shifts of its record, and with what its links need of the joint."""
+    """A motion with the model's shifts of its record, and with the force of an arm's links."""
     late = model.log_late(motion.body)
     if motion.links is not None:
         carried = motion.links.carried(model.links, motion.acceleration)
@@ -163,7 +167,7 @@ def apply_record_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tup
 def apply_offset_groups(
     model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
 ) -> list[tuple[Body, Motion]]:
-    """Body and motion of each stretch, with the offsets of these groups (`offset_groups`)."""
+    """Body and motion of each stretch, with the offsets of these groups (of `offset_groups`)."""
     located = [(model.body(s.motion.body), as_logged(model, s.motion)) for s in stretches]
     for group, offsets in groups:
         for i, motion in zip(group, offsets.motions, strict=True):

@@ -1,26 +1,28 @@
 """Clock of a logger: the delay of a body's force log against the log of its position.
 
 A controller may write a command with the position that it answers, or with the next: a shift of up
-to one row, either way, belongs to the record. It is no physics, but what is not explained by it
-looks like some: a delay, a lag, the lead of a compliant transmission. So it is estimated with every
-model, one shift for each body, common to all its records.
+to one row, either way, belongs to the record. It is no physics, but if it is ignored it looks like
+a physical effect: a delay, a lag, the lead of a compliant transmission. So it is estimated with
+every model, one shift for each body, common to all its records.
 
-A shift that raises the error on the check records is held at none (`clock.py`): beside a model that
-lacks much it may take up a part of what is missing.
+A shift that raises the error on the check records is fixed at zero (`clock.py`): with a model that
+lacks much it may describe a part of a missing effect.
 
-Where records hardly tell it (a delay does the same to them, a spring and damper of the controller
-make viscous friction of it), what is known beforehand decides: most loggers are right, none is off
-by much more than a row. Normally distributed, the shift adds a row to the residual r of each body,
+Records may hardly determine the shift: a delay has the same effect, and with a spring and damper of
+the controller viscous friction has. Then prior knowledge decides: most loggers are right, and none
+is wrong by much more than a row. With a normal prior, the shift adds a row to the residual r of
+each body,
 
     |r| d / (s sqrt(n)),    d: shift, s: the spread, n: independent observations
 
-for that makes the least squares the most probable values, r having an unknown size: -2 log p =
-n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of the shift.
+because then the least-squares values are the most probable ones, for a residual of unknown size: -2
+log p = n log |r|^2 + (d / s)^2. Standard errors of all other parameters include the uncertainty of
+the shift.
 
-The log of a force may be late by more: buffers and batches hold commands back, sensors filter what
-was measured. No physics acts before its force, so that is no missing effect, but structures
-would imitate it. That of a hand's force, whose sensor filters, may be late beside that of the
-command: it is estimated only where `clock.py` says that it explains what is left.
+The log of a force may be late by more: buffers and batches hold commands back, sensors filter the
+measured force. No motion precedes its force, so this is no missing effect, but structures would
+imitate it. The log of a hand's force may also be late against the command, by the filter of its
+sensor. This is estimated only where `clock.py` says that it explains the residual.
 """
 
 from __future__ import annotations
@@ -74,13 +76,14 @@ CLOCK = LoggerClock()
 
 @dataclass(frozen=True)
 class RecordShifts:
-    """The shifts that are estimated with a model on some stretches.
+    """The k shifts that are estimated with a model on some stretches.
 
-    logs: bodies with a command that changes, "BODY.interaction_force" of hands' forces that may be
-        late (k in all);  row: s between samples, of each;  count: n above
-    held: (k,) whether the shift is held at none; what is left open of it stays in standard errors
-    spread: (k,) samples, standard deviation of what is known beforehand;  latest: (k,) samples
-    measured: (k,) whether the force was, not commanded
+    logs: bodies with a command that changes, and "BODY.interaction_force" for hands' forces that
+        may be late
+    row: (k,) s between samples;  count: independent observations, n above
+    spread: (k,) samples, standard deviation of the prior;  latest: (k,) samples, upper bound
+    measured: (k,) whether the force was measured, not commanded
+    held: (k,) whether the shift is fixed at zero; standard errors still include its uncertainty
     """
 
     logs: tuple[str, ...]
@@ -93,7 +96,7 @@ class RecordShifts:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What their tangents are asked for by."""
+        """Names (k,) by which tangents of the residual by the shifts are requested."""
         parts = (log.partition(".") for log in self.logs)
         return tuple(
             f"{body}.{INTERACTION_SHIFT if hand else RECORD_SHIFT}" for body, _, hand in parts
@@ -101,18 +104,18 @@ class RecordShifts:
 
     @property
     def bodies(self) -> frozenset[str]:
-        """The bodies whose forces were logged."""
+        """The bodies of the logs."""
         return frozenset(log.partition(".")[0] for log in self.logs)
 
     def start(self, model: Model) -> Array:
-        """The model's shifts, in samples (k,); none where one is held."""
+        """The model's shifts, in samples (k,); zero where a shift is held."""
         shifts = (model.record_shift.get(log) for log in self.logs)
         late = np.array([0.0 if shift is None else shift.value for shift in shifts])
         late = np.where(self.held, 0.0, late)
         return np.clip(late / self.row, -CLOCK.early, self.latest)
 
     def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
-        """The model with these shifts, in samples, and their standard errors."""
+        """The model with these shifts and their standard errors, both (k,) in samples."""
         stderr = np.full(len(samples), np.nan) if errors is None else errors
         shifts = {
             log: Value(float(x * row), bool(held), float(e * row))
@@ -123,9 +126,9 @@ class RecordShifts:
         return model.with_record_shift({**model.record_shift, **shifts})
 
     def prior(self, samples: Array, residual: Array, jacobian: Array) -> tuple[Array, Array]:
-        """Rows for what is known beforehand (k,), and their jacobian (k, p + k).
+        """Residual rows of the prior (k,), and their Jacobian (k, p + k).
 
-        jacobian: (n, p + k) of the residual (n,), the shifts (in samples) last
+        samples: (k,) shifts;  residual: (n,);  jacobian: (n, p + k), the shifts (in samples) last
         """
         size = max(float(np.linalg.norm(residual)), 1e-300)
         part = 1.0 / (self.spread * np.sqrt(self.count))
@@ -136,9 +139,10 @@ class RecordShifts:
     def observed(
         self, residual: Array, jacobian: Array, blocks: NDArray[np.intp]
     ) -> tuple[Array, Array, NDArray[np.intp]]:
-        """Jacobian, residual and blocks with what is known beforehand as observations more.
+        """Jacobian, residual and blocks with the prior as k additional observations.
 
-        Each is as far off as it is expected to be: so standard errors hold the prior's spread.
+        The residual of each has its expected size, so standard errors include the spread of the
+        prior.
         """
         k = len(self.logs)
         size = float(np.linalg.norm(residual)) / np.sqrt(self.count)
@@ -155,9 +159,11 @@ class RecordShifts:
 def record_shifts(
     stretches: Sequence[Stretch], count: int, model: Model | None = None
 ) -> RecordShifts:
-    """The shifts to estimate on these stretches; count: independent observations that they hold.
+    """The shifts to estimate on these stretches.
 
-    model: its fixed shifts are held at none; a hand's force has a shift where it has one there
+    count: independent observations in the stretches
+    model: its fixed shifts are held at zero; a hand's force has a shift only where the model has
+        one; None: no shifts are held, and hands' forces have none
     """
     row: dict[str, float] = {}
     sensed: dict[str, bool] = {}
@@ -183,7 +189,7 @@ def record_shifts(
 
 
 def name_of_hand(body: str) -> str:
-    """The log of the hand's force on a body, by which a model holds its shift."""
+    """The name of the log of a hand's force on a body, as in `Model.record_shift`."""
     return f"{body}.interaction_force"
 
 
@@ -191,9 +197,11 @@ def name_of_hand(body: str) -> str:
 class RecordShift:
     """Delay of the log of a body's force, as estimated by a fitted model.
 
-    at: its body, or as `name_of_hand` says;  late, stderr: s;  row: s between samples
+    at: the body, or `name_of_hand` of it
+    late, stderr: s, positive: the log is late;  row: s between samples
     may_delay: whether the model has a dead time there
-    latest: s by which the log of the force may be late;  measured: whether it was, not commanded
+    latest: s by which the log may be late
+    measured: whether the force was measured, not commanded
     """
 
     at: str
@@ -206,13 +214,13 @@ class RecordShift:
 
     @property
     def at_bound(self) -> bool:
-        """Whether the command is off by as much as a logger may be, or more."""
+        """Whether the shift is as large as a logger's may be."""
         most = self.latest if self.late > 0.0 else CLOCK.early * self.row
         return abs(self.late) >= 0.999 * most
 
     @property
     def is_like_a_delay(self) -> bool:
-        """Whether a delay of less than a row would look the same."""
+        """Whether a delay of less than a row would have the same effect on the records."""
         early = -self.late > max(
             CLOCK.reported_rows * self.row, CLOCK.reported_errors * self.stderr
         )
@@ -239,7 +247,7 @@ class RecordShift:
 
 
 def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
-    """The shift of each body's records that a fitted model has, but for those held at none."""
+    """The shifts of records that a fitted model has, except those held at zero."""
     shifts = record_shifts(stretches, 1, model)
     return tuple(
         RecordShift(
@@ -259,7 +267,7 @@ def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, 
 
 
 def shift_data(model: Model, stretches: Sequence[Stretch]) -> dict[str, Any]:
-    """The shifts as an answer writes them, by what was logged: seconds, and rows of the record."""
+    """The shifts as an answer writes them, by log: in seconds, and in rows of the record."""
     return {
         shift.at: {
             "value": make_plain(shift.late),

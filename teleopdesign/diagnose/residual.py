@@ -1,7 +1,7 @@
-"""The force that a model leaves unexplained along the measured motion, low-passed.
+"""The residual force of a model along the measured motion, low-passed.
 
-LP is the zero-phase low-pass at the comparison's bandwidth. What belongs to one record is estimated
-for the model first, and taken out.
+LP is the zero-phase low-pass at the comparison's bandwidth. Offsets of single records are estimated
+for the model first, and removed.
 """
 
 from __future__ import annotations
@@ -34,12 +34,14 @@ def residuals(
 def relative_residuals(
     model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe] = ()
 ) -> list[tuple[Array, Array]]:
-    """Residuals relative to the force that acts by the model, at the scale of the measured force.
+    """Residuals relative to the force that acts in the model, scaled to the measured force.
 
-    A model whose actuator passes next to nothing leaves next to no residual force, nor does one
-    whose friction takes up whatever acts; relative to what it lets act on each body, nothing is
-    gained. Equal to `residuals` where nothing stands between command and force. What the links of
-    an arm, which all its joints share, can make of a joint's is taken out (`shared_links.clear`).
+    A model whose actuator transmits almost no force leaves almost no residual, nor does a model
+    whose friction balances every force. Relative to the force that acts on each body in the model,
+    such a model gains nothing. Equal to `residuals` where no effect lies between command and force.
+    The link parameters that the joints of an arm share are taken into account
+    (`shared_links.clear`).
+    returns: per stretch, residual (rows,) and tangents (p, rows) by `wrt`, as in `residuals`
     """
     parts = _residual_along(model, stretches, wrt, _bodies_that_lose_force(model))
     return _relative(model, stretches, parts, len(wrt))
@@ -58,7 +60,7 @@ def _relative(
     parts: Sequence[tuple[Traced, Traced | None]],
     parameters: int,
 ) -> list[tuple[Array, Array]]:
-    """Residuals and tangents at the scale of the measured force, by `_residual_along`."""
+    """Residuals and tangents of `_residual_along`, scaled to the measured force."""
     scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
     for place in _bodies_that_lose_force(model):
         moving = {
@@ -83,12 +85,12 @@ def _relative(
 
 
 def _bodies_that_lose_force(model: Model) -> set[str]:
-    """Bodies that an actuator's stage, or friction under load, takes from what moves them."""
+    """Bodies on which an actuator effect, or friction under load, reduces the acting force."""
     return {place for place, body in model.bodies.items() if _takes_from_what_acts(body)}
 
 
 def _takes_from_what_acts(body: Body) -> bool:
-    """Whether an actuator's stage, or friction under load, stands before what moves the body."""
+    """Whether an actuator effect, or friction under load, reduces the force on the body."""
     stages = any(e.role == "actuation" for e in body.effects)
     return stages or body.level().has(SIGNALS["acting_force"])
 
@@ -101,7 +103,8 @@ def _residual_along(
 ) -> list[tuple[Traced, Traced | None]]:
     """Residual per stretch, low-passed on the rows that count, with its tangents (p, rows).
 
-    taking: bodies of which the acting plus interaction force is wanted too, low-passed likewise
+    taking: bodies whose acting plus interaction force is returned too, low-passed likewise; None
+        for the others
     """
     located = [_place_of_probe(model, name) for name in wrt]
     groups = offset_groups(model, stretches)

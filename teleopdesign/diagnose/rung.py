@@ -14,27 +14,30 @@ from .ranking import Ranked, Ranking, named_instead
 
 @dataclass(frozen=True)
 class Replaced:
-    """An effect of the user's model that gave way to another, with its parameters.
+    """An effect of the user's model that another effect replaced, with its parameters.
 
-    values: (full name, value) of each, where it was still in the model
+    values: (full name, value) of each parameter in the model before
     """
 
     effect: Candidate
     values: tuple[tuple[str, Value], ...]
 
     def back_in(self, model: Model) -> Model:
-        """The model with the effect as it was."""
+        """The model with the replaced effect and its earlier values."""
         whole = model.with_effect(self.effect.effect, at=self.effect.at)
         return whole.with_values(dict(self.values))
 
 
 def make_replaced(ranked: Ranked, before: Model) -> Replaced | None:
-    """The effect that a candidate replaces; before: the model that still has this effect."""
+    """The effect that a candidate replaces; None: it replaces none.
+
+    before: the model that still has this effect
+    """
     return None if ranked.instead_of is None else restore_replaced(ranked.instead_of, before)
 
 
 def restore_replaced(effect: Candidate, before: Model) -> Replaced:
-    """An effect that is replaced, as it was in the model before."""
+    """An effect to be replaced, with its parameters in the model before."""
     start = f"{effect.at}.{effect.effect.name}."
     values = tuple((n, v) for n, v in before.parameters.items() if n.startswith(start))
     return Replaced(effect, values)
@@ -42,12 +45,14 @@ def restore_replaced(effect: Candidate, before: Model) -> Replaced:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rung(ByValue):
-    """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
+    """One step of the ladder: the added effect, the fit, and the ranking.
 
+    added: None: the rung of the user's model
     ranking: the candidates that were compared on this step
-    alternatives: those that explain the records as well as the added one
-    replaced: the effect of the user's model in whose place it was added
-    could_be: where the model before left only noise: all else that explains a part of that
+    alternatives: candidates that explain the records as well as the added one
+    replaced: the effect of the user's model that the added one replaced
+    could_be: other candidates that explain a good part of the same gain; stated where the model
+        before left only noise, or the effect is not named
     """
 
     added: Candidate | None
@@ -59,18 +64,18 @@ class Rung(ByValue):
 
     @property
     def instead_of(self) -> Candidate | None:
-        """The effect of the user's model that it takes the place of."""
+        """The effect of the user's model that the added effect replaced."""
         return None if self.replaced is None else self.replaced.effect
 
     @property
     def said(self) -> str:
-        """What was added, in words, with what it takes the place of."""
+        """The added effect in words, with the effect that it replaced."""
         return "" if self.added is None else named_instead(self.added, self.instead_of)
 
     def taken_from(self, model: Model) -> Model:
-        """A model that has what this rung added, as it was without: what it replaced is back.
+        """A model without the effect that this rung added, and with the effect that this replaced.
 
-        raises ModelError: another effect of the model needs what was added
+        raises ModelError: another effect of the model needs the added effect
         """
         assert self.added is not None
         name, at = self.added.key

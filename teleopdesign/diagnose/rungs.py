@@ -17,18 +17,18 @@ from .rung import Rung
 
 
 def first_rise(rungs: Sequence[Rung]) -> int | None:
-    """The first rung that leaves more on the check records than the one before it."""
+    """Index of the first rung with a larger check error than the rung before it; None: none has."""
     rises = (later.fit.check_error > rung.fit.check_error for rung, later in pairwise(rungs))
     return next((i for i, rises_here in enumerate(rises, 1) if rises_here), None)
 
 
 def without_rise(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
-    """The rungs up to the first that leaves more than the one before it."""
+    """The rungs before the first one with a larger check error than its predecessor."""
     return tuple(rungs[: first_rise(rungs)])
 
 
 def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None:
-    """The fit of a model without what a rung added to it; None: another effect needs that."""
+    """The fit of a model without a rung's effect; None: another effect needs this effect."""
     try:
         return estimate(rung.taken_from(model), prepared)
     except ModelError:
@@ -38,8 +38,8 @@ def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None
 def order_by_falling_error(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | None:
     """The rungs in an order in which the check error falls with each; None where there is none.
 
-    A rung that leaves more than the one before it was masked by what follows it: the two change
-    places.
+    A rung with a larger error than its predecessor was masked by the rung after it: these two
+    change places.
     """
     order = tuple(rungs)
     for _ in rungs:
@@ -78,7 +78,7 @@ def ranking_alone(
     *,
     instead_of: Candidate | None = None,
 ) -> Ranking:
-    """The ranking of one candidate that was fitted already."""
+    """The ranking of one candidate that is already fitted."""
     alone = make_ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)
     return Ranking(base, (alone,))
 
@@ -86,11 +86,11 @@ def ranking_alone(
 def reorder_and_refit(
     rungs: Sequence[Rung], last: Fit, prepared: Prepared
 ) -> tuple[Rung, ...] | None:
-    """The rungs in an order in which the check error falls, each fitted without what comes later.
+    """The rungs in an order in which the check error falls, each fitted without later effects.
 
-    last: the fit with all of them, from whose values the others begin
+    last: the fit with all effects, whose values are the starts of the other fits
     returns: None where no order falls, or where an earlier effect needs a later one; the user's
-        model alone stays as it is
+        model alone is returned unchanged
     """
     if len(rungs) == 1:
         return tuple(rungs)

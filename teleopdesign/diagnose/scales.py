@@ -12,7 +12,7 @@ from ..measurement.motion import Motion
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
     """Quantity -> typical size along these motions (SI): rms values and their quotients.
 
-    "travel" is the widest that one motion covers, "duration" the longest.
+    "travel" is the widest range of positions in one motion, "duration" the longest.
     """
 
     def rms(parts: list[np.ndarray]) -> float:

@@ -1,8 +1,8 @@
 """The best fit of a model with new effects, from many starting values.
 
-Few survive each round: first one linear step is predicted from every start, and where none promises
-a gain the search ends; then a few real steps are made from the best, then rough fits. A fine one is
-made of what ranks first.
+Each round keeps fewer starts. First one linear step is predicted from every start; if none promises
+a gain, the search ends. Then a few real steps are made from the best starts, then rough fits. Only
+the first ones of a ranking are fitted finely.
 """
 
 from __future__ import annotations
@@ -31,25 +31,26 @@ from .stated import has_moved, is_at_stated, reset_to_stated
 
 @dataclass(frozen=True)
 class Base:
-    """The model without its new effects, fitted.
+    """The fitted model without its new effects.
 
-    fit: on all samples;  coarse: on the few of `Prepared.coarse`, where effects are sought
+    fit: on all samples;  coarse: on the few samples of `Prepared.coarse`, used for the search
     """
 
     fit: Fit
     coarse: Fit
 
     def least(self, worth: float) -> float:
-        """Squares on few samples from which a gain of this part of the base's is left out.
+        """Sum of squares on few samples that a start must promise, or its gain is too small.
 
-        Few samples may leave more than all of them, which no effect can take away.
+        worth: least gain over the base's squares, of few or of all samples, whichever are smaller:
+            no effect can remove the additional error of few samples
         """
         few = fit_squares(self.coarse)
         return few - worth * min(few, fit_squares(self.fit))
 
 
 def base_of(fit: Fit, prepared: Prepared) -> Base:
-    """A fit, and what the same model leaves at its optimum on few samples."""
+    """A fit, and the fit of the same model on few samples."""
     coarse = prepared.coarse
     if coarse is prepared:
         return Base(fit, fit)
@@ -78,9 +79,12 @@ def estimate_from_starts(
     """The best fit of a model, from every starting value of the effects that are still absent.
 
     Starts are followed on few samples; the best is estimated on all of them.
-    base: a fit of the model without them: then the best stays rough, to be ranked first
-    stated: the model as its user gave it: what the base moved far from it starts there too
-    worth: part of the base's squares that one linear step must promise to take away
+
+    base: a fit of the model without these effects; the best fit is then a rough one, for a ranking;
+        None: it is a fine one
+    stated: the model as its user gave it; further starts use its values where the base is far from
+        them
+    worth: part of the base's squares that one linear step must promise to remove
     """
     coarse = prepared.coarse
     if isinstance(base, Fit):
@@ -118,7 +122,8 @@ def estimate_best_start(
 ) -> Fit:
     """A rough fit from the best of these starts, which are followed on few samples.
 
-    new: (effect, place) whose squares are rugged: a better place is sought near by
+    new: (effect, place) whose sum of squares has many local minima: better values are searched
+        nearby
     """
     coarse = prepared.coarse
     best = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
@@ -126,13 +131,13 @@ def estimate_best_start(
 
 
 def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
-    """The fit, or the one that its user's values lead to where that leaves less.
+    """The fit, or the fit that starts from the user's values, if this one leaves less.
 
-    An effect stated without values was led astray by what is missing: it starts anew as well. Both
-    are followed on few samples; only what leaves less there is estimated on all of them. Where the
-    fit came to lie at the user's values, within what users err by, there is no other way to go.
-    at: place of a new effect: other bodies stay, for what their user's values lead to beside it is
-        what they led to without it
+    An effect stated without values may have been misled by a missing effect: it starts anew as
+    well. A fit that is close to the user's values is not started again. Only a fit that is better
+    on few samples is estimated on all samples.
+
+    at: place of a new effect; only its body is reset: the other bodies do not depend on it
     """
     if is_at_stated(fit, stated, at):
         return fit
@@ -148,14 +153,14 @@ def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
 
 
 def _follow_start(model: Model, prepared: Prepared, effort: Effort) -> Solution:
-    """Where a start leads on these records."""
+    """The rough optimum that a search from this start reaches."""
     return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
 
 
 def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
-    """The solution with parts of effects in their order, where no less is explained so.
+    """The solution with the parts of its effects in order, if this leaves no more.
 
-    Their order says which parts must be determined, and which may be open.
+    The order decides which parts must be determined, and which may be open.
     """
     model = best.model.in_order()
     if model is best.model:
@@ -169,12 +174,12 @@ def _squares(solution: Solution) -> float:
 
 
 def with_parameters_of(model: Model, other: Model) -> Model:
-    """The model with the parameters, and shifts of the records, that another of its effects has."""
+    """The model with the parameters and record shifts of a model that has some of its effects."""
     return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
 
 
 def keep_absent(model: Model, base: Fit) -> Fit:
-    """The fit of a model whose new effects stay absent: the residual of the base."""
+    """The fit of a model whose new effects stay absent: its residual is that of the base."""
     return replace(base, model=with_parameters_of(model, base.model))
 
 
@@ -189,7 +194,7 @@ def _select_promising(
 ) -> list[Model]:
     """The starts from which one linear step promises most; none where none promises a gain.
 
-    most: how many, for an effect that has no strength
+    most: number of starts, for an effect that is linear in no strength
     """
     linear = _with_strength(model)
     if linear is not None:
@@ -201,9 +206,9 @@ def _select_promising(
 
 
 def _vary_starts(model: Model, ordered: list[Model]) -> list[Model]:
-    """The starts; first those at each value of parameters that the new effects need.
+    """The starts in another order: first one at each value of essential parameters.
 
-    A search that begins at a gap too narrow closes it, and never opens it again.
+    A search that starts with a gap that is too narrow closes it, and never opens it again.
     """
     essential = [
         f"{at}.{name}.{n}"
@@ -221,7 +226,7 @@ def _vary_starts(model: Model, ordered: list[Model]) -> list[Model]:
 
 
 def _with_strength(model: Model) -> tuple[Effect, str] | None:
-    """The one effect that is still absent, and its place, where it has a strength that is free."""
+    """The only absent effect and its place, if it has a strength that is free; else None."""
     absent = [(model.body(place).effect(name), place) for name, place in model.absent]
     if len(absent) != 1 or absent[0][0].strength is None:
         return None
@@ -246,7 +251,7 @@ def _start_by_strength(
 
 
 def _promise(model: Model, prepared: Prepared, base: Fit) -> float:
-    """Sum of squares after one linear step from this start, by all parameters."""
+    """Sum of squares after one linear step from this start, by all free parameters."""
     stretches, unit = prepared.of("fit"), prepared.scales
     values, before = model.parameters, base.model.parameters
     same = all(values[n].value == before[n].value for n in base.free)
@@ -260,7 +265,7 @@ def _promise(model: Model, prepared: Prepared, base: Fit) -> float:
 
 
 def _remaining_squares(columns: Array, residual: Array) -> float:
-    """Squares of the residual that these columns cannot take away, by normal equations."""
+    """Squares of the residual that no combination of these columns removes, by normal equations."""
     size = np.linalg.norm(columns, axis=0)
     columns = columns / np.where(size > 0, size, 1.0)
     normal = columns.T @ columns + 1e-9 * np.eye(columns.shape[1])
@@ -271,10 +276,10 @@ def _remaining_squares(columns: Array, residual: Array) -> float:
 def _best_stepped(
     models: list[Model], prepared: Prepared, kept: int, *, promised: bool
 ) -> list[Model]:
-    """The best starts after a few steps of the fit, at the values that these steps reached.
+    """The best starts after a few steps of the fit, with the values that these steps reached.
 
-    promised: whether the first is the one that promised most: it is kept too, for steps that begin
-        far from an optimum may lie above those that never leave the base
+    promised: whether the first start promised most; it is kept too, because after a few steps it
+        may still leave more than a start that stays at the base
     """
     solutions = []
     for i, model in enumerate(models):
@@ -286,9 +291,9 @@ def _best_stepped(
 
 
 def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
-    """The best solution near by: a rugged sum of squares has many shallow minima.
+    """The best solution nearby, where the sum of squares has many shallow minima.
 
-    new: (effect, place) whose parameters are jolted, one at a time
+    new: (effect, place) whose parameters are changed by factors, one at a time
     """
     free = free_parameters(best.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]

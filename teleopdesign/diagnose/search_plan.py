@@ -1,4 +1,4 @@
-"""Size of the search: what each number costs in time, and what a smaller one may miss."""
+"""Size of the search: the computing time of each number, and what a smaller one may miss."""
 
 from __future__ import annotations
 
@@ -110,7 +110,10 @@ class SearchPlan:
     rivals: int = 4
 
     def for_joints(self, count: int) -> SearchPlan:
-        """The plan for each joint of an arm with so many; its records are searched whole."""
+        """The plan for each joint of an arm with `count` joints.
+
+        An arm's records are searched whole, so the plan has the default sizes of windows.
+        """
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
         most = self.trials if count <= self.whole_at else self.pairs_beyond
         return replace(
@@ -118,7 +121,7 @@ class SearchPlan:
         )
 
     def omissions(self) -> tuple[str, ...]:
-        """What it leaves out of the search with `PLAN`, in words; none where it is that one."""
+        """Parts of the search with `PLAN` that this plan leaves out, in words; empty: none."""
         words = []
         if self.most_effects < PLAN.most_effects:
             words.append(f"no more than {self.most_effects} effects were added")

@@ -1,4 +1,4 @@
-"""What the sensors of an experiment do to a signal: steps and noise, as stated or as seen."""
+"""Sensors of an experiment: steps and noise of their readings, as stated or as estimated."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ..measurement.filtering import Array
 
 @dataclass(frozen=True)
 class Sensor:
-    """step: between readings, 0 for none;  noise: rms (SI)."""
+    """Errors of a sensor; step: between readings, 0 for none;  noise: rms (both SI)."""
 
     step: float = 0.0
     noise: float = 0.0
 
     def read(self, signal: Array, generator: np.random.Generator) -> Array:
-        """The signal (n,) as this sensor reads it; where its steps lie is drawn."""
+        """The signal (n,) as this sensor reads it, with drawn noise and offset of its steps."""
         read = signal + self.noise * generator.standard_normal(len(signal))
         if self.step <= 0:
             return read
@@ -30,10 +30,10 @@ class Sensor:
 
 
 def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
-    """The sensor of a channel ("device.position"), as stated.
+    """The sensor of a channel ("device.position"), as stated or as estimated.
 
-    Where no resolution of its body's position is stated: as seen in these readings (n,). So is the
-    noise of a force that was measured, where none is stated.
+    Where no resolution of its body's position is stated, step and noise are estimated from these
+    readings (n,). So is the noise of a measured force, where none is stated.
     """
     channel = experiment.channels[name]
     step, noise = channel.resolution or 0.0, channel.noise or 0.0
@@ -48,16 +48,16 @@ def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
 
 
 def is_noise_seen(channel: Channel) -> bool:
-    """Whether a channel is a measured force of which no noise is stated: its readings tell it.
+    """Whether a channel is a measured force without stated noise, which its readings then show.
 
-    A command is what it says, and the steps of an encoder are all that its readings err by.
+    A command has no noise, and the steps of an encoder are the only error of its readings.
     """
     force = channel.quantity == "interaction_force" or channel.measured
     return force and channel.noise is None
 
 
 def sensors_of(experiment: Experiment) -> Mapping[str, Sensor]:
-    """Channel ("device.position") -> its sensor, seen in the first record where none is stated."""
+    """Channel ("device.position") -> its sensor; unstated errors are those of the first record."""
     return {
         name: sensor_of(experiment, name, experiment.records[0].signals[name])
         for name, channel in experiment.channels.items()

@@ -1,15 +1,15 @@
-"""The links of an arm from one joint: what other joints tell of them, and what stays free.
+"""The links of an arm in the fit of one joint: information from other joints, and what stays free.
 
-The base parameters b of an arm act at all of its joints, and force is linear in them. What the
-other joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their parameters free.
-So a joint can be compared alone: to minimise
+The base parameters b of an arm act at all of its joints, and force is linear in them. The
+information of the other joints on b is a quadratic, (b - c)^T H (b - c) with centre c, when their
+other parameters are free. So a joint can be compared alone: to minimise
 
     |r - Y (b - c)|^2 + (b - c)^T H (b - c)        over b,     Y: force of its links per unit of b
 
-is to minimise |W r|^2 with W = (1 + Y H^-1 Y^T)^(-1/2): directions in which the links could have
-made the residual r count less, and not at all where no other joint knows them. W is the identity
-less as many directions as there are base parameters. Squares of each joint are relative to what its
-model leaves: a joint that lacks an effect says little of the links.
+is to minimise |W r|^2 with W = (1 + Y H^-1 Y^T)^(-1/2). A direction of the residual r that the
+links can cause counts less, and not at all where no other joint has information on it. W differs
+from the identity in at most as many directions as there are base parameters. Squares of each joint
+are relative to its model's remaining squares: a joint that lacks an effect has little weight.
 """
 
 from __future__ import annotations
@@ -45,15 +45,15 @@ class Knowledge(ByValue):
         return Knowledge(self.matrix + other.matrix, self.vector + other.vector)
 
     def best(self) -> Array:
-        """The base parameters (b,) of least squares; 0 in directions that are unknown."""
+        """The base parameters (b,) with the least squares; 0 in directions without information."""
         centre, _ = _split_knowledge(self, np.diag(self.matrix))
         return centre
 
 
 def _split_knowledge(knowledge: Knowledge, squares: Array) -> tuple[Array, Array]:
-    """Centre (b,), and directions (b, b) of unit spread, wide where little is known.
+    """Centre (b,), and directions (b, b) of unit spread: long where there is little information.
 
-    squares: (b,) by which each base parameter counts: its scale
+    squares: (b,) squared scale of each base parameter
     """
     size = np.sqrt(np.where(squares > 0, squares, 1.0))
     scaled = knowledge.matrix / np.outer(size, size)
@@ -67,11 +67,12 @@ def _split_knowledge(knowledge: Knowledge, squares: Array) -> tuple[Array, Array
 
 @dataclass(frozen=True, eq=False)
 class Shared(ByValue):
-    """What takes the freedom of the links out of the residuals on one stretch.
+    """Data that removes the estimated link parameters from the residuals on one stretch.
 
-    others: what the other joints know;  size: by which the joint's force counts among theirs
+    others: information of the other joints;  size: scale of the joint's force against theirs
     columns: (rows, b) low-passed force per base parameter, times the root of the rows' weight
-    basis: (rows, m) of directions common to all stretches;  less: (m,) by which each counts less
+    basis: (rows, m) directions common to all stretches
+    less: (m,) by which each direction counts less
     back: (b, m) base parameters per residual in each direction;  centre: (b,)
     """
 
@@ -85,8 +86,9 @@ class Shared(ByValue):
 
 
 def share(stretches: Sequence[Stretch], others: Knowledge, size: float) -> tuple[Stretch, ...]:
-    """The stretches of one joint with what takes the freedom of the links out of them.
+    """The stretches of one joint, each with `Shared` to remove the link parameters from residuals.
 
+    others: information of the other joints
     size: root of the squares that the joint's model leaves, or of those measured
     """
     columns = [weighted_columns(s) for s in stretches]
@@ -104,7 +106,7 @@ def share(stretches: Sequence[Stretch], others: Knowledge, size: float) -> tuple
 
 
 def share_again(stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
-    """Stretches whose rows have changed, with their links' freedom taken out anew."""
+    """Stretches whose rows have changed, with new `Shared` data."""
     first = stretches[0].shared if stretches else None
     return tuple(stretches) if first is None else share(stretches, first.others, first.size)
 
@@ -118,9 +120,9 @@ def weighted_columns(stretch: Stretch) -> Array:
 def clear(
     links: tuple[float, ...], stretches: Sequence[Stretch], parts: list[tuple[Array, Array]]
 ) -> list[tuple[Array, Array]]:
-    """Residuals (rows) and tangents (p, rows) without what the links can make of them.
+    """Residuals (rows) and tangents (p, rows), with reduced weight in the directions of the links.
 
-    links: base parameters at which the residuals were taken
+    links: base parameters at which the residuals were computed
     """
     mine = [i for i, s in enumerate(stretches) if s.shared is not None]
     if not mine:
@@ -147,7 +149,7 @@ def clear(
 def best_links(
     links: tuple[float, ...], stretches: Sequence[Stretch], residuals: Sequence[Array]
 ) -> tuple[float, ...]:
-    """The base parameters that leave least of these residuals, which were taken at `links`."""
+    """The base parameters that leave least of these residuals, which were computed at `links`."""
     change, centre = np.zeros(len(links)), np.asarray(links)
     for stretch, residual in zip(stretches, residuals, strict=True):
         shared = stretch.shared

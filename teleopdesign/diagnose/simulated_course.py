@@ -2,7 +2,8 @@
 
 The recorded command and interaction force act on the body, and a weak spring and damper lead it
 along the recorded motion, as a controller would: their force is part of the command that is kept.
-So the body sticks, breaks away and turns as the model has it, about where the device did.
+So the body sticks, breaks away and reverses by the model's laws, near the places where the device
+did.
 """
 
 from __future__ import annotations
@@ -37,12 +38,15 @@ class Course:
     command: Array
 
     def stays_near(self, motion: Motion, *, travels: float = 100.0, least: float = 0.1) -> bool:
-        """Whether its travel is below so many of the record's; not where it is no number.
+        """Whether the travel is between a part and a multiple of the record's travel; no for NaN.
 
-        What leads a body along a record does not hold every model. A hundred: one that is held
-        stays within a part of the travel, one that is not soon leaves any bound.
-        least: part of the record's travel that it must cover: a body that sticks where the record
-            moved says nothing of its readings. A tenth: of two that stuck, both covered 1e-4
+        The spring that leads a body does not hold every model: one that is held stays within a part
+        of the record's travel, any other soon exceeds every bound. A body that sticks where the
+        record moved says nothing about its readings.
+
+        travels: upper limit, over the record's travel
+        least: lower limit, over the record's travel: of two bodies that were stuck, both covered
+            1e-4
         """
         travel = np.ptp(motion.position)
         return bool(least * travel <= np.ptp(self.position) < travels * travel)
@@ -52,6 +56,7 @@ class Course:
 class LedBody:
     """A body on X with its command U = F_led - (stiffness + damping s) X, ready to simulate.
 
+    stiffness, damping: of the spring and damper that lead the body (SI);  has_tip: as its structure
     bristle: length (m or rad) of the bristle of ideal friction, of the body and of its tip
     """
 
@@ -63,18 +68,18 @@ class LedBody:
 
 
 def grid(motion: Motion) -> float:
-    """Longest step (s) in which a body is simulated along a record: dead times are multiples."""
+    """Longest simulation step (s) along a record; dead times must be multiples of it."""
     return motion.sample_time / STEPS
 
 
 def simulated_course(
     body: Body, motion: Motion, *, deflection: float, damping_ratio: float = 0.0
 ) -> Course:
-    """The course that this body takes under a record's forces, led along its motion.
+    """The course of a body under a record's forces, led along the recorded motion.
 
-    deflection: of an ideal friction, in steps of the position's reading
+    deflection: bristle length of ideal friction, in steps of the position's reading
     damping_ratio: of the inertia on the bristle
-    raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
+    raises ModelError: the body cannot be simulated, or a dead time is no multiple of `grid`
     """
     frequency = 2.0 * np.pi * LEADS * motion.bandwidth
     inertia = body.parameters["inertia"].value
@@ -91,10 +96,11 @@ def simulated_course(
 def led_body(
     body: Body, *, bristle: float, damping_ratio: float = 0.0, stiffness: float, damping: float
 ) -> LedBody:
-    """The body with what leads it; none leads it where stiffness and damping are zero.
+    """The body with the spring and damper that lead it; zero stiffness and damping: none.
 
-    bristle: length of the bristle of an ideal friction (m or rad)
+    bristle: length of the bristle of ideal friction (m or rad)
     damping_ratio: of the inertia on that bristle
+    stiffness, damping: SI
     """
     body = with_bristle(without_absent(body), bristle, damping_ratio=damping_ratio)
     has_tip = any(e.role == "structure" for e in body.effects)
@@ -103,9 +109,9 @@ def led_body(
 
 
 def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course:
-    """The course that a body takes under a record's forces, from the motion at the first row on.
+    """The course of a body under a record's forces, starting with the motion at the first row.
 
-    rows: of the motion;  hidden states begin at zero
+    rows: of the motion;  hidden states start at zero
     """
     step, time = grid(motion), motion.time[rows] - motion.time[rows][0]
     # what a row holds on average where the log of the command is late
@@ -166,7 +172,7 @@ def dead_times(body: Body) -> tuple[str, ...]:
 
 
 def as_led(motion: Motion, course: Course) -> Motion:
-    """The motion with the position and command of a course, from time 0; rates left as they are."""
+    """The motion with the position and command of a course, from time 0; the rest unchanged."""
     return replace(
         motion,
         time=motion.time - motion.time[0],
@@ -176,7 +182,7 @@ def as_led(motion: Motion, course: Course) -> Motion:
 
 
 def with_whole_dead_times(body: Body, motion: Motion) -> Body:
-    """The body with its dead times rounded to the grid of the simulation along that motion."""
+    """The body with its dead times rounded to multiples of the simulation step `grid`."""
     step = grid(motion)
     times = {n: step * round(body.parameters[n].value / step) for n in dead_times(body)}
     return body.with_values(times)

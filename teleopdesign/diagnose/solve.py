@@ -28,10 +28,12 @@ DECADES = 8.0
 
 @dataclass(frozen=True)
 class Solution:
-    """Free parameters at the optimum, with weighted residual and jacobian by value / scale.
+    """Free parameters at the optimum, with weighted residual and Jacobian by value / scale.
 
     model: with these values, and the shifts of the records
-    by_shift: (rows, k) of the residual by `shifts`, in rows of a record;  shift_at_bound: (k,)
+    values, scale, at_bound: (p,);  residual: (rows,);  jacobian: (rows, p)
+    by_shift: (rows, k) derivative of the residual by the k `shifts`, in rows of a record
+    shift_at_bound: (k,)
     """
 
     model: Model
@@ -47,10 +49,10 @@ class Solution:
 
 @dataclass(frozen=True, eq=False)
 class _SearchSpace:
-    """Free parameters as they are searched, x: over their scales, or the logarithm of that.
+    """Search coordinates x (p,) of the free parameters: value over scale, or its logarithm.
 
-    scale: (p,) SI value of the record's unit of each;  decades: (p,) whether x is a logarithm
-    lower, upper, start: (p,) bounds of x, and where the search begins
+    scale: (p,) SI value of the unit of each;  decades: (p,) whether x is a logarithm
+    lower, upper, start: (p,) bounds of x, and where the search starts
     """
 
     scale: Array
@@ -69,7 +71,7 @@ class _SearchSpace:
 
 
 def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _SearchSpace:
-    """Where the free parameters of a model are searched, by the scales of the fit records."""
+    """Search coordinates of the free parameters, with scales of the fit records."""
     unit = prepared.scales
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
@@ -147,15 +149,16 @@ def solve(
 
 
 def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:
-    """The model with the best base parameters of its arm beside the rest of it."""
+    """The model with the best base parameters of its arm, all other parameters held."""
     left = [r for r, _ in residuals(model, stretches)]
     return model.with_links(best_links(model.links, stretches, left))
 
 
 def spans_decades(model: Model, name: str) -> bool:
-    """Whether a parameter is searched on a logarithmic scale: positive, and zero means nothing.
+    """Whether a parameter is searched on a logarithmic scale.
 
-    A strength that may vanish is searched on a linear one, so that it can reach zero.
+    So is a parameter of an effect that is not negative and has no upper bound, except a strength
+    that may be zero: its scale is linear, so that it can reach zero.
     """
     declared = model.declared(name)
     place, local_name = model.locate(name)

@@ -1,4 +1,4 @@
-"""Effects that lower the error without explaining it: they stand in for something else.
+"""Effects that lower the error without explaining it: they imitate something else.
 
 Values that the fit records do not determine (for example friction and damping, at one speed): if a
 check record moves as no fit record does, a complete model has an error there too. An effect that
@@ -6,8 +6,8 @@ changes these values may seem to explain the error. So the model is estimated on
 together, with the effect and without it. The effect must still leave surely less of the check
 records.
 
-Noise of the readings: a structure passes less of the noise in an acceleration. The error may then
-be smaller, and yet larger in noise floors of the new model.
+Noise of the readings: a structure transmits less of the noise in an acceleration. The error may
+    then be smaller, and yet be more noise floors of the new model.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from .rung import Rung
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
-    """All records to estimate on, the check records to compare on; None: there are no two uses.
+    """All records as fit records, with the check records for comparison; None: no check records.
 
-    Nor for an arm's joints: what the links share is taken out of the fit records.
+    None for an arm's joints too: their shared link parameters belong to the fit records.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
     if not check or prepared.is_of_an_arm:
@@ -36,7 +36,7 @@ def estimable_on_all(prepared: Prepared) -> Prepared | None:
 
 
 def check_error_on_all(fit: Fit, prepared: Prepared) -> float | None:
-    """Check error of a model estimated on all records; None: there are no two uses."""
+    """Check error of a model estimated on all records; None as in `estimable_on_all`."""
     together = estimable_on_all(prepared)
     return None if together is None else estimate(fit.model, together).check_error
 
@@ -77,8 +77,8 @@ def stands_in_for_readings(
 ) -> SetAside | None:
     """The effect of a rung that only weakens the error of sensor readings, with the reason.
 
-    before, after: the noise floors of the two models, as drawn;  returns: None where it leaves less
-        in noise floors too, or noise only
+    before, after: the noise floors of the two models, as drawn
+    returns: None where the effect leaves fewer noise floors too, or only noise
     """
     if rung.added is None or not (before.drawn and after.drawn):
         return None

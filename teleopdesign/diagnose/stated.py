@@ -1,6 +1,6 @@
 """Values that the user states: further start values of a search.
 
-Without an effect that is missing, others may have gone where no step leads back from.
+While an effect is missing, other parameters may move to values from which no search returns.
 """
 
 from __future__ import annotations
@@ -11,10 +11,9 @@ from .search_plan import PLAN
 
 
 def reset_to_stated(model: Model, stated: Model, at: str | None = None) -> Model:
-    """The model with its user's values: without an effect that is missing, others may have gone
-    where no step leads back from.
+    """The model with its user's values, as a further start of a search.
 
-    at: place whose body gets them; None: all bodies
+    at: place whose body is reset; None: all bodies
     """
     there = model.parameters  # another effect may have replaced one of the user's
     values = {n: v.value for n, v in stated.parameters.items() if n in there}
@@ -24,7 +23,7 @@ def reset_to_stated(model: Model, stated: Model, at: str | None = None) -> Model
 
 
 def has_moved(base: Fit, stated: Model) -> bool:
-    """Whether the base moved a parameter further from the user's value than users usually err."""
+    """Whether the base moved a parameter further from the user's value than users' usual errors."""
     here, there = base.model.parameters, stated.parameters
     pairs = [(here[n].value, there[n].value) for n in base.free if n in there]
     return any(_is_far(value, before) for value, before in pairs)
@@ -35,10 +34,11 @@ def _is_far(value: float, stated: float) -> bool:
 
 
 def is_at_stated(fit: Fit, stated: Model, at: str) -> bool:
-    """Whether a fit ends within what users err by of all that is stated of the body at a place.
+    """Whether a fit is close to all stated values of one body, within users' usual errors.
 
-    An effect stated without values has nowhere else to begin only where its strength alone was
-    estimated: the residual is linear in it.
+    at: place on the body
+    An effect stated without values counts as close only where its strength alone was estimated: the
+    residual is linear in it, so there is no other minimum.
     """
     here, there, body = fit.model.parameters, stated.parameters, fit.model.holder(at)
     for name in fit.free:

@@ -1,4 +1,4 @@
-"""The fit of a model as its user states it, with effects that have no values yet."""
+"""The fit of a model as its user states it, including effects that have no values yet."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .search import estimate_from_starts
 
 
 def estimate_stated(model: Model, prepared: Prepared) -> Fit:
-    """The best fit of a stated model: all effects that have no values at once, or one at a time.
+    """The best fit of a stated model: all effects without values at once, or one at a time.
 
-    An effect of several parameters is led astray while the others are far from their values:
-    bristles become rigid where Coulomb's level starts too low. Beside the others' fit it starts as
-    a candidate does.
+    An effect of several parameters may be misled while other effects are far from their values:
+    bristles become rigid where Coulomb's level starts too low. Added to the fit of the other
+    effects, it starts like a candidate.
     """
     together = estimate_from_starts(model, prepared)
     bare, missing = _take_out_absent(model)
@@ -26,7 +26,7 @@ def estimate_stated(model: Model, prepared: Prepared) -> Fit:
 
 
 def _estimate_one_by_one(bare: Model, missing: list[Replaced], prepared: Prepared) -> Fit:
-    """The fit to which adding these effects leads, each time the one that explains most."""
+    """The fit after these effects were added in turn, each time the one that explains most."""
     fit = estimate_from_starts(bare, prepared)
     while missing:
         fits = {
@@ -42,7 +42,7 @@ def _estimate_one_by_one(bare: Model, missing: list[Replaced], prepared: Prepare
 def _take_out_absent(model: Model) -> tuple[Model, list[Replaced]]:
     """The model without its absent effects of several parameters, and these effects.
 
-    One that an effect with values needs stays.
+    An absent effect stays where an effect with values needs it.
     """
     absent, rest = [], [Candidate(model.body(at).effect(n), at) for n, at in model.absent]
     rest = [one for one in rest if len(one.effect.parameters) > 1]

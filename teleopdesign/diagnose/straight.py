@@ -1,4 +1,4 @@
-"""Forces of position in a ladder: a straight line in place of two bends that cancel.
+"""Forces of position in a ladder: a straight line instead of two curved forces that cancel.
 
 A cable, a bushing and a constant load together are a force linear in position: `spring` and `bias`.
 A ladder adds one effect at a time. A curved force with two parameters, such as `gravity` over a
@@ -28,10 +28,11 @@ from .rungs import ranking_alone, reorder_and_refit
 
 
 def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with a straight line for forces of position that do no better; None: they do.
+    """The ladder with a straight line for curved forces of position; None: the curved ones stay.
 
-    The line takes the place of effects with more parameters where these are not surely better, and
-    of effects with as many where the line is. Once in a ladder, so that the two cannot take turns.
+    The line replaces effects with more parameters unless these are surely better, and effects with
+    as many parameters if the line is surely better. This happens once in a ladder, so that both
+    cannot take turns.
     """
     if state.straightened:
         return None
@@ -43,7 +44,7 @@ def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def _bent_rungs(state: LadderState) -> Iterator[tuple[Rung, ...]]:
-    """Accepted forces of one body's place, all together first."""
+    """Groups of accepted curved forces of one body's position, the largest groups first."""
     bent = [r for r in state.rungs if r.added is not None and is_bent(r.added.effect)]
     for count in range(len(bent), 0, -1):
         for some in combinations(bent, count):
@@ -54,7 +55,7 @@ def _bent_rungs(state: LadderState) -> Iterator[tuple[Rung, ...]]:
 def _with_line(
     search: LadderSearch, state: LadderState, bent: Sequence[Rung]
 ) -> LadderState | None:
-    """The ladder with a line in the place of these rungs, where that is the simpler account."""
+    """The ladder with a line in place of these rungs; None where the line is not preferred."""
     (at,) = {r.added.at for r in bent if r.added is not None}
     body = state.fit.model.body(at)
     straight = (e for e in state.fit.model.known.values() if is_straight(e))
@@ -90,7 +91,7 @@ def _with_line(
 def _exchange_for_line(
     model: Model, bent: Sequence[Rung], line: Sequence[Candidate], search: LadderSearch
 ) -> Fit | None:
-    """The fit with the line and without the bends; None: another effect needs one of these."""
+    """The fit with the line and without the curved forces; None: these cannot be removed."""
     try:
         for rung in bent:
             model = rung.taken_from(model)
@@ -102,7 +103,7 @@ def _exchange_for_line(
 
 
 def _line_rungs(base: Fit, line: Sequence[Candidate], search: LadderSearch) -> list[Rung]:
-    """A rung for each part of the line, the one that leaves less first."""
+    """A rung for each part of the line, the part with the least check error first."""
     rungs: list[Rung] = []
     left = list(line)
     while left:
@@ -116,25 +117,25 @@ def _line_rungs(base: Fit, line: Sequence[Candidate], search: LadderSearch) -> l
 
 @lru_cache(maxsize=256)
 def _is_of_place(effect: Effect) -> bool:
-    """Whether an effect is a force that the place alone decides, at most."""
+    """Whether an effect is a force that depends on the position at most."""
     signals = effect.expression().free_symbols & set(SIGNALS.values())
     return effect.role == "force" and not effect.states and signals <= {SIGNALS["position"]}
 
 
 def is_straight(effect: Effect) -> bool:
-    """Whether a force of one parameter is a straight line of the place, a constant among them."""
+    """Whether a force of one parameter is linear in position; a constant force is, too."""
     if not _is_of_place(effect) or len(effect.parameters) != 1 or effect.strength is None:
         return False
     return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) == 0)
 
 
 def is_bent(effect: Effect) -> bool:
-    """Whether a force of the place is no straight line, nor seen to repeat with a period."""
+    """Whether a force of position is not linear, and has no period of free length."""
     if not _is_of_place(effect) or isinstance(period(effect), str):
         return False
     return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) != 0)
 
 
 def _count_required(effect: Effect) -> int:
-    """Parameters that must be estimated."""
+    """Number of parameters that must be estimated."""
     return sum(not p.optional for p in effect.parameters.values())

@@ -1,11 +1,11 @@
 """Threads and memory of a diagnosis: work shared among the cores.
 
-Linear algebra keeps to one core meanwhile. Its threads wait for each other by spinning: with
-several callers on two cores that took a third of the time.
+Meanwhile linear algebra uses one thread only. Its threads wait for each other in busy loops: with
+several callers on two cores this took a third of the time.
 
-Memory that is freed stays with the process for the next array. glibc gives blocks from 128 KiB on
-back to the system at once until a larger one was freed, so that each array of a residual was
-cleared by the system page by page: a sixth of the processor time.
+Freed memory stays with the process for the next array. By default, glibc returns blocks of 128 KiB
+and more to the system at once, until a larger block was freed. Then the system clears each array of
+a residual page by page: a sixth of the processor time.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MOST = 4
 
 
 def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> list[T]:
-    """Results of a function, called as by `map`, in the order of the arguments."""
+    """Results of a function in the order of the arguments, as of `map`, computed in threads."""
     keep_freed_memory()
     workers = min(MOST, os.cpu_count() or 1)
     with _find_libraries().limit(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
@@ -34,16 +34,16 @@ def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> lis
 
 @lru_cache(maxsize=1)
 def _find_libraries() -> ThreadpoolController:
-    """The libraries of linear algebra, all loaded by now: to look for them takes 6 ms each time."""
+    """The loaded libraries of linear algebra; the search takes 6 ms, so it is made once."""
     return ThreadpoolController()
 
 
 @lru_cache(maxsize=1)
 def keep_freed_memory() -> None:
-    """Let the process keep freed memory, by glibc's own rule: free a large block, untouched.
+    """Make the process keep freed memory, by freeing one large block that was never written.
 
-    Once it is freed, glibc keeps blocks up to its size, and twice as many bytes in all. Of no
-    effect where the system's allocator is another one.
+    After that, glibc keeps blocks up to this size, and twice as many bytes in all. Other allocators
+    are not affected.
     """
     # the largest that counts, 32 MiB with its head; less: arrays of long records are cleared anew
     np.empty(32 * 2**20 - 2**14, dtype=np.uint8)

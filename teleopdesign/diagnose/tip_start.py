@@ -1,10 +1,11 @@
 """Start values of a transmission with friction behind it, from simulated motions of the tip.
 
-From starts that leave the friction out, squares lead elsewhere: a tip that nothing holds rattles
-through its gap at other moments than one that stays where it was left. But along a measured motion
-the tip's course depends on the gap, on how fast the tip swings and on how friction slows it, not on
-its inertia (`realise.tip_along`); and in its inertia, and in the parameters of the model without
-it, what is left is linear. So every course of a grid asks for one small linear problem.
+A search from starts without the friction ends at another minimum: a tip without friction rattles
+through its gap at other moments than a tip that stays where it stops. Along a measured motion, the
+tip's course depends on the gap, on the natural frequency of the tip and on its deceleration by
+friction, but not on its inertia (`realise.tip_along`). The residual is linear in this inertia and,
+to first order, in the parameters of the model without the tip. So each course of a grid needs one
+small linear problem.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from .search_plan import PLAN, SearchPlan
 
 @dataclass(frozen=True)
 class TipStart:
-    """One course of a tip with its best inertia, and the squares that are left beside it.
+    """A start: the model with one course of a tip and its best inertia, and the squares left.
 
-    model: with the transmission, the friction behind it, and all else at its linear best
+    model: with the transmission, the friction behind it, and all other values at their linear best
     """
 
     model: Model
@@ -37,7 +38,11 @@ class TipStart:
 
 @dataclass(frozen=True)
 class _Course:
-    """Parameters of a course: width of the gap, rad/s in contact, slowing by friction."""
+    """Parameters of a tip's course: gap, frequency in contact, slowing by friction.
+
+    gap: m or rad;  swing: rad/s
+    slowing: deceleration of a sliding tip by friction (m/s^2, rad/s^2)
+    """
 
     gap: float
     swing: float
@@ -52,11 +57,11 @@ def tip_starts(
     *,
     plan: SearchPlan = PLAN,
 ) -> list[TipStart]:
-    """The best few starts of a transmission with friction behind it, on top of a base.
+    """The best few starts of a transmission with friction behind it, added to a base.
 
-    base: a fit of these records without them
-    none where a hand's force acts on the tip, for its course then depends on its inertia, or where
-    no course explains anything
+    base: a fit of these records without both effects
+    returns: an empty list where a hand's force acts on the body, because the tip's course then
+        depends on its inertia, or where no course explains anything
     """
     stretches, at = prepared.of("fit"), base.model.holder(transmission.at)
     here = [s for s in stretches if s.motion.body == at]
@@ -75,7 +80,7 @@ def tip_starts(
 
 @dataclass(frozen=True)
 class _Solved:
-    """A course with the best inertia of its tip (SI), and the squares left; 0: none takes any."""
+    """A course with the best inertia of its tip (SI; 0: no inertia helps), and the squares left."""
 
     course: _Course
     inertia: float
@@ -84,9 +89,10 @@ class _Solved:
 
 @dataclass(frozen=True, eq=False)
 class _LinearProblem:
-    """What a base leaves, and what its free parameters and a tip's inertia can take of it.
+    """The residual of a base, and the derivatives by which it can be reduced.
 
-    left: (rows,);  basis, triangle: QR of the slopes (rows, p) of it by the free parameters
+    damping_ratio: of the tip in contact
+    left: (rows,) residual;  basis, triangle: QR of its derivatives (rows, p) by the free parameters
     """
 
     base: Fit
@@ -98,7 +104,7 @@ class _LinearProblem:
     triangle: Array
 
     def column(self, course: _Course) -> Array:
-        """What a unit of the tip's inertia takes, beyond what it takes as one with the body."""
+        """Decrease (rows,) of the residual per tip inertia, against a tip fixed to the body."""
         parts = []
         for s in self.stretches:
             motion = s.motion
@@ -118,14 +124,14 @@ class _LinearProblem:
         return weigh_residuals(self.stretches, parts)
 
     def solve(self, course: _Course) -> _Solved:
-        """The best inertia for one course, all free parameters of the base at their best."""
+        """The best inertia for one course, with all free parameters of the base at their best."""
         new, rest = self._without_base(self.column(course)), self._without_base(self.left)
         size = float(new @ new)
         inertia = max(float(new @ rest) / size, 0.0) if size > 0.0 and np.isfinite(size) else 0.0
         return _Solved(course, inertia, float(rest @ rest) - inertia**2 * size)
 
     def refine(self, course: _Course, plan: SearchPlan) -> _Solved:
-        """The best course near by."""
+        """The best course near this one, within a factor of `SearchPlan.tip_near`."""
         from scipy.optimize import minimize  # half a second: only where a gear is sought
 
         start = np.array([v for v in (course.gap, course.swing, course.slowing) if v])
@@ -147,7 +153,7 @@ class _LinearProblem:
     def model_at(
         self, solved: _Solved, transmission: Candidate, friction: Candidate, plan: SearchPlan
     ) -> Model:
-        """The model with both effects at this course, and all else at its linear best."""
+        """The model with both effects at this course, and all other values at their linear best."""
         course, inertia = solved.course, solved.inertia
         left = self.left - inertia * self.column(course)
         steps = np.linalg.lstsq(self.triangle, -(self.basis.T @ left), rcond=1e-10)[0]
@@ -183,7 +189,7 @@ def _linear_problem(
 
 
 def _simplex(dimensions: int, size: float) -> Array:
-    """Corners (n + 1, n) of a simplex about the origin: itself, and a step along each axis."""
+    """Corners (n + 1, n) of a simplex: the origin, and a step along each axis."""
     return np.vstack([np.zeros(dimensions), size * np.eye(dimensions)])
 
 
@@ -216,7 +222,7 @@ def _courses(
 
 
 def _select_apart(solved: list[_Solved], plan: SearchPlan) -> list[_Solved]:
-    """The best few, no two of them neighbours on the grid of courses."""
+    """The best few courses, without close neighbours on the grid."""
     kept: list[_Solved] = []
     for one in solved:
         if len(kept) == plan.tip_starts:
@@ -227,7 +233,7 @@ def _select_apart(solved: list[_Solved], plan: SearchPlan) -> list[_Solved]:
 
 
 def _are_close(one: _Course, other: _Course) -> bool:
-    """Whether two courses lie within a factor of two of each other in all that they depend on."""
+    """Whether all parameters of two courses agree within a factor of two."""
     pairs = (
         (one.gap, other.gap),
         (one.swing, other.swing),

@@ -1,8 +1,9 @@
 """A move of the ladder: many effects at once, then removal of those that are not needed.
 
 If three effects are missing, a fourth effect may explain more than any of the three alone, and
-block them at every step. For example, a drag with the square of the speed can imitate a fall of
-friction at low speed, a damper and a smaller drag together. Adding all at once avoids this.
+block them at every step. For example, a drag with the square of the speed can imitate three effects
+together: a friction that falls at low speed, a damper and a smaller drag. Adding all at once avoids
+this.
 """
 
 from __future__ import annotations
@@ -34,8 +35,9 @@ from .search_plan import PLAN
 def add_together(search: LadderSearch, state: LadderState) -> LadderState | None:
     """Replace all rungs by the best candidates, added to the user's model at once.
 
-    Once, where more than noise is left. Each must be needed beside the others, deserve its name,
-    and together they must explain most of what the rungs leave.
+    This happens once, where more than noise is left. Each effect must be needed and plausible, and
+    together they must explain most of the squares that the rungs leave.
+    returns: None where this fails
     """
     if state.together or is_adequate(state.fit, state.floor, criteria=search.criteria):
         return None
@@ -59,9 +61,10 @@ def add_together(search: LadderSearch, state: LadderState) -> LadderState | None
 
 
 def _select(search: LadderSearch, state: LadderState, ranking: Ranking) -> list[Ranked]:
-    """The best candidates without hidden states; what the records determine shows beside others.
+    """The best candidates without hidden states, structure, actuation or period.
 
-    Of two that leave exactly as much, such as a bias and an asymmetry, the first.
+    They need not be identifiable alone. Of two that leave exactly as much, such as a bias and an
+    asymmetry, only the first is selected.
     """
     gone = {one.candidate.key for one in state.set_aside}
     chosen: list[Ranked] = []
@@ -85,7 +88,7 @@ def _leave_the_same(one: Fit, other: Fit) -> bool:
 
 
 def _fit_all(search: LadderSearch, base: Fit, chosen: Sequence[Ranked]) -> Fit:
-    """A rough fit of the base's model with all these effects, each from where it was alone."""
+    """A rough fit of the base's model with all these effects, each from its values alone."""
     model = base.model
     for ranked in chosen:
         name, at = ranked.candidate.key
@@ -102,7 +105,10 @@ def _fit_all(search: LadderSearch, base: Fit, chosen: Sequence[Ranked]) -> Fit:
 def _take_out_superfluous(
     search: LadderSearch, state: LadderState, whole: Fit, added: list[Candidate]
 ) -> tuple[Fit, list[Candidate]]:
-    """The fit without what it does as well without, the least sure first; and what stays in it."""
+    """The fit without superfluous effects, and the effects that stay.
+
+    Effects are removed in turn, the least certain first, until the fit becomes surely worse.
+    """
     fit, there = whole, [one for one in added if whole.model.body(one.at).has(one.effect.name)]
     while there:
         weakest = min(there, key=lambda one: _sureness(fit, one))
@@ -114,7 +120,7 @@ def _take_out_superfluous(
 
 
 def _sureness(fit: Fit, candidate: Candidate) -> float:
-    """Standard errors by which an effect's strengths differ from absence, the most of them."""
+    """Largest number of standard errors by which a strength differs from absence."""
     names = [f"{candidate.at}.{candidate.effect.name}.{n}" for n in candidate.effect.absent]
     away = [
         fit.model.from_absence(n) / fit.model.parameters[n].stderr
@@ -127,7 +133,7 @@ def _sureness(fit: Fit, candidate: Candidate) -> float:
 def _is_supported(
     search: LadderSearch, state: LadderState, fit: Fit, needed: Sequence[Candidate]
 ) -> bool:
-    """Whether the effects are several, each needed and what its name says, and explain most."""
+    """Whether at least two effects stay, each needed and plausible, and together explain most."""
     criteria, floor, prepared = search.criteria, state.floor, search.prepared
     if len(needed) < 2 or not is_better(state.fit, fit, floor, criteria=criteria):
         return False
@@ -146,7 +152,9 @@ def _is_supported(
 def _rank_each(
     search: LadderSearch, state: LadderState, order: Sequence[Rung], first: Ranking
 ) -> tuple[Rung, ...]:
-    """The rungs, each effect ranked beside the one before with those that left as much at first.
+    """The rungs with rankings: each effect is ranked beside the rung before it.
+
+    Effects that left exactly as much beside the user's model are ranked with it.
 
     first: all candidates beside the user's model
     """

@@ -1,8 +1,8 @@
-"""A move of a ladder: add a transmission with friction behind it, the commonest gear.
+"""A move of a ladder: add a transmission with friction behind it, as most gears have.
 
-A pair like others (`pairs`), but a search from one of the two does not find the other: with a gap
-that was fitted without friction, friction does not help. So the search starts at simulated motions
-of the tip (`tip_start`).
+This is a pair like others (`pairs`), but a search with one of the two effects does not lead to the
+other: friction does not help a gap that was fitted without friction. So the search starts at
+simulated motions of the tip (`tip_start`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ from .width import OpenWidths
 def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | None:
     """Add a transmission with friction behind it, or replace all added effects by the two.
 
-    In place of all: where the two explain most of what the rungs leave.
+    All added effects are replaced where the two explain most of the squares that the rungs leave.
+    returns: None where no such pair is supported
     """
     if is_adequate(state.fit, state.floor, criteria=search.criteria) or not search.plan.tip_starts:
         return None
@@ -48,9 +49,9 @@ def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | 
 def _best_pair(
     search: LadderSearch, state: LadderState, base: Fit, ranking: Ranking | None
 ) -> tuple[Rung, ...] | None:
-    """The best transmission with friction behind it, beside a base; None: none is supported.
+    """The best transmission with friction behind it, added to a base; None: none is supported.
 
-    ranking: of the candidates beside the base
+    ranking: of the candidates added to the base; None: not known
     """
     alone = {r.candidate.key: r.fit for r in ranking.ranked} if ranking is not None else {}
     pairs = [
@@ -63,7 +64,7 @@ def _best_pair(
 
 
 def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
-    """Each transmission that a body lacks, with each friction of a tip that needs one."""
+    """Each transmission that a body can take, with each friction that then can act at its tip."""
     for place, body in base.model.bodies.items():
         if any(e.role == "structure" for e in body.effects):
             continue
@@ -82,10 +83,10 @@ def _fit_pair(
     friction: Candidate,
     ranked_alone: Fit | None,
 ) -> tuple[Rung, Rung] | None:
-    """Two rungs: the transmission alone, and both.
+    """Two rungs: the transmission alone, and both effects; None: no start, or not separable.
 
-    ranked_alone: the transmission as a candidate of its own. Fitted from where both are, it may
-        leave more than the base does
+    ranked_alone: fit of the transmission as a single candidate. A fit that starts from the values
+        of both effects may leave more than the base
     """
     prepared = search.prepared
     search.progress(f"trying {transmission} with {friction.effect.name}")
@@ -117,9 +118,9 @@ def _fit_pair(
 def _is_supported(
     search: LadderSearch, state: LadderState, base: Fit, pair: tuple[Rung, ...]
 ) -> bool:
-    """Whether both are needed, explain most of what the last rung leaves, and deserve their names.
+    """Whether both effects are needed and plausible, and explain most of what the last rung leaves.
 
-    What was set aside is not taken again.
+    Effects that were set aside are not supported again.
     """
     criteria, floor, both = search.criteria, state.floor, pair[-1].fit
     added = {rung.added.key for rung in pair if rung.added is not None}

@@ -1,4 +1,4 @@
-"""Inputs of boosted trees: the motion, without force and without anything that tells the time."""
+"""Inputs of boosted trees: the motion, without force and without signals that reveal the time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ REST = 0.5
 
 
 def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] = ()) -> list[Array]:
-    """Inputs of the trees (n, k), for each motion.
+    """Inputs of the trees (n, k), for each motion; further measured channels are inputs too.
 
     beside: for each motion, those of an arm's other joints at the same times
     """
@@ -38,10 +38,10 @@ def _without_other_motion(motion: Motion) -> dict[str, Array]:
 
 
 def _columns_of_body(motion: Motion, motions: Sequence[Motion]) -> Array:
-    """Of the body itself (n, k); NaN before the first sure motion.
+    """Inputs from the motion of the body itself (n, k); NaN before the first certain motion.
 
-    motions: all of that body. Where none comes to a place again, or none turns round, place or
-    time since a reversal would tell the clock, and with it the command that was played by it
+    motions: all motions of that body. Where none returns to a place, or none reverses, position or
+        time since a reversal would reveal the time, and with it the recorded command
     """
     since = look_back_to_reversal(
         motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
@@ -55,9 +55,9 @@ def _columns_of_body(motion: Motion, motions: Sequence[Motion]) -> Array:
 
 
 def _columns_of_others(motions: Sequence[Motion], with_place: Sequence[bool]) -> list[Array]:
-    """Of the other joints at the same times, columns (n,).
+    """Inputs from the motions of the other joints at the same times, columns (n,).
 
-    with_place: whether the place of each tells no clock
+    with_place: for each joint, whether its position does not reveal the time
     """
     columns: list[Array] = []
     for motion, has_place in zip(motions, with_place, strict=True):

@@ -1,9 +1,8 @@
 """Parameters of accepted effects that the records do not determine.
 
 An effect may be certain although its parameters are not: a level at rest that no measured force
-reached is an extrapolation, and a record may determine only the product of two parameters. The
-file of an effect states what follows from physics (`untold`); this file states what follows from
-the records.
+reached is an extrapolation, and a record may determine only the product of two parameters. The file
+of an effect states the consequences of physics (`untold`); this file states those of the records.
 """
 
 from __future__ import annotations
@@ -46,10 +45,10 @@ def untold(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Untold, ...]:
 def alike_on_records(
     fit: Fit, candidate: Candidate, prepared: Prepared, *, criteria: Criteria = CRITERIA
 ) -> str:
-    """A sentence where these records do not tell an effect from the one that its file names, or "".
+    """A sentence where the records hardly distinguish an effect from its look-alike; else "".
 
-    Gravity, and a spring with its rest position (`spring` and `bias`): over much of a turn the two
-    differ, but where more than noise is left this may say little.
+    For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
+    turn the two differ, but where more than noise is left the records may not show the difference.
     """
     if prepared.is_of_an_arm:  # gravity is in its links
         return ""

@@ -1,8 +1,8 @@
 """Widths that the records do not determine, such as that of a backlash.
 
-The moments at which a tip meets its gap depend on the whole motion before. So the sum of squares
-has several minima over the width, and a standard error describes only one of them. The parameter is
-fixed at other values, and the other parameters are fitted again.
+The moments at which a tip crosses its gap depend on the whole motion before. So the sum of squares
+has several minima over the width, and a standard error describes only one of them. Here the
+parameter is fixed at other values, and the other parameters are fitted again.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ def explain_open_width(
 ) -> str:
     """A sentence on another value of an essential parameter that fits as well; "": none does.
 
-    Each is held at a part and at a multiple of its value (`Criteria.times`), the others are fitted
-    again from where they are.
+    The parameter is held at a part and at a multiple of its value (`Criteria.times`). The other
+    parameters are fitted again from their values.
     """
     for name, declared in candidate.effect.parameters.items():
         full = f"{candidate.at}.{candidate.effect.name}.{name}"
@@ -47,7 +47,7 @@ def explain_open_width(
 
 @dataclass(frozen=True)
 class OpenWidths:
-    """What `explain_open_width` said of the fits of one ranking; each is asked once."""
+    """The sentences of `explain_open_width` on the fits of one ranking; each is computed once."""
 
     prepared: Prepared
     criteria: Criteria = CRITERIA
@@ -55,7 +55,7 @@ class OpenWidths:
     known: dict[int, tuple[Fit, str]] = field(default_factory=dict)
 
     def explain(self, fit: Fit, candidate: Candidate) -> str:
-        """What is said of that fit; "" where the records determine what is essential."""
+        """The sentence on a fit; "" where the records determine its essential parameters."""
         if not any(p.search.essential for p in candidate.effect.parameters.values()):
             return ""
         if id(fit) not in self.known:

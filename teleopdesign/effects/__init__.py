@@ -1,10 +1,10 @@
-"""The catalogue of physical effects: every file of this folder that does not begin with `_`.
+"""The catalogue of physical effects: every file of this folder whose name has no `_` in front.
 
-An effect that belongs to a hand or an environment says so by its `block`: it is wanted there, and
-is no candidate of a diagnosis. `BLOCK_EFFECTS` are these, `EFFECTS` all others.
+An effect for a hand or an environment has the name of this block as its `block`. It is used there,
+and is no candidate of a diagnosis. `BLOCK_EFFECTS` are these effects, `EFFECTS` all others.
 
-The file name is the effect's name, its docstring the effect's page. A user's file is read by
-`load_effect` and takes part like any other.
+The file name is the effect's name, and the docstring of the file is the effect's page. A user's
+file is read by `load_effect`; its effect is used like any other.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ __all__ = [
 
 
 def load_effect(path: str | Path) -> Effect:
-    """Read one effect file; the name of the file becomes the name of the effect.
+    """Read one effect file; its name becomes the name of the effect.
 
     An unchanged file returns the same effect again.
     raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one, such as
@@ -94,7 +94,11 @@ _LOADED: WeakValueDictionary[tuple[Path, str], Effect] = WeakValueDictionary()
 
 
 def _load_effect(path: Path, written: Path, expected: str = "") -> Effect:
-    """The effect of a file;  written: its path in messages;  expected: digest that it must have."""
+    """The effect of a file.
+
+    written: its path in messages;  expected: digest that it must have; "": any
+    raises ModelError: as `load_effect`
+    """
 
     def read(content: bytes) -> Effect:
         effect = _check_effect(_run(content, written), written)
@@ -195,7 +199,7 @@ BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
 def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
     """These effects and those of blocks such as "environment", by name.
 
-    Of two effects with one name the one passed in is taken.
+    Of two effects with one name, the one in `effects` is used.
     """
     return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 
@@ -203,7 +207,8 @@ def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
     """Effects by name: those of the package, and files or effects of the user.
 
-    extra: paths of effect files, or effects;  of two effects with one name the user's is taken
+    extra: paths of effect files, or effects; of two effects with one name, the user's is used
+    raises ModelError: as `load_effect`
     """
     users = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
     return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
@@ -244,7 +249,8 @@ OTHER_NAMES: Mapping[str, str] = {
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:
     """An effect by its name, among the known ones.
 
-    where: place in a message;  raises ModelError: no such effect; the message names the nearest
+    where: first words of a message
+    raises ModelError: there is no such effect; the message names the nearest one
     """
     if name not in known:
         meant = OTHER_NAMES.get(name.lower().replace(" ", "_"))

@@ -1,4 +1,4 @@
-"""What follows from the laws of an effect, computed once for each effect."""
+"""Properties that follow from the laws of an effect, computed once for each effect."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=256)
 def channels(effect: Effect) -> frozenset[str]:
-    """Further channels of a record that the laws need."""
+    """Additional channels of a record that the laws need."""
     laws = (effect.expression(), *effect.rates().values())
     used = {n for n in FURTHER if any(law.has(SIGNALS[n]) for law in laws)}
     return frozenset(FURTHER[n] for n in used)
@@ -27,7 +27,7 @@ def channels(effect: Effect) -> frozenset[str]:
 
 @lru_cache(maxsize=256)
 def strength(effect: Effect) -> str | None:
-    """Parameter in which the law is linear and that is zero where the effect is absent; or None."""
+    """The parameter that the law is linear in, and that is zero at absence; None: there is none."""
     if len(effect.absent) != 1 or effect.states:
         return None
     ((name, value),) = effect.absent.items()
@@ -48,7 +48,7 @@ def phase(effect: Effect) -> str | None:
 
 @lru_cache(maxsize=64)
 def fix_at_zero(effect: Effect, parameter: str) -> Effect:
-    """The effect with an optional parameter zero everywhere in its laws."""
+    """The effect with an optional parameter set to zero in all its laws."""
 
     def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
@@ -76,7 +76,7 @@ def fix_at_zero(effect: Effect, parameter: str) -> Effect:
 
 
 def linear_form(effect: Effect, s: sp.Symbol, values: Mapping[str, Any] | None) -> sp.Expr:
-    """The laws at the Laplace variable s, per position or per command, states eliminated."""
+    """The law in the Laplace variable s, per position or per command, with states eliminated."""
     drive = sp.Symbol("drive")
     signals = dict(position=drive, velocity=s * drive, acceleration=s**2 * drive, command=drive)
     signals |= dict(interaction_force=sp.S(0))

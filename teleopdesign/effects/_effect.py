@@ -1,4 +1,4 @@
-"""What an effect is, and how effects of different roles combine into the equation of one body.
+"""Effects, and how effects of different roles combine into the equation of one body.
 
 A body is a chain of roles:
 
@@ -80,36 +80,34 @@ class Effect:
         contact_shape: the penetration that the spring of an environment feels
     block: "" for an effect of a body; else the block it is for, such as "hand" or "environment":
         a diagnosis does not try it
-    energy: what it does with energy, together with the effects that it needs, for all parameters
-        within their bounds. "stores": returns all of it on a closed path; "dissipates": never
-        returns more than it took; "supplies": may return more, or nothing is known. Claims of
-        passivity rest on it
+    energy: effect on energy, together with the effects that it needs, for all parameters within
+        their bounds. "stores": returns all of it on a closed path; "dissipates": never returns more
+        than it took; "supplies": may return more, or nothing is known. Claims of passivity rest on
+        it
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It never comes from differentiating sgn.
-    absent: parameter values at which the effect is not there at all.
-    canonical: of parameter values that mean the same, those to report.
-    order: order(p, body), of parts that may change places, the same law with its parts in the order
-        that their numbers say; body: the numbers of the body by their names, "coulomb.level". None:
-        no parts do
-    after: effects that a search tries first: without them this one stands for them
-    needs: effects that the model must have for this one to mean anything; where a body has one of a
-        role at most, another of that role will do.
-    counts_as: effects that it takes the place of for those that need them, where their laws hold
-        none of these effects' parameters
-    takes_over: effects that it needs, and that may be zero beside it: all of their force may be its
-    always: what holds for any values of its parameters, such as "even in velocity"
+    absent: parameter values at which the effect is absent
+    canonical: of equivalent parameter values, those to report
+    order: order(p, body): equivalent values with interchangeable parts sorted by their numbers;
+        body: the numbers of the body by their names, "coulomb.level"; None: no such parts
+    after: effects that a search adds first, because without them this one may imitate them
+    needs: effects that the model must have with this one; for a role that only one effect of a body
+        can have, any effect of this role is enough
+    counts_as: needed effects that it can replace, for effects whose laws hold no parameter of these
+    takes_over: needed effects that may be zero beside it, because it can have all of their force
+    always: properties for any values of its parameters, such as "even in velocity"
     commoner: name of the effect that gives nearly the same force where `untold` says so, and acts
         on far more machines; "" for none
-    elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
-        says the same there
-    led: inertia(p) of a body among the hidden states whose position is corrected: the force for
-        leading that body along is left unexplained as well
+    elsewhere: axis where the law does not hold ("prismatic" or "revolute") -> the effect of the
+        same physics there
+    led: inertia(p) of a hidden body whose position is corrected; the force of this correction is
+        left unexplained as well
     coupling: of a structure, coupling(now, p), from which `make_structure` makes law and states
     plausible: plausible(p, facts): None, or one sentence that says why the parameters do not
         deserve the effect's name. A diagnosis then does not name the effect
-    untold: untold(p, facts): None, or one sentence on what the records cannot tell of the
-        parameters, such as a level that was never carried. The name stands
+    untold: untold(p, facts): None, or one sentence on parameters that the records do not determine,
+        such as a level that was never reached. The effect keeps its name
     """
 
     role: Role
@@ -161,7 +159,7 @@ class Effect:
         return html_table(f"{self.name}: {self.title}", head, rows, note=self.source)
 
     def named(self, name: str, text: str) -> Effect:
-        """The effect under the name of its file, with the file's docstring as its text."""
+        """The effect with the name of its file, and the file's docstring as its text."""
         return replace(self, name=name, text=text)
 
     @property
@@ -178,14 +176,14 @@ class Effect:
         return phase(self)
 
     def parameters_of_others(self) -> frozenset[str]:
-        """Names of the needed effects whose parameters its laws hold."""
+        """Names of the needed effects whose parameters appear in its laws."""
         laws = (self.expression(), *self.rates().values())
         ours = set(self.symbols().values()) | set(self.state_symbols().values())
         symbols = {s.name for law in laws for s in law.free_symbols - ours}
         return frozenset(n for n in self.needs if any(s.startswith(f"{n}_") for s in symbols))
 
     def channels(self) -> frozenset[str]:
-        """Further channels of a record that its laws need: "temperature", "other_position"."""
+        """Additional channels of a record that its laws need: "temperature", "other_position"."""
         return channels(self)
 
     @property
@@ -194,7 +192,7 @@ class Effect:
         return self.text.strip().split("\n")[0]
 
     def default(self, parameter: str) -> float:
-        """Value of a parameter that the user leaves out: where the effect is absent, if known."""
+        """Value of a parameter that the user leaves out: that of absence, if there is one."""
         plain = 0.0 if self.parameters[parameter].optional else 1.0
         return self.absent.get(parameter, plain)
 
@@ -221,7 +219,7 @@ class Effect:
     def expression(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> sp.Expr:
-        """The law on symbols, or on the signals and values in their place."""
+        """The law on symbols, or with these signals and values in place of symbols."""
         if signals is None and values is None:
             return _expression(self)
         return sp.sympify(self.law(self._now(signals), self._parameters(values)), strict=True)
@@ -229,7 +227,7 @@ class Effect:
     def rates(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> dict[str, sp.Expr]:
-        """Hidden state -> its rate of change, on symbols or on the signals in their place."""
+        """Hidden state -> its rate of change, on symbols or with signals in place of symbols."""
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
@@ -254,13 +252,13 @@ class Effect:
         return dict(_corrections_of_states(self, "dry"))
 
     def led_momentum(self) -> sp.Expr:
-        """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
+        """Momentum of the body that corrections move, on symbols; 0 without corrections."""
         if self.led is None:
             return sp.S(0)
         return self.led(self._parameters(None)) * sum(self.corrections().values(), sp.S(0))
 
     def is_absent(self, values: Mapping[sp.Symbol, float]) -> bool:
-        """Whether these parameter values (by symbol) mean that the effect is not there."""
+        """Whether the effect is absent with these parameter values (by symbol)."""
         symbols = self.symbols()
         return all(values[symbols[name]] == value for name, value in self.absent.items())
 
@@ -288,14 +286,14 @@ def _rates(effect: Effect) -> dict[str, sp.Expr]:
 
 @lru_cache(maxsize=256)
 def _corrections_of_states(effect: Effect, what: str) -> dict[str, sp.Expr]:
-    """Hidden state -> its "correction" or its "dry" bound, of the states that have one."""
+    """Hidden state -> its "correction" or "dry" law, for the states that have one."""
     now, p = effect._now(None), effect._parameters(None)
     laws = {name: getattr(state, what) for name, state in effect.states.items()}
     return {n: sp.sympify(law(now, p), strict=True) for n, law in laws.items() if law is not None}
 
 
 def are_alike(one: Effect, other: Effect) -> bool:
-    """Whether one of two effects is the commoner of the two, by the file of the other."""
+    """Whether one of two effects is the commoner one, by the file of the other."""
     return one.name == other.commoner or other.name == one.commoner
 
 

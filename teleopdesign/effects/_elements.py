@@ -1,6 +1,6 @@
 """Elements of a Maxwell-slip friction: which element a parameter belongs to.
 
-The hysteresis of several springs does not depend on their order. A fit ends in any order, so the
+The hysteresis of several springs does not depend on their order. A fit may end in any order, so the
 elements are sorted, and the records must determine the first two.
 """
 
@@ -23,10 +23,9 @@ MORE = (2, 3, 4)
 
 
 def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str, float]:
-    """The same elements by stiffness: 3 and 4 are the stiff ones, which may be rigid.
+    """The same elements sorted by stiffness: 3 and 4 are the stiffest, which may be rigid.
 
-    Those that carry little come last.
-
+    Elements with almost no friction come last.
     p: `stiffness_1`, `level_2`, ... of a body's elements;  body: its numbers, with `coulomb.level`
     """
     level = {i: p[f"level_{i}"] for i in MORE}
@@ -42,7 +41,7 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
 
 
 def elements_slip(p: Any, facts: RecordFacts) -> str | None:
-    """Whether elements slip both ways within the travel, and deflect by more than is read."""
+    """A sentence where the softest element slips in one direction only, or as `slip_is_seen`."""
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}

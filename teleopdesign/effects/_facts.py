@@ -2,7 +2,7 @@
 
 An effect deserves its name only if its parameters fit the name: a period must repeat in the
 records, a bristle must deflect within the travel. The file of each effect states its rules as
-`plausible(p, facts)`: None, or one sentence that says what the values stand for instead.
+`plausible(p, facts)`: None, or one sentence on what the values stand for instead.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ STRAIGHT = 0.1
 
 @dataclass(frozen=True)
 class RecordFacts:
-    """What the records of an experiment say of one body (SI, on its axis).
+    """Facts of the records of an experiment about one body (SI, on its axis).
 
     travel: range of its positions over all records
-    step: what one reading leaves open of the position
-    stroke: mean time of motion between two reversals (s); inf: the motion never turns round
+    step: of the position readings
+    stroke: mean time of motion between two reversals (s); inf: the motion never reverses
     force: largest size of the measured force, actuator and interaction together
-    acting: the same, and with it the largest force that the inertia and the links of an arm take: a
-        body that swings or coasts is moved by forces that no sensor measures
-    speed: largest speed;  film: friction (N or N m) at that speed by those effects of the body that
-        follow from the velocity alone and dissipate, such as `viscous`
+    acting: `force` plus the largest force of the inertia and of an arm's links: no sensor measures
+        the forces on a body that swings or coasts
+    speed: largest speed;  film: friction (N or N m) at that speed by dissipating effects of the
+        body that depend on the velocity alone, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     duration: of the longest record (s)
     places, speeds: (n,) of the samples in which the body slides, over all records
@@ -75,13 +75,13 @@ class RecordFacts:
 
     @property
     def slowest(self) -> float:
-        """Speed below which the body hardly ever slid: a hundredth of the samples; else 0."""
+        """Speed below which a hundredth of the samples slide; 0 without samples."""
         return float(np.quantile(np.abs(self.speeds), SELDOM)) if len(self.speeds) else 0.0
 
     def apart_from_speed(self, pattern: Callable[[Array], Array]) -> float:
-        """Share of the variance of a function of the place that is no function of the speed.
+        """Share of the variance of a function of the position that is no function of the speed.
 
-        Near 0: each place was passed at one speed, as by a single sine; 1 without samples
+        Near 0: each position was passed at one speed, as by a single sine; 1: too few samples
         """
         if len(self.places) < SPEEDS * SAMPLES:
             return 1.0
@@ -93,7 +93,7 @@ class RecordFacts:
         return within / whole if whole > 0.0 else 1.0
 
     def bend(self, pattern: Callable[[Array], Array]) -> float:
-        """Share (rms) of the variation of a function of the place that no straight line has.
+        """Share (rms) of the variation of a function of the position that a straight line lacks.
 
         1 without samples or travel
         """
@@ -104,14 +104,14 @@ class RecordFacts:
         return float(np.std(values - line(self.places)) / np.std(values))
 
     def text(self, value: float, quantity: str) -> str:
-        """A value of that quantity with its unit on the body's axis."""
+        """A value of this quantity (SI) with its unit on the body's axis."""
         return f"{value:.3g} {unit_of(quantity, self.axis)}"
 
 
 def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
-    """Whether one of the deflections before something slips can be read.
+    """A sentence where no deflection before sliding can be read from the records; else None.
 
-    subject: what has the longest of them
+    subject: name of the part in the sentence;  ways: deflections before sliding (m, rad)
     """
     if facts.stroke == float("inf"):
         return (
@@ -131,7 +131,7 @@ def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str
 
 
 def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) -> str | None:
-    """Whether the records tell a function of the place from one of the speed."""
+    """A sentence where the records do not separate a function of position from one of speed."""
     if facts.apart_from_speed(pattern) >= APART:
         return None
     return (
@@ -141,7 +141,7 @@ def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) 
 
 
 def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str | None:
-    """What is said of a friction over the place that is largest where the torque of gravity is."""
+    """A sentence on friction that is largest where the torque of gravity is; None: it is not."""
     if "gravity.phase" not in facts.body or len(facts.places) < 3:
         return None
     load = np.abs(np.sin(facts.places + facts.body["gravity.phase"]))
@@ -157,7 +157,7 @@ def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str 
 
 
 def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
-    """Why a period does not show within the travel, as a sentence; None where it repeats there.
+    """A sentence where a period does not repeat within the travel; None where it does.
 
     p: parameters with `period` (m or rad);  for an effect's `plausible`
     """

@@ -1,4 +1,4 @@
-"""Whether laws are linear, as an effect or a control law may declare: linear forms rest on it."""
+"""Whether laws are linear, as an effect or a control law may declare for its linear form."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DRIVING = ("position", "velocity", "acceleration", "command")
 def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
     """Whether every law is a sum of the signals, each times a constant.
 
-    signals: what counts as variable; all other symbols are constants
+    signals: the variables; all other symbols are constants
     """
     signals = list(signals)
     for law in laws:
@@ -33,7 +33,7 @@ def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
 def acts_linearly(effect: Effect) -> bool:
     """Whether laws and rates are linear in the body's motion, its command and the states.
 
-    With parameters held. An effect file may state `linear` only where this holds.
+    Parameters are constants. An effect file may state `linear` only where this holds.
     """
     driving = [SIGNALS[n] for n in _DRIVING]
     driving += [SIGNALS["interaction_force"]] * (effect.role == "structure")

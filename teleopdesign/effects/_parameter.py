@@ -24,15 +24,15 @@ def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
 @check_types
 @dataclass(frozen=True)
 class FitSearch:
-    """How a fit searches a parameter whose value nobody states.
+    """How a fit searches a parameter whose value is not stated.
 
-    starts: where the search begins, as multiples of the record's scale
+    starts: start values, as multiples of the record's scale
     scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
         travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
-    within: upper bound in that scale, where a larger value would mean something else
-    chosen: set at the first start and not estimated: other parameters are relative to this one
-    essential: must be surely more than zero, for at zero the effect would be another one; and other
-        values of it must leave more, all else fitted again
+    within: upper bound in that scale, above which the parameter would have another meaning
+    chosen: fixed at the first start, not estimated: other parameters are relative to this one
+    essential: must surely exceed zero, because at zero the effect is another one; and other values
+        of it must leave more, with all other parameters fitted again
     """
 
     starts: tuple[float, ...] = (0.01, 0.1)
@@ -47,7 +47,7 @@ class FitSearch:
 class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
 
-    optional: may be zero, and is by default
+    optional: whether it may be zero, which is its default
     search: how a fit searches it
     """
 

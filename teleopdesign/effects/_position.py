@@ -1,4 +1,4 @@
-"""Does a law depend on position or time, and is it periodic in position?"""
+"""Whether a law depends on position or time, and whether it is periodic in position."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ _SAME = sp.Float("1e-20")
 
 @lru_cache(maxsize=256)
 def depends_on_position(effect: Effect) -> bool:
-    """Whether the effect is another one elsewhere: its law, with all hidden positions moved too."""
+    """Whether the effect changes if the position and all hidden positions are moved together."""
     return not _is_same_at(effect, sp.Rational(41, 43))
 
 
 def depends_on_time(effect: Effect) -> bool:
-    """Whether an effect depends on time itself, and so may describe an outside tone."""
+    """Whether an effect depends on time itself, so that it may describe an external tone."""
     return bool(effect.expression().has(SIGNALS["time"]))
 
 
 @lru_cache(maxsize=256)
 def period(effect: Effect) -> str | float | None:
-    """What the effect repeats after: the name of a parameter, one turn (rad), or None: it does not.
+    """The period of an effect in position: name of a parameter, one turn (rad), or None: no period.
 
-    Only of an effect that depends on the position.
+    None also for an effect that does not depend on position.
     """
     if not depends_on_position(effect):
         return None
@@ -44,7 +44,7 @@ def period(effect: Effect) -> str | float | None:
 
 
 def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:
-    """Whether the effect is the same with its position, and hidden ones beside it, moved so far."""
+    """Whether the effect is unchanged if its position and hidden positions move by `offset`."""
     moved = {SIGNALS["position"]: SIGNALS["position"] + offset}
     for name, symbol in effect.state_symbols().items():
         if effect.states[name].start == "position":

@@ -1,4 +1,4 @@
-"""Roles of effects in the equation of a body, and what effects do with energy."""
+"""Roles of effects in the equation of a body, and their effect on energy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Symbols that laws are written with: signals of a body, parameters of an effect."""
+"""Symbols in laws: signals of a body, parameters of an effect."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sympy as sp
 
 
 def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
-    """Symbol of a parameter of an effect, by the names of both: for laws that need another one."""
+    """Symbol of a parameter of an effect, by both names; other effects' laws can use it."""
     return sp.Symbol(f"{effect}_{parameter}", real=True)
 
 

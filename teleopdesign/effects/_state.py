@@ -1,4 +1,4 @@
-"""A hidden state of an effect: its rate, its start, and what leads or stops it."""
+"""A hidden state of an effect: its rate, its start, its correction and its stop."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ HELD = 1.001
 @check_types
 @dataclass(frozen=True)
 class State:
-    """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.
+    """A hidden state: its quantity and rate law(now, p), where `now` also has the states.
 
-    start: the signal that it equals when a record starts; "": it starts in steady state, or at rest
-    correction: correction(now, p), the rate by which the force that is left unexplained, also in
-        `now`, leads the state back along a measured motion; None: it runs free
-    dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds
-        it where no more is needed. None: no such friction
-    stop: stop(now, p), the size that the state is held at, as by a spring that slips
+    start: the signal that it equals at the start of a record; "": it starts in steady state, or at
+        rest
+    correction: correction(now, p), the rate by which the unexplained force, also in `now`, leads
+        the state back along a measured motion; None: no correction
+    dry: dry(now, p), the largest rate by which dry friction slows the state down; it holds a state
+        at zero where this rate is enough. None: no such friction
+    stop: stop(now, p), the largest size of the state, as of a spring that slips; None: no stop
     """
 
     quantity: str
@@ -36,7 +37,7 @@ class State:
     stop: Callable[[Any, Any], sp.Expr] | None = None
 
     def rate_with_stop(self, now: Any, p: Any, name: str) -> sp.Expr:
-        """The rate, none at the stop; where the stop itself has moved in, back to it."""
+        """The rate; zero at the stop, and back to the stop where this has become smaller."""
         rate = sp.sympify(self.rate(now, p), strict=True)
         if self.stop is None or rate == 0:
             return rate

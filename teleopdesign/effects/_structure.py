@@ -1,14 +1,13 @@
-"""Structures: two sides of one body, joined by a coupling; the hand holds the tip.
+"""Structures: two sides of one body with a coupling between them; the hand holds the tip.
 
     m_t dv_t/dt = coupling + interaction force - contact - dry friction of the tip
     (m - m_t) a = acting force - coupling - ...
 
 An effect states coupling(now, p), the force between the sides, once: on `now.stretch`, position
 less that of the tip, and `now.stretch_rate`. From it follow the law of one body with a hidden tip,
-the contact that the tip has, and the joint of two bodies (`realise/tips.py`).
+the contact of the tip, and the connection of two bodies (`realise/tips.py`).
 
-The inertia m of the body counts both sides, as what moves together where nothing deflects: a stiff
-coupling is the rigid body.
+The inertia m of the body includes both sides, so with a stiff coupling the body is the rigid one.
 """
 
 from __future__ import annotations
@@ -52,15 +51,15 @@ def make_structure(
     plausible: Callable[[Any, RecordFacts], str | None] | None = None,
     untold: Callable[[Any, RecordFacts], str | None] | None = None,
 ) -> Effect:
-    """The effect of a coupling between the actuator's side and a tip; absent: a tip of no inertia.
+    """The effect of a coupling between the actuator's side and a tip; absent: zero tip inertia.
 
-    parameters: among them `tip_inertia`, and `stiffness` where the tip is led
-    following: along a measured motion the force r that is left unexplained leads the tip back to
-        its course, by the velocity -rate r / K. This is the rate over the tip's natural frequency
-        in contact and its part of the body's inertia: a lighter tip, whose force shows less, is led
-        by less. What it takes to lead it, m_t rate / K dr/dt, is left unexplained too. 0: runs free
-    plausible: as `Effect` has it; default: the tip's inertia is a part of the body's
-    untold: as `Effect` has it
+    parameters: with `tip_inertia`, and with `stiffness` where `following` is not 0
+    following: along a measured motion the unexplained force r corrects the tip's position by the
+        velocity -rate r / K. `following` is the rate over the tip's natural frequency in contact
+        and its part of the body's inertia: a lighter tip, whose force is less visible, is corrected
+        less. The force for this, m_t rate / K dr/dt, is unexplained too. 0: no correction
+    plausible: as in `Effect`; None: the tip's inertia must be a part of the body's
+    untold: as in `Effect`
     raises ModelError: a parameter is missing
     """
     for name in ("tip_inertia", "stiffness") if following else ("tip_inertia",):
@@ -95,7 +94,7 @@ def make_structure(
 
 
 def rings_like_a_hum(p: Any, facts: RecordFacts) -> str | None:
-    """What is said of a tip that rings, the actuator's side held, beside the mains' frequency."""
+    """A sentence on a tip that rings close to the mains' frequency; else None."""
     natural = math.sqrt(p.stiffness / p.tip_inertia)
     frequency = natural / (2.0 * math.pi)
     mains = min(MAINS, key=lambda f: abs(f - frequency))
@@ -109,7 +108,7 @@ def rings_like_a_hum(p: Any, facts: RecordFacts) -> str | None:
 
 
 def tip_is_part(p: Any, facts: RecordFacts) -> str | None:
-    """Whether the tip is a part of the body, whose inertia counts both sides."""
+    """A sentence where the tip's inertia is not less than that of the whole body; else None."""
     whole = facts.body["inertia"]
     if p.tip_inertia < whole:
         return None
@@ -121,10 +120,10 @@ def tip_is_part(p: Any, facts: RecordFacts) -> str | None:
 
 
 def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
-    """Whether a tip swings on its spring, the actuator's side held, and is a part of the body.
+    """A sentence where the tip does not oscillate on its spring, or as `tip_is_part`; else None.
 
-    Belts, cables and gears swing at damping ratios of some hundredths to a half. From one on there
-    is no resonance: the tip lags behind the motion, as much else does.
+    Belts, cables and gears oscillate with damping ratios of some hundredths to a half. From a ratio
+    of one on there is no resonance: the tip only lags behind the motion, as many other effects do.
     """
     critical = 2.0 * math.sqrt(p.stiffness * p.tip_inertia)
     if p.damping < critical or not critical:
@@ -137,7 +136,7 @@ def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
 
 
 def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
-    """Whether the gap is crossed and changes the force, and its tip is a part of the body."""
+    """A sentence where the gap is not crossed or hardly changes the force, or as `tip_is_part`."""
     if math.isinf(facts.stroke):
         return (
             f"a gap of {facts.text(p.gap, 'position')} is crossed once at most where the motion "
@@ -155,9 +154,9 @@ def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
 
 @lru_cache(maxsize=64)  # laws compare by identity: one structure, one kernel
 def make_touching_structure(structure: Effect, contact: sp.Expr) -> Effect:
-    """A structure whose tip, and not the actuator's side, touches the environment.
+    """A structure whose tip touches the environment, in place of the actuator's side.
 
-    contact: force that an environment takes, on the body's motion in `SIGNALS`
+    contact: force of the environment that resists the motion, on the body's motion in `SIGNALS`
     """
     assert structure.coupling is not None
     tip = replace(structure.states["tip_velocity"], rate=_accelerate(structure.coupling, contact))
@@ -167,9 +166,9 @@ def make_touching_structure(structure: Effect, contact: sp.Expr) -> Effect:
 
 @lru_cache(maxsize=64)
 def make_rubbing_structure(structure: Effect, level: sp.Expr) -> Effect:
-    """A structure whose tip dry friction of that level holds.
+    """A structure whose tip has dry friction.
 
-    level: on parameters of the body's effects
+    level: of this friction, on parameters of the body's effects
     """
     tip = replace(structure.states["tip_velocity"], dry=lambda now, p: level / p.tip_inertia)
     states = {**structure.states, "tip_velocity": tip}
@@ -177,7 +176,7 @@ def make_rubbing_structure(structure: Effect, level: sp.Expr) -> Effect:
 
 
 def _join(coupling: Coupling, now: Any, p: Any) -> sp.Expr:
-    """Force between the body and its hidden tip."""
+    """Force of the coupling between the body and its hidden tip."""
     stretch, rate = now.position - now.tip_position, now.velocity - now.tip_velocity
     return coupling(SimpleNamespace(stretch=stretch, stretch_rate=rate), p)
 
@@ -191,7 +190,7 @@ def _tip_inertia(p: Any) -> sp.Expr:
 
 
 def _accelerate(coupling: Coupling, contact: sp.Expr = sp.S.Zero) -> Coupling:
-    """Acceleration of the tip, which touches an environment."""
+    """Acceleration of the tip, with the force of an environment on it."""
 
     def tip_acceleration(now: Any, p: Any) -> sp.Expr:
         at_tip = {SIGNALS["position"]: now.tip_position, SIGNALS["velocity"]: now.tip_velocity}
@@ -202,7 +201,7 @@ def _accelerate(coupling: Coupling, contact: sp.Expr = sp.S.Zero) -> Coupling:
 
 
 def _lead_back(following: float) -> Coupling:
-    """Velocity that corrects a tip's position by the force that the model leaves unexplained."""
+    """Velocity that corrects a tip's position by the unexplained force."""
 
     def towards(now: Any, p: Any) -> sp.Expr:
         rate = following * sp.sqrt(p.stiffness / p.tip_inertia) * p.tip_inertia / now.inertia

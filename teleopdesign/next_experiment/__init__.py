@@ -1,4 +1,4 @@
-"""The next experiment: the motion that best distinguishes what a diagnosis leaves open.
+"""The next experiment: the motion that best distinguishes effects that a diagnosis leaves open.
 
 proposal = propose(find_missing(experiment))
 proposal                                    # what to run, and what it will show

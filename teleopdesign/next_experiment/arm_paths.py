@@ -1,9 +1,9 @@
-"""Paths of all joints of an arm that tell its parameters best, within what its records have shown.
+"""Paths of all joints of an arm that determine its parameters best, within shown limits.
 
 Each joint follows a sum of sines of one base frequency, so that the motion repeats and derivatives
-are known exactly. Force is linear in base parameters and in Coulomb and viscous friction; of random
-paths within the limits the one is kept whose standard errors are smallest (the geometric mean over
-all parameters), then changed at random as long as that falls.
+are known exactly. Force is linear in base parameters and in Coulomb and viscous friction. Of random
+paths within the limits, the path with the smallest standard errors (geometric mean over all
+parameters) is kept. It is then changed at random; changes that lower this mean are kept.
 
 Source: Swevers, Ganseman, Tukel, De Schutter, Van Brussel, Optimal robot excitation and
 identification, IEEE Trans. Robotics and Automation 13 (1997) 730.
@@ -41,12 +41,12 @@ USED = (0.95, 0.8, 0.65, 0.5)
 
 @dataclass(frozen=True, eq=False)
 class ArmPaths(ByValue):
-    """Paths of all joints of an arm, periodic, at rest at their beginning.
+    """Paths of all joints of an arm: periodic, and at rest at their start.
 
     reference: joint -> position over time;  period: s
     condition, recorded: condition numbers of the regressors of these paths and of the fit records
-    errors: parameter -> standard error that as many samples of these paths would leave, over that
-        of the fit records, if what the model leaves is alike
+    errors: parameter -> standard error from as many samples of these paths, over that of the fit
+        records, for equal residuals
     """
 
     reference: Reference
@@ -57,12 +57,12 @@ class ArmPaths(ByValue):
 
     @property
     def is_useful(self) -> bool:
-        """Whether the paths tell the parameters better than the records do, on the whole."""
+        """Whether the paths determine the parameters better than the records do, on average."""
         return self.gain < 1.0
 
     @property
     def gain(self) -> float:
-        """Geometric mean over the parameters of the standard errors, over those of the records."""
+        """Geometric mean of the parameters' standard errors, relative to those of the records."""
         return float(np.exp(np.mean(np.log(list(self.errors.values())))))
 
     def __repr__(self) -> str:
@@ -87,12 +87,12 @@ def propose_paths(
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> ArmPaths:
-    """The paths of all joints that tell the arm's parameters best.
+    """The paths of all joints that determine the arm's parameters best.
 
     duration: s, of the reference: whole periods of at most `PERIOD`;  seed: of the random paths
-    limits: joint -> limits; default: those that its records have shown. The force is held to them
-        by the links of the diagnosis, and by Coulomb and viscous friction
-    raises ExperimentError: no path keeps within the limits
+    limits: joint -> limits; None: those that its records have shown. The force is computed from the
+        links of the diagnosis, and from Coulomb and viscous friction
+    raises ExperimentError: no path keeps the limits
     """
     experiment, prepared = diagnosis.experiment, diagnosis.prepared
     assert experiment.arm is not None
@@ -129,7 +129,7 @@ def propose_paths(
 
 
 class _Judge:
-    """What a path tells: regressors of base parameters and friction, weighted by joints' forces."""
+    """Evaluation of paths by regressors of base parameters and friction, scaled by force."""
 
     def __init__(self, diagnosis: ArmDiagnosis, limits: list[Limits]) -> None:
         assert diagnosis.experiment.arm is not None
@@ -162,7 +162,8 @@ class _Judge:
     def motion(self, drawn: Array, period: float, time: Array) -> tuple[Array, Array, Array]:
         """Position, velocity and acceleration (k, n), at rest at time 0, within the limits.
 
-        As much of them as the force allows is used; NaN where that is not even the least part.
+        The largest part in `USED` of the limits that the force allows is used; NaN where none is
+        allowed.
         """
         once: Array = np.arange(SAMPLES) * period / SAMPLES
         for used in USED:
@@ -172,7 +173,7 @@ class _Judge:
         return nothing, nothing, nothing
 
     def _is_allowed(self, position: Array, velocity: Array, acceleration: Array) -> bool:
-        """Whether the force of links and friction stays within the limits."""
+        """Whether the force of links and friction keeps the limits."""
         force = self._links(position, velocity, acceleration)
         level, damping = self.friction.T[:, :, None]
         force = force + level * np.sign(velocity) + damping * velocity
@@ -181,7 +182,7 @@ class _Judge:
     def _scale_path(
         self, drawn: Array, period: float, time: Array, used: float
     ) -> tuple[Array, Array, Array]:
-        """The path that uses a part of the limits of position, speed and acceleration."""
+        """The path scaled to a part of the limits of position, speed and acceleration."""
         w: Array = np.arange(1.0, HARMONICS + 1.0) * (2.0 * np.pi / period)
         sine, cosine = drawn[0] / w, drawn[1] / w
         # at rest at the beginning: neither velocity nor acceleration
@@ -215,7 +216,7 @@ class _Judge:
         return math.inf if rows is None else _condition(rows)
 
     def _along(self, drawn: Array, period: float) -> Array | None:
-        """The regressor of a path; None where it needs too much force, or tells not all."""
+        """The regressor of a path; None where it needs too much force or has not full rank."""
         moved = self.motion(drawn, period, np.arange(SAMPLES) * period / SAMPLES)
         if not np.isfinite(moved[0]).all():
             return None
@@ -223,7 +224,7 @@ class _Judge:
         return rows if np.linalg.matrix_rank(rows) == rows.shape[1] else None
 
     def errors(self, drawn: Array, period: float) -> dict[str, float]:
-        """Parameter -> standard error of a path over that of the fit records, alike samples."""
+        """Parameter -> standard error of a path over that of the fit records, for equal samples."""
         rows = self._along(drawn, period)
         assert rows is not None
         names = [f"arm.{n}" for n in self.base.names]
@@ -236,7 +237,7 @@ class _Judge:
         return np.asarray(np.einsum("b,kbn->kn", self.links, columns[:, self.base.chosen]))
 
     def _regressor(self, position: Array, velocity: Array, acceleration: Array) -> Array:
-        """Force of all joints per parameter (k n, b + 2 k), over the size of each joint's."""
+        """Force of all joints per parameter (k n, b + 2 k), over the rms force of each joint."""
         columns = columns_with_motors(self.arm, position, velocity, acceleration)
         k = len(position)
         friction = [np.eye(k)[:, :, None] * x[:, None, :] for x in (np.sign(velocity), velocity)]
@@ -246,7 +247,7 @@ class _Judge:
 
 
 def _level_and_damping(force: Array, velocity: Array) -> Array:
-    """Coulomb level and viscous damping (2,) that leave least of a force (n,)."""
+    """Coulomb level and viscous damping (2,) that fit a force (n,) best."""
     columns = np.column_stack([np.sign(velocity), velocity])
     return np.asarray(np.linalg.lstsq(columns, force, rcond=None)[0])
 
@@ -268,6 +269,6 @@ def _condition(rows: Array) -> float:
 
 
 def _variance(rows: Array) -> Array:
-    """Variance of each parameter per noise, for one row."""
+    """Variance of each parameter per variance of the noise, times the number of rows."""
     inverse = np.linalg.pinv(rows.T @ rows / len(rows), rcond=1e-14, hermitian=True)
     return np.maximum(np.diag(inverse), 0.0)

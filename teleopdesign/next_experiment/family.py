@@ -1,6 +1,6 @@
-"""The candidate motions: what an experimenter would ask a servo for, within limits.
+"""The candidate motions: usual motions of a servo, within limits.
 
-Each part starts and ends at rest in the middle of the stroke, so that parts follow one another.
+Each part starts and ends at rest in the middle of the stroke, so that parts can follow one another.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ BRISK = 0.5
 
 @dataclass(frozen=True)
 class PathPart:
-    """A part of a motion: what the body does, and the path (n,) about the middle, SI."""
+    """A part of a motion: a clause on the body's motion, and the path (n,) about the middle, SI."""
 
     sentence: str
     path: Array
@@ -39,10 +39,11 @@ class PathPart:
 
 @dataclass(frozen=True)
 class Setting:
-    """What the family is made for.
+    """The conditions for the candidate motions.
 
-    step: what one reading leaves open of the position;  bandwidth: of the comparison, Hz
-    repeated: s that a run is repeated for, where something depends on time itself; 0: none
+    step: of the position readings;  bandwidth: of the comparison, Hz
+    show: text of a value with its unit
+    repeated: s, duration of a repeated run, where an effect depends on time itself; 0: none
     """
 
     limits: Limits
@@ -54,7 +55,7 @@ class Setting:
 
 
 def family(setting: Setting) -> tuple[PathPart, ...]:
-    """Every part that is evaluated."""
+    """All candidate parts."""
     makers = (
         _sums_of_sines,
         _runs,

@@ -1,8 +1,8 @@
-"""How a servo follows a reference against friction: like a play, and not at once.
+"""How a servo follows a reference against friction: with play, and with a delay.
 
-A servo pulls like a spring. After a reversal it has to turn its force round by twice the friction
-before the body moves, so the body lies behind the reference by a play whose width the records show:
-the reference covers it while the servo's force turns round.
+A servo acts like a spring. After a reversal its force must change by twice the friction before the
+body moves. So the body follows the reference with a play, whose width the records show: the travel
+of the reference while the servo's force reverses.
 """
 
 from __future__ import annotations
@@ -29,8 +29,9 @@ MOVING = 1e-4
 
 @dataclass(frozen=True)
 class Servo:
-    """turn: s in which its force turns friction round;  play: width of the body's lag behind the
-    reference (SI of the body)
+    """A servo as it follows a reference against friction.
+
+    turn: s in which its force reverses friction;  play: width of the play (m, rad)
     """
 
     turn: float = 0.0
@@ -39,7 +40,7 @@ class Servo:
 
 @dataclass(frozen=True)
 class FollowedPath:
-    """A path as it is followed, (n,), and the rows [from, to] at which the body sticks."""
+    """The path of a body behind a reference, (n,), and rows [from, to] where the body sticks."""
 
     path: Array
     stuck: tuple[tuple[int, int], ...]
@@ -48,8 +49,9 @@ class FollowedPath:
 def servo_of(model: Model, stretches: Sequence[Stretch], body: str) -> Servo:
     """The servo that the records of a body show, with a model of its friction.
 
-    A reference that turns leaves with t^2, and a spring-like force with it: the force then changes
-    fastest at the end, at twice its mean rate.
+    After a reversal the distance of the reference grows with t^2, and so does a spring-like force:
+    it changes fastest at the end, at twice its mean rate.
+    returns: no play where the records have no motion or no force
     """
     levels, rates, accelerations = [], [], []
     for motion in (s.motion for s in stretches if s.motion.body == body):
@@ -68,7 +70,7 @@ def servo_of(model: Model, stretches: Sequence[Stretch], body: str) -> Servo:
 
 
 def follow_path(path: Array, servo: Servo, *, sample_time: float) -> FollowedPath:
-    """The path (n,) that a body takes behind this reference."""
+    """The path (n,) of a body behind this reference (n,)."""
     length = round(2.0 * servo.turn / sample_time)
     if length < 2 or servo.play <= 0.0:
         return FollowedPath(path, ())
@@ -86,7 +88,7 @@ def follow_path(path: Array, servo: Servo, *, sample_time: float) -> FollowedPat
 
 
 def _sticking_rows(path: Array, behind: Array) -> tuple[tuple[int, int], ...]:
-    """Stretches of rows in which the reference moves and the body does not."""
+    """Ranges of rows in which the reference moves and the body does not."""
     speed = np.abs(np.diff(path))
     stuck = (np.diff(behind) == 0.0) & (speed > MOVING * speed.max())
     edges = np.flatnonzero(np.diff(np.concatenate([[0], stuck.astype(int), [0]])))
@@ -94,7 +96,7 @@ def _sticking_rows(path: Array, behind: Array) -> tuple[tuple[int, int], ...]:
 
 
 def with_ramps(force: Array, stuck: Sequence[tuple[int, int]]) -> Array:
-    """The force (n,) with a smooth change over each stretch of rows."""
+    """The force (n,) with a smooth change over each of these ranges of rows."""
     force = force.copy()
     for first, last in stuck:
         # friction has turned round a row or two after the body has set out

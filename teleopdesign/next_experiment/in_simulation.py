@@ -1,4 +1,4 @@
-"""Does the proposal keep its promise? Each rival is made the truth, and everything is diagnosed."""
+"""Test of a proposal: each rival in turn is the truth, and the simulated records are diagnosed."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from .rivals import Rival
 
 @dataclass(frozen=True)
 class SimulatedDiagnosis:
-    """What a diagnosis of the present and the new records says if one rival is the truth.
+    """A diagnosis of the present and the new records, with one rival as the truth.
 
-    named: whether the truth is named, and alone;  diagnosis: all of it
+    named: whether the truth, and no other effect instead of it, is named
     """
 
     truth: Rival
@@ -36,9 +36,10 @@ def show_in_simulation(
     progress: Callable[[str], None] | None = None,
     seed: int = 100,
 ) -> tuple[SimulatedDiagnosis, ...]:
-    """Diagnose the present records with the records that each rival would make along the motion.
+    """Diagnose the present records with new records of the motion, for each rival as the truth.
 
-    seconds: no further rival is begun after this time;  seed: of the new records' sensor errors
+    seconds: no further rival is started after this time;  seed: of the new records' sensor errors
+    returns: empty where the proposal has no motion
     """
     shown: list[SimulatedDiagnosis] = []
     began = time.perf_counter()

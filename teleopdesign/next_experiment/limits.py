@@ -1,6 +1,6 @@
 """Limits within which a motion is known to be safe: those that the records have shown.
 
-Nothing further out is proposed unless the user says so (with other `Limits`).
+A proposal exceeds them only if the user states other `Limits`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ OUTLYING = 1e-3
 class Limits:
     """Limits of one body (SI).
 
-    low, high: ends of the stroke;  speed, acceleration, jerk, force: largest magnitudes; force is
-        that of the command
+    low, high: ends of the stroke
+    speed, acceleration, jerk, force: largest magnitudes; force is that of the command
+    raises ModelError: high is not above low, or a magnitude is not positive
     """
 
     low: float
@@ -42,7 +43,7 @@ class Limits:
                 raise ModelError(f"limits: {name} is {getattr(self, name):g}, expected more than 0")
 
     def with_values(self, **values: float) -> Limits:
-        """The limits with other values by name; ModelError names the nearest for an unknown one."""
+        """The limits with other values by name; raises ModelError: there is no such limit."""
         known = [f.name for f in fields(self)]
         for name in values:
             if name not in known:
@@ -67,8 +68,8 @@ class Limits:
 def shown_limits(prepared: Prepared) -> dict[str, Limits]:
     """Body -> limits of a motion that the records of this body have shown to be safe.
 
-    Records with a separate encoder zero do not share a stroke with the others: they count for
-    it only where there are no others.
+    Records with a separate encoder zero do not share a stroke with others: their strokes count only
+    where there are no other records.
     """
     bodies = dict.fromkeys(s.motion.body for s in prepared.stretches)
     return {
@@ -105,7 +106,7 @@ def _largest(parts: Sequence[np.ndarray]) -> float:
 class BodyPaths:
     """How one path moves every body: position = middle + gain times the path (SI of the first).
 
-    limits: those of the path itself: the stroke is low = -high, the rest the tightest of all bodies
+    limits: of the path itself: low = -high, and the tightest values of all bodies
     """
 
     middle: Mapping[str, float]
@@ -114,7 +115,7 @@ class BodyPaths:
 
 
 def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> BodyPaths:
-    """One path for all bodies: coupled bodies keep their ratio, others fill their strokes."""
+    """One path for all bodies: coupled bodies keep their ratio, others use their whole strokes."""
     first = next(iter(limits))
     gain = {b: _ratio(first, b, limits, prepared) for b in limits}
     middle = {b: 0.5 * (limit.low + limit.high) for b, limit in limits.items()}

@@ -1,11 +1,11 @@
 """Smooth paths within limits: positions over time that a servo can follow.
 
-A path is a broken line of moves at constant speed and holds, rounded by a raised-cosine window.
-The window's length follows from the limits: with speeds that span a range R,
+A path is a polyline of moves at constant speed and holds, smoothed by a raised-cosine window. The
+window's length follows from the limits: for a range R of speeds,
 
     acceleration <= 2 R / T,   jerk <= 4 pi R / T^2
 
-for a window of length T, whatever the line.
+for a window of length T and any line.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ REST = 0.3
 
 @dataclass(frozen=True)
 class Move:
-    """To a position at a constant speed."""
+    """A move to a position at a constant speed."""
 
     to: float
     speed: float
@@ -32,15 +32,16 @@ class Move:
 
 @dataclass(frozen=True)
 class Hold:
-    """Stay for some time (s)."""
+    """A rest for some time (s)."""
 
     time: float
 
 
 def travel(legs: Sequence[Move | Hold], limits: Limits, *, sample_time: float) -> Array:
-    """The rounded line through these legs, from rest at 0; it ends at rest where the last one ends.
+    """The smoothed line through these legs, from rest at 0 to rest at the end of the last leg.
 
-    returns: positions, shape (n,), one per `sample_time` seconds
+    sample_time: s
+    returns: positions, shape (n,), one per sample
     """
     times, places, lowest, highest = [0.0], [0.0], 0.0, 0.0
     for leg in legs:
@@ -70,7 +71,7 @@ def window_length(range_of_speed: float, limits: Limits) -> float:
 
 
 def round_corners(line: Array, width: float, sample_time: float) -> Array:
-    """The line through a raised-cosine window of that length (s); its ends stay where they are."""
+    """The line after a raised-cosine window of length `width` (s); its ends do not change."""
     samples = max(3, 2 * round(0.5 * width / sample_time) + 1)
     window = np.hanning(samples + 2)[1:-1]
     half = samples // 2
@@ -83,7 +84,7 @@ def sines(
 ) -> Array:
     """Sum of sines in a smooth window, as large as the limits allow times `share`.
 
-    frequencies: Hz, shape (k,); amplitudes fall so that none dominates the acceleration, phases are
+    frequencies: Hz, shape (k,). Amplitudes fall so that none dominates the acceleration; phases are
         Schroeder's (a low peak for the power)
     """
     t = np.arange(0.0, duration, sample_time)
@@ -97,7 +98,7 @@ def sines(
 
 
 def with_window(y: Array, *, ramp: float, sample_time: float) -> Array:
-    """The signal with a smooth start and end of that length (s), and a rest before and after."""
+    """The signal with a smooth start and end of length `ramp` (s), and a rest before and after."""
     t = np.arange(len(y)) * sample_time
     rise = np.clip(np.minimum(t, t[-1] - t) / ramp, 0.0, 1.0)
     rest = np.zeros(round(REST / sample_time))
@@ -108,7 +109,7 @@ def with_window(y: Array, *, ramp: float, sample_time: float) -> Array:
 
 
 def largest_factor(y: Array, limits: Limits, *, sample_time: float) -> float:
-    """The largest factor by which a path stays within its limits (stroke, speed and so on)."""
+    """The largest factor by which a path keeps its limits (stroke, speed, acceleration, jerk)."""
     peaks = [y]
     for _ in range(3):
         peaks.append(np.gradient(peaks[-1], sample_time))

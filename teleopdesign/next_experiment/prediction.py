@@ -1,6 +1,7 @@
-"""What a proposed motion will show: every rival in turn is the truth, the others are fitted anew.
+"""Prediction for a proposed motion: every rival in turn is the truth, the others are refitted.
 
-The motion is run twice: one record is fitted together with the present ones, the other is checked.
+The motion is run twice: one record is fitted together with the present ones, the other is a check
+record.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ SAME = 0.05
 class Separation:
     """Error of one rival along the proposed motion if another is the truth.
 
-    present: error that the present records show beyond that of the truth, in noise floors
-    predicted: the same of the new check record, after all is fitted anew on all fit records
+    present: error on the present records beyond that of the truth, in noise floors
+    predicted: the same on the new check record, after all rivals are refitted on all fit records
     score: how surely the truth then has the smaller error (standard deviations)
     """
 
@@ -53,7 +54,7 @@ class Separation:
 
 @dataclass(frozen=True)
 class DeterminedParameter:
-    """A parameter that the present records leave open and the new one settles.
+    """A parameter that the present records leave open and the new one determines.
 
     before, after: standard error over value;  unit: of the value
     """
@@ -67,9 +68,10 @@ class DeterminedParameter:
 
 @dataclass(frozen=True)
 class Curves:
-    """Force that a rival leaves along the new check record, and what the truth leaves (rows n).
+    """Residual of a rival along the new check record, with that of the truth (n,).
 
-    body: where the truth's effect is;  unit: of the forces
+    body: of the truth's effect;  unit: of the forces
+    left: residual of the rival;  noise: residual of the truth
     """
 
     body: str
@@ -81,7 +83,10 @@ class Curves:
 
 @dataclass(frozen=True)
 class RivalPrediction:
-    """Everything that follows if one rival is the truth."""
+    """All predictions for one rival as the truth.
+
+    truth: its number;  curves: of each other rival
+    """
 
     truth: int
     separations: tuple[Separation, ...]
@@ -92,7 +97,7 @@ class RivalPrediction:
 def run_twice(
     truth: Model, plan: PlannedMotion, bench: Bench, *, seed: int
 ) -> tuple[Record, Record]:
-    """The fit and the check record of the planned motion with this model as the truth."""
+    """The fit and the check record of the planned motion, with this model as the truth."""
     records = [
         record_under(truth, plan, bench, np.random.default_rng([seed, i]), file=name, use=use)
         for i, (name, use) in enumerate(((FIT, "fit"), (CHECK, "check")))
@@ -109,9 +114,9 @@ def with_records(experiment: Experiment, records: Sequence[Record]) -> Experimen
 class Refit:
     """Rivals fitted to all fit records together, with their residuals on the new check record.
 
-    errors: one for each rival, in noise floors: those of the new record or of the present ones,
-        whichever is larger
-    floor: relative force error that is one of them
+    errors: of each rival, in noise floors of the new record or of the present ones, whichever are
+        larger
+    floor: one noise floor, as a relative force error
     """
 
     fits: tuple[Fit, ...]
@@ -120,14 +125,14 @@ class Refit:
     check: tuple[Stretch, ...]
 
     def separation(self, *, truth: int, other: int) -> float:
-        """Error of one rival beyond another's, in noise floors (in quadrature); 0 if it has less.
+        """Error of one rival beyond another's, in noise floors (in quadrature); 0 if it is smaller.
 
-        For records that were measured.
+        For measured records.
         """
         return float(np.sqrt(max(self.errors[other] ** 2 - self.errors[truth] ** 2, 0.0)))
 
     def predict_separation(self, *, truth: int, other: int) -> float:
-        """Mean of `separation` over the sensors' errors, for records of the truth."""
+        """Mean of `separation` over the sensors' errors, for simulated records of the truth."""
         both = (relative_residuals(self.fits[i].model, self.check) for i in (truth, other))
         apart = [b - a for (a, _), (b, _) in zip(*both, strict=True)]
         return error_of(self.check, apart) / self.floor
@@ -136,9 +141,9 @@ class Refit:
 def refit(
     rivals: Sequence[Rival], new: Sequence[Record], bench: Bench, *, best: int = 0, seed: int = 0
 ) -> Refit:
-    """Fit rivals to the present records and new ones, and hold them against the new check record.
+    """Fit rivals to the present records and new ones, and compare them on the new check record.
 
-    new: records with the names `FIT` and `CHECK`;  best: rival that the noise floor is taken with
+    new: records with the names `FIT` and `CHECK`;  best: number of the rival for the noise floor
     """
     prepared = prepare(with_records(bench.experiment, new), bandwidth=bench.bandwidth)
     check = tuple(s for s in prepared.stretches if s.motion.file == CHECK)
@@ -160,7 +165,7 @@ def predict(
     *,
     seed: int,
 ) -> RivalPrediction:
-    """Fit every rival to the present and the new records of rival `number`.
+    """The prediction with rival `number` as the truth: all its rivals are refitted to its records.
 
     present: (truth, other) -> separation on the present records
     """
@@ -189,7 +194,7 @@ def _score(other: Fit, truth: Fit) -> float:
 
 
 def _curves(truth: Rival, fitted: Refit, other: int) -> Curves:
-    """The residuals of the truth and of another along the body where the truth's effect is."""
+    """The residuals of the truth and of another rival, at the body of the truth's effect."""
     at = truth.candidate.at
     here = [s for s in fitted.check if s.motion.body == at] or list(fitted.check)
     (left, _), (noise, _) = (
@@ -217,7 +222,7 @@ LEFT_OPEN, DETERMINED = 0.25, 0.1
 
 
 def _determined_parameters(truth: Rival, fit: Fit) -> tuple[DeterminedParameter, ...]:
-    """Parameters of the truth that the present records leave open and all of them settle."""
+    """Parameters of the truth that the present records leave open and all records determine."""
     rows = []
     for name in fit.free:
         old, new = truth.model.parameters[name], fit.model.parameters[name]

@@ -1,4 +1,4 @@
-"""The proposal: what to run next, why, what it will show, and what it cannot."""
+"""The proposal: the next motion, the reason for it, what it will show, and what it cannot show."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Reference(ByValue):
     """Positions for the servos of the bodies (SI).
 
     time: s, (n,), uniform with the record's sample time;  position: body -> (n,)
-    parts: what is done, one sentence each, in their order;  repeats: of all of them
+    parts: clauses on the motion, in their order;  repeats: of all parts together
     """
 
     time: Array
@@ -44,13 +44,14 @@ class Reference(ByValue):
 class Proposal(ByValue):
     """The motion to measure next, which separates the rivals.
 
-    rivals: models that the present records leave open; empty where these decide
-    reference: the motion; None where there is nothing to tell apart or nothing could be proposed
-    sentence: what to do and what it will show, in words
-    separations: one for each truth and each of its rivals;  determined: what becomes determinable
-    remedies: pair of rivals (numbers) that the motion leaves open -> changes that were simulated
+    rivals: models that the present records leave open; empty where the records decide
+    reference: the motion; None where there are no rivals, or no motion keeps the limits
+    sentence: the motion and its expected result, in words
+    separations: one for each truth and each of its rivals
+    determined: parameters that become determinable
+    remedies: pair of rivals (numbers) that the motion does not separate -> simulated changes
     limits: body -> limits that the motion keeps
-    bench, plan: what its records are made with (`in_simulation`)
+    bench, plan: for simulated records of the motion (`in_simulation`)
     """
 
     diagnosis: Diagnosis
@@ -84,7 +85,7 @@ class Proposal(ByValue):
         return proposal_findings(self)
 
     def plot(self) -> Figure:
-        """The motion, what a wrong model would leave along it, and the separations."""
+        """Figure of the motion, the residual of a wrong model along it, and the separations."""
         from ..plot.next_experiment import plot_proposal
 
         return plot_proposal(self)

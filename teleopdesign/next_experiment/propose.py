@@ -1,4 +1,4 @@
-"""Find the motion that best separates what a diagnosis leaves open."""
+"""Find the motion that best separates the models that a diagnosis leaves open."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def propose(
 ) -> Proposal:
     """The motion that best separates the models that a diagnosis leaves open.
 
-    duration: s, longest motion (a warm-up comes on top);  limits: body -> limits to keep; default:
-        those that the records have shown to be safe
+    duration: s, longest motion (a warm-up is added to it)
+    limits: body -> limits to keep; None: those that the records have shown to be safe
     progress: called with a line of text at each step;  seed: of the sensors' errors
-    raises ModelError: limits of a body that the experiment has not
+    raises ModelError: limits of a body that is not in the experiment
     """
     say = progress or (lambda _: None)
     say("searching for effects that the records leave open")
@@ -136,7 +136,7 @@ def _make_setting(diagnosis: Diagnosis, rivals: Sequence[Rival], bench: Bench) -
 
 
 def shows(experiment: Experiment) -> Show:
-    """Shows values of the first body in the units of its position channel."""
+    """A function that writes values of the first body in the units of its position channel."""
     body = next(iter(experiment.bodies))
     unit = experiment.channels[f"{body}.position"].unit
     factor = si_factor(unit, quantity="position", axis=experiment.axis(body))
@@ -150,7 +150,7 @@ def shows(experiment: Experiment) -> Show:
 
 
 def _reference(parts: Sequence[PathPart], bench: Bench) -> tuple[Reference, list[PathPart]]:
-    """The motion of these parts, repeated until it is long enough."""
+    """The motion of these parts, repeated until it is long enough, and the parts in order."""
     once = sum(len(p.path) for p in parts) * bench.sample_time
     repeats = max(1, int(np.ceil(SHORTEST / once)))
     whole = list(parts) * repeats
@@ -170,7 +170,7 @@ def _reference(parts: Sequence[PathPart], bench: Bench) -> tuple[Reference, list
 def _remedies(
     proposal: Proposal, candidates: SafeParts, setting: Setting, seed: int
 ) -> dict[tuple[int, int], tuple[Remedy, ...]]:
-    """The remedies for the first pairs that the motion does not separate, whichever is true."""
+    """The remedies for the first pairs that the motion does not separate."""
     diagnosis, bench = proposal.diagnosis, proposal.bench
     inertia = {b: body.parameters["inertia"].value for b, body in diagnosis.model.bodies.items()}
     others = {}

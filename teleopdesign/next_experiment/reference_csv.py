@@ -1,4 +1,4 @@
-"""The proposed motion as a CSV file that a servo can be fed with."""
+"""The proposed motion as a CSV file for a servo."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .proposal import Reference
 
 
 def write_reference(reference: Reference, experiment: Experiment, path: str | Path) -> None:
-    """Write time and position reference of each body; header and units are those of the experiment.
+    """Write time and position reference of each body, with header and units of the experiment.
 
     Without a time channel the first column is t, in s.
     """

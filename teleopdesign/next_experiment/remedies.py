@@ -1,4 +1,4 @@
-"""What would separate two rivals where no motion does: changes of the set-up, each one simulated.
+"""Remedies where no motion separates two rivals: changes of the set-up, each one simulated.
 
 The separation is computed again as if the limits were wider, a sensor finer, a mass of known
 inertia attached, a pushing force measured, or a parameter known from elsewhere.
@@ -40,7 +40,8 @@ EVERY = 3
 class Remedy:
     """A change of the set-up, and the separation of a pair with this change (noise floors).
 
-    change: a clause, what is changed;  separation: along the best part, in the worse order
+    change: a clause on the change
+    separation: along the best part, for the truth that gives the smaller one
     """
 
     change: str
@@ -49,7 +50,7 @@ class Remedy:
 
 @dataclass(frozen=True)
 class ChangedSetUp:
-    """A set-up to try: what is changed in words, and the bench, setting and limits that follow."""
+    """A set-up to simulate: the change in words, and the resulting bench, setting and limits."""
 
     change: str
     bench: Bench
@@ -66,9 +67,9 @@ def remedies(
     *,
     seed: int,
 ) -> tuple[Remedy, ...]:
-    """Every change that was simulated for a pair that no motion separates, best first.
+    """Every simulated change for a pair that no motion separates, best first.
 
-    along, back: sums of the pair over the family, in both orders
+    along, back: sums of the pair over the family, in both orders; None: not computed
     """
     rivals = [replace(r, question=0) for r in pair]
     listed = []
@@ -91,7 +92,7 @@ def setups(
     limits: Mapping[str, Limits],
     inertia: Mapping[str, float],
 ) -> Iterator[ChangedSetUp]:
-    """The simulated set-ups; places: bodies that the rivals differ at."""
+    """The set-ups to simulate; places: bodies of the rivals' effects."""
     wide = {b: limit.widen(WIDER) for b, limit in limits.items()}
     course = course_of(wide, prepared)
     yield ChangedSetUp(
@@ -151,7 +152,7 @@ def _finer(
 
 
 def _remedies_by_knowledge(pair: tuple[Rival, Rival], along: Sums, back: Sums) -> list[Remedy]:
-    """Each shared parameter, and all of them, known from elsewhere."""
+    """Remedies by knowledge of each shared parameter, and of all of them, from another source."""
     places = {r.candidate.at for r in pair}
     here = [n for n in pair[0].fit.free if pair[0].model.locate(n)[0] in places]
     shared = [n for n in here if n in pair[1].fit.free]
@@ -168,9 +169,9 @@ def _remedies_by_knowledge(pair: tuple[Rival, Rival], along: Sums, back: Sums) -
 
 
 def _with_known(truth: Rival, other: Rival, sums: Sums, names: Sequence[str]) -> float:
-    """Separation where some of the other's parameters are held at the truth's values.
+    """Separation where some parameters of the other rival are held at the truth's values.
 
-    The larger of what the best part shows and what the present records then show already.
+    The larger of two: along the best part, or on the present records alone.
     """
     held = np.array([n in names for n in other.fit.free])
     change = np.array(

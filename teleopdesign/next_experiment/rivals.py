@@ -1,4 +1,4 @@
-"""The models that an experiment should tell apart: what the present records leave open."""
+"""The models that an experiment should distinguish: those that the present records leave open."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from ..model import Model
 class Rival:
     """A model that may be the truth, fitted to the present records.
 
-    candidate: what makes it different from its rivals;  question: those of one number are rivals
+    candidate: the effect in which it differs from its rivals
+    question: number; models with the same number are rivals
     """
 
     candidate: Candidate
@@ -27,7 +28,7 @@ class Rival:
 
     @property
     def model(self) -> Model:
-        """The fitted model, for records whose clock is right."""
+        """The fitted model, for records with a correct clock."""
         return self.fit.model.with_record_shift({})
 
     def __str__(self) -> str:
@@ -35,11 +36,11 @@ class Rival:
 
 
 def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
-    """Models that the records of a diagnosis leave open; none where they decide.
+    """Models that the records of a diagnosis leave open; empty where the records decide.
 
-    Of each effect that was accepted, those that do as well within `OPEN` noise floors take its
-    place in turn. Where nothing was accepted, where the accepted effects explain little, or where
-    more is missing: the best few candidates that would be added next.
+    For each accepted effect, the effects that could replace it (`open_questions`) do so in turn.
+    Where there are none, and the verdict is undecided or more is missing: the best few effects that
+    would be added next.
     """
     rivals: list[Rival] = []
     questions = open_questions(diagnosis)
@@ -64,11 +65,10 @@ def _rivals_of_question(diagnosis: Diagnosis, question: OpenQuestion, number: in
 
 
 def rival_instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit) -> Fit | None:
-    """The final model with another effect in the place of an accepted one; None if it has none.
+    """The final model with another effect in place of an accepted one; None: not possible.
 
-    What the accepted one replaced is back, unless the other was compared without it as well.
-
-    fit: the fit that the other was compared by
+    The effect that the accepted one replaced is back, unless the other was compared without it too.
+    fit: the fit by which the other effect was compared
     """
     effect, at = other.effect, other.at
     names = effect.parameters
@@ -88,7 +88,7 @@ def rival_instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit:
 
 
 def depends_on_time(rivals: Sequence[Rival]) -> bool:
-    """Whether the law of a questioned effect depends on time itself, as a warm-up does."""
+    """Whether the law of an effect in question depends on time itself, as in a warm-up."""
     return any(r.candidate.effect.expression().has(SIGNALS["time"]) for r in rivals)
 
 

@@ -1,4 +1,4 @@
-"""Which parts of the family, one after the other, take the rivals furthest apart."""
+"""The sequence of candidate parts that separates the rivals best."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DILUTES = 0.02
 
 @dataclass(frozen=True)
 class SafeParts:
-    """The parts within the limits, and the separation of each pair of rivals along them.
+    """The parts that keep the limits, and the separation of each pair of rivals along them.
 
     sums: (truth, other) -> sums over the parts
     """
@@ -31,9 +31,9 @@ class SafeParts:
     sums: Mapping[tuple[int, int], Sums]
 
     def worth(self, chosen: Sequence[int]) -> float:
-        """What a composition is worth: the sum over pairs of s^2/(s^2 + 1), s the worse order's.
+        """Value of a composition: sum over pairs of s^2/(s^2 + 1), s for the less favourable truth.
 
-        In noise floors; well above one, more of it decides nothing.
+        s is in noise floors; well above one, a larger s adds almost nothing.
         """
         both: dict[frozenset[int], list[float]] = {}
         for pair, sums in self.sums.items():
@@ -41,7 +41,7 @@ class SafeParts:
         return sum(min(s) ** 2 / (min(s) ** 2 + 1.0) for s in both.values())
 
     def best(self, pair: tuple[int, int]) -> float:
-        """The largest separation of a pair along any one part, its worse order."""
+        """The largest separation of a pair along any single part, for the less favourable truth."""
         orders = [p for p in self.sums if set(p) == set(pair)]
         parts = range(len(self.parts))
         least = (min(self.sums[p].separation([k]) for p in orders) for k in parts)
@@ -82,7 +82,7 @@ def try_parts(
 def _simulate_plans(
     rival: Rival, plans: Sequence[PlannedMotion], bench: Bench, seed: int
 ) -> Prepared:
-    """Records of all plans with this rival as the truth, ready for comparison."""
+    """Prepared records of all plans, with this rival as the truth."""
     records = tuple(
         record_under(
             rival.model,
@@ -102,7 +102,7 @@ def _number(file: str) -> int:
 
 
 def _is_safe(simulated: Prepared, part: int, limits: Mapping[str, Limits]) -> bool:
-    """Whether no body needs more than its force along a part."""
+    """Whether the command of every body keeps its limit along a part."""
     signals = simulated.experiment.records[part].signals
     return all(
         float(np.abs(signals[f"{body}.actuator_force"]).max()) <= limit.force
@@ -111,7 +111,10 @@ def _is_safe(simulated: Prepared, part: int, limits: Mapping[str, Limits]) -> bo
 
 
 def compose(candidates: SafeParts, duration: float, sample_time: float) -> tuple[int, ...]:
-    """Choose parts one at a time, by the largest gain, until the time (s) is used up."""
+    """Choose parts one at a time, by the largest gain, until the time (s) is used.
+
+    returns: numbers of the parts, in order
+    """
     chosen: list[int] = []
     reached = 0.0
     while True:
@@ -131,5 +134,5 @@ def compose(candidates: SafeParts, duration: float, sample_time: float) -> tuple
 
 
 def join_paths(parts: Sequence[PathPart]) -> Array:
-    """The path of the parts one after the other."""
+    """The paths of the parts, one after the other."""
     return np.concatenate([p.path for p in parts])

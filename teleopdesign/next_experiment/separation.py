@@ -1,4 +1,4 @@
-"""How far apart a motion takes two models, to first order.
+"""Separation of two models along a motion, to first order.
 
 One model is the truth; the force that it needs along a motion acts on the other, whose parameters
 are re-estimated on the present records and the new one together:
@@ -6,7 +6,7 @@ are re-estimated on the present records and the new one together:
     left = d + J step,   step = -(N + J'J)^-1 J'd,   d = residual(other) - residual(truth)
 
 with J the tangents of the other's residual along the new motion and N those of the present fit.
-Sums over parts of a motion add, so any composition of parts is judged without a new residual.
+Sums over parts of a motion add, so any composition of parts is evaluated without new residuals.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Sums:
     """Sums over the rows of k parts (leading axis) for one truth and one other model.
 
     squares: of d, (k,);  gradient: J'd, (k, p);  normal: J'J, (k, p, p)
-    noise: squares of what sensors leave of the truth itself, (k,), or of what they leave on the
-        present records in as many rows, whichever is larger
+    noise: (k,) squares of the truth's residual, or of the noise floor of the present records in as
+        many rows, whichever is larger
     present: normal matrix of the present fit records, (p, p)
     """
 
@@ -41,7 +41,7 @@ class Sums:
     present: Array
 
     def separation(self, parts: Sequence[int] | NDArray[np.intp]) -> float:
-        """Error that is left along these parts, in noise floors of them."""
+        """Remaining error along these parts, in noise floors of the parts."""
         chosen = list(parts)
         normal, gradient = self.normal[chosen].sum(0), self.gradient[chosen].sum(0)
         step = -solve_normal(self.present + normal, gradient)
@@ -68,12 +68,12 @@ def sums_of(
     present: Array,
     floor: float,
 ) -> Sums:
-    """The sums for one other model along parts that were made with one truth.
+    """The sums for one other model, along parts that were simulated with one truth.
 
     truth_left: the truth's residual on the rows that count, per stretch
     part_of: number of the part of each stretch
-    floor: force (rms) that sensors leave on the present records: a motion that hardly moves the
-        body has a lower one, which the present records would drown
+    floor: force (rms) that sensors leave on the present records. A motion that hardly moves the
+        body has a lower floor, but the present records limit the accuracy
     """
     k, p = max(part_of) + 1, len(other.fit.free)
     squares, noise, rows = np.zeros(k), np.zeros(k), np.zeros(k)
@@ -90,24 +90,24 @@ def sums_of(
 
 
 def floor_force(prepared: Prepared, floor: float) -> float:
-    """Force (rms) that sensors leave on the check records (the fit records where there are none).
+    """Force (rms) that sensors leave on the check records (without these, on the fit records).
 
-    floor: the same as a relative error
+    floor: noise floor as a relative error
     """
     check = prepared.of("check") or prepared.of("fit")
     return floor * rms_measured(check)
 
 
 def rms_measured(stretches: Sequence[Stretch]) -> float:
-    """Measured force (rms) over the rows that count."""
+    """Rms of the measured force over the rows that count."""
     rows = sum(s.weight * len(s.keep) for s in stretches)
     return float(np.sqrt(sum(s.measured for s in stretches) / rows))
 
 
 def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: float) -> float:
-    """The separation on the present records: what the check records show if `truth` is true.
+    """The separation on the check records of the present data, if `truth` is true.
 
-    Without check records: what the fit records show.  floor: relative noise floor
+    Without check records: on the fit records.  floor: relative noise floor
     """
     fit, check = prepared.of("fit"), prepared.of("check") or prepared.of("fit")
     present = normal_matrix(other, prepared)

@@ -1,8 +1,8 @@
-"""Records of a device for which a model were the truth.
+"""Simulated records of a device, with a model as the truth.
 
-The motion is prescribed; the force that the model needs along it, and the command that brings that
-force through the model's actuator, follow. Ideal friction gets a short bristle, so that it has a
-value at rest too: the one that the last motion left.
+The motion is prescribed. The model gives the force along it, and the command that causes this force
+through the model's actuator. Ideal friction gets a short bristle, so that it has a value at rest
+too: the value after the last motion.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def exact_motion(
     sample_time: float,
     bandwidth: float,
 ) -> Motion:
-    """The motion of a body that follows these positions (n,) exactly; no command yet."""
+    """The motion of a body that follows these positions (n,) exactly, with zero command."""
     n = len(position)
     stroke = max(float(np.ptp(position)), 1e-12)
     motion = motion_of(
@@ -68,9 +68,9 @@ def exact_motion(
 def command_along(
     body: Body, motion: Motion, *, deflection: float, stuck: Sequence[tuple[int, int]] = ()
 ) -> Array:
-    """The command (n,) that makes the model move along this motion, within its bandwidth.
+    """The command (n,) that makes the model follow this motion, within its bandwidth.
 
-    deflection: of an ideal friction (SI);  stuck: rows in which the servo's force turns round
+    deflection: of ideal friction (SI);  stuck: rows in which the servo's force reverses
     """
     body = with_bristle(without_absent(body), deflection)
     command = np.zeros(len(motion.time))
@@ -89,7 +89,7 @@ def command_along(
 
 
 def _inverse(body: Body, motion: Motion, force: float) -> NDArray[np.complex128]:
-    """From acting force to command as a function of frequency, by a small pulse of the command."""
+    """Transfer function from acting force to command, by a small pulse of the command."""
     n = len(motion.time)
     pulse = np.zeros(n)
     pulse[n // 2] = 1e-3 * force or 1.0
@@ -104,7 +104,7 @@ def _inverse(body: Body, motion: Motion, force: float) -> NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Bench:
-    """Where records are made: the experiment whose sensors read them, and the bodies' course.
+    """The set-up of simulated records: the experiment with its sensors, and the bodies' course.
 
     attached: body -> inertia of a known mass on it, which acts as a known force (SI)
     push: body -> rms of a measured force that pushes it (SI)
@@ -125,7 +125,7 @@ class Bench:
 
 @dataclass(frozen=True)
 class PlannedMotion:
-    """The motion of each body behind one path, and the rows at which it sticks meanwhile."""
+    """The motion of each body behind one path, and the rows where each body sticks."""
 
     exact: Mapping[str, Motion]
     stuck: Mapping[str, tuple[tuple[int, int], ...]]
@@ -149,7 +149,7 @@ def plan_motion(path: Array, bench: Bench) -> PlannedMotion:
 
 
 def _known_force(motion: Motion, bench: Bench) -> Array:
-    """The known force on a body: none, that of a known mass, or a push in a sum of sines."""
+    """The known force on a body: zero, that of a known mass, or a push with a sum of sines."""
     force = -bench.attached.get(motion.body, 0.0) * motion.acceleration
     size = bench.push.get(motion.body, 0.0)
     if size > 0.0:
@@ -170,7 +170,7 @@ def record_under(
     file: str,
     use: str,
 ) -> Record:
-    """The record of a planned motion if this model were the truth, as the sensors read it.
+    """The record of a planned motion with this model as the truth, as the sensors read it.
 
     Two models with generators of one seed have the same readings of position.
     """

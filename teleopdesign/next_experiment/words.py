@@ -149,7 +149,7 @@ def _remedies_said(remedies: Sequence[Remedy]) -> str:
 
 
 def proposal_text(proposal: Proposal) -> str:
-    """The proposal as text: sentence, table of separations, what becomes determinable."""
+    """The proposal as text: sentence, table of separations, parameters that become determinable."""
     lines = ["next experiment: " + proposal.sentence]
     if proposal.separations:
         names = [str(name) for s in proposal.separations for name in (s.truth, s.other)]
@@ -218,7 +218,7 @@ def _place(rival: Any) -> dict[str, str]:
 
 
 def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
-    """The proposal as findings: what to do, how far apart that takes the rivals, what would."""
+    """The proposal as findings: the motion, the separations, and parameters to be determined."""
     if not proposal.rivals:
         return (Finding("next experiment", "fine", proposal.sentence),)
     findings = [

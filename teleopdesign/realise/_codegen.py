@@ -1,7 +1,8 @@
 """Source of the laws of a diagram: its equations as functions on rows of numbers.
 
-The loop around them is written by hand (`integrator.py`); a generated module is these functions,
-the constants that say which row of the loop's memory holds what, and that loop.
+The loop around them is written by hand (`integrator.py`). A generated module consists of these
+functions, of constants that say which row of the loop's memory holds which quantity, and of that
+loop.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ DIGITAL = "n period sampled memory".split()
 
 
 class Generator:
-    """Names and source for one diagram's equations.
+    """Names and source for the equations of one diagram.
 
     observer: order of the observer that estimates velocities, 2 or 3; 0: a filtered difference
     """
@@ -75,7 +76,7 @@ class Generator:
         self.names = self._name_symbols()
 
     def _name_variables(self) -> dict[str, str]:
-        """Variable of the source for each quantity by its name; no such name begins another one."""
+        """Quantity -> its variable in the source; no such variable name begins another one."""
         e = self.equations
         symbols = [*self.states, *self.computer_states, *e.inputs, *self.late, *self.sensors]
         symbols += self.sampled_late
@@ -85,7 +86,7 @@ class Generator:
         return {name: f"v{i}_" for i, name in enumerate(dict.fromkeys(names))}
 
     def _name_symbols(self) -> dict[sp.Symbol, str]:
-        """Private name of every symbol that the equations hold."""
+        """Symbol of the equations -> its private name."""
         e = self.equations
         names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
         names |= {s: f"i{i}_" for i, s in enumerate(self.inverses.values())}
@@ -109,11 +110,11 @@ class Generator:
         return [*analog, *self._computer_expressions()]
 
     def calls(self) -> dict[str, Callable[..., float]]:
-        """Functions of systems known as code, by their names in the source."""
+        """Functions of systems that are known as code, by their names in the source."""
         return calls_in(self._expressions())
 
     def layout(self) -> Layout:
-        """The order of everything."""
+        """The order of states, inputs, commands, parameters and columns."""
         e = self.equations
         names = [s.name for s in self.motion_signals]
         names += [*e.signals, *e.computer.signals]
@@ -136,7 +137,7 @@ class Generator:
         return f"{self._write_constants()}\n\n{''.join(functions)}"
 
     def _write_constants(self) -> str:
-        """First row of the loop's memory for each group of quantities, and their numbers."""
+        """Source of the constants: first row of each group in the loop's memory, group sizes."""
         motions = len(self.motions) if self.commands else 0
         states, bristles, late = len(self.moving), len(self.bristles), len(self.late)
         commands, sampled_late = len(self.commands), len(self.sampled_late)
@@ -185,7 +186,7 @@ class Generator:
         return "\n".join(lines)
 
     def _mark_smooth(self) -> list[bool]:
-        """Whether a late signal changes within a step, in place of being held over it."""
+        """For each late signal, whether it changes within a step instead of being held over it."""
         e = self.equations
         moving = {*e.rates, *e.joined, *e.inputs}
         if not self.commands:
@@ -195,13 +196,13 @@ class Generator:
         return [bool(x.free_symbols & moving) for x, _ in e.late.values()]
 
     def _analog_signals(self) -> dict[sp.Symbol, sp.Expr]:
-        """Accelerations and signals of continuous time, by their symbols."""
+        """Accelerations and signals in continuous time, by their symbols."""
         e = self.equations
         accelerations = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
         return accelerations | {signal(name): x for name, x in e.signals.items()}
 
     def _computer_signals(self) -> dict[str, sp.Expr]:
-        """Signals of the computer."""
+        """Signals of the computer, by name; empty without commands."""
         return dict(self.equations.computer.signals) if self.commands else {}
 
     def _analog_places(self) -> dict[sp.Symbol, str]:
@@ -217,7 +218,7 @@ class Generator:
         )
 
     def _write_inverses(self) -> str:
-        """Source of the function that computes once what laws would divide by at each step."""
+        """Source of the function that computes constant inverses once, before the steps."""
         writer = LawWriter(("memory",), locate_symbols({"PARAMETERS": self.parameters}), self.names)
         lines = writer.lines({f"out{i}": power for i, power in enumerate(self.inverses)})
         ends = [f"{locate_entry('INVERSES', i)} = out{i}" for i in range(len(self.inverses))]
@@ -240,7 +241,7 @@ class Generator:
         return "".join(parts)
 
     def _write_signals(self) -> str:
-        """Which quantities are the motions that a computer reads, and the columns of a row."""
+        """Source of the motions that a computer reads, and of the columns of a result row."""
         places = {x.name: place for x, place in self._analog_places().items()}
         read = self.motions if self.commands else []
         lines = [
@@ -261,7 +262,7 @@ class Generator:
         return motions + write_function("record", ["inputs", "memory", "to"], lines)
 
     def _write_computer(self) -> str:
-        """Signals of the computer, and its states stepped before and after they are taken."""
+        """Source of the computer's signals, and of its states' steps before and after these."""
         motions, made = self.motions, self._computer_signals()
         rows = {
             "NOW": [reading_symbol(x.name) for x in self._analog_signals()],
@@ -289,7 +290,7 @@ class Generator:
         return "".join(parts)
 
     def _write_steps(self, writer: LawWriter, name: str, before: bool) -> str:
-        """Source of a function that carries states over a sample: exactly, or as they say."""
+        """Source of a function that advances states by a sample: exactly, or by their law."""
         computer = self.equations.computer
         results: dict[str, sp.Expr] = {}
         ends: list[str] = []

@@ -1,8 +1,8 @@
 # ruff: noqa: F401, F403, F405, F841
 """Laws of a free mass under a force and a command, as `_codegen.py` writes them.
 
-Input 0 is the force, sampled input 0 the command, parameter 0 the mass. The loop of
-`integrator.py` is read and tested with these; a test holds them against what is generated.
+Input 0 is the force, sampled input 0 the command, parameter 0 the mass. The loop of `integrator.py`
+is read and tested with these laws; a test compares them with the generated source.
 """
 
 from math import *

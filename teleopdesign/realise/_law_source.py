@@ -1,7 +1,7 @@
-"""Source of functions on the memory of the loop: where a symbol is read, and how results are put.
+"""Source of functions on the memory of the loop: how symbols are read, and results are written.
 
-Every function takes the lane that it works on last. Quantities of one group lie in rows one behind
-the other, each row with an entry for each lane.
+The last argument of every function is its lane. Quantities of one group lie in consecutive rows,
+each row with an entry for each lane.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .laws import Names, assignments, indent
 def needed_steps(
     results: Iterable[sp.Expr], joined: Mapping[sp.Symbol, sp.Expr]
 ) -> dict[sp.Symbol, sp.Expr]:
-    """Those of the named steps that the results are written in, in their order."""
+    """The named steps that the results depend on, in their order."""
     wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
     needed = {}
     for symbol, expression in reversed(list(joined.items())):
@@ -30,7 +30,7 @@ def needed_steps(
 def list_inverses(
     expressions: Iterable[sp.Expr], parameters: Collection[sp.Symbol]
 ) -> tuple[sp.Pow, ...]:
-    """What the expressions divide by that does not change: inverses of sums of the parameters."""
+    """Constant divisors in the expressions: inverses of polynomials in the parameters."""
     known = set(parameters)
     inverses = {
         power
@@ -50,17 +50,17 @@ Places = Mapping[sp.Symbol, str]
 
 
 def locate_entry(first: str, i: int) -> str:
-    """Entry of a lane in the row i of a group."""
+    """Source of the entry of a lane in row i of a group."""
     return f"memory[{first} + {f'{i} * LANES + ' if i else ''}lane]"
 
 
 def locate_symbols(rows: Mapping[str, Iterable[sp.Symbol]]) -> dict[sp.Symbol, str]:
-    """Where each symbol is read, by the beginning of its group in the memory."""
+    """Symbol -> source that reads it, for groups by the first row of each in the memory."""
     return {x: locate_entry(row, i) for row, symbols in rows.items() for i, x in enumerate(symbols)}
 
 
 def write_function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
-    """Source of a function with these lines; the lane is its last argument."""
+    """Source of a function with these lines; its last argument is the lane."""
     body = indent(list(lines) or ["pass"], 4)
     return f"@jitted\ndef {name}({', '.join([*arguments, 'lane'])}):\n{body}\n\n\n"
 
@@ -68,7 +68,7 @@ def write_function(name: str, arguments: Iterable[str], lines: Iterable[str]) ->
 def write_reader(name: str, many: int) -> str:
     """Source of a function that returns a column of a table as numbers: see `integrator.py`.
 
-    Behind the last column the table stays as it is there: one column is what is held throughout.
+    Beyond the last column the function returns the last one: a table of one column is constant.
     """
     numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
     held = "    column = min(column, table.shape[1] - 1)\n" if many else ""
@@ -77,9 +77,11 @@ def write_reader(name: str, many: int) -> str:
 
 @dataclass(frozen=True)
 class LawWriter:
-    """What the source of some laws is written with: arguments, and names of what they hold.
+    """Writer of the source of some laws: their arguments, and how symbols are read.
 
-    inverses: what is divided by that does not change -> the symbol that it is read by
+    places: symbol -> source that reads it;  names: symbol -> private name
+    joined: named steps that results may depend on
+    inverses: constant inverse -> the symbol that it is read by
     """
 
     arguments: tuple[str, ...]
@@ -89,7 +91,7 @@ class LawWriter:
     inverses: Mapping[sp.Expr, sp.Symbol] = field(default_factory=dict)
 
     def lines(self, results: Mapping[str, sp.Expr]) -> list[str]:
-        """Lines that compute the results under their private names, common parts once."""
+        """Lines that compute the results under private names, with common parts computed once."""
         needed = needed_steps(results.values(), self.joined)
         needed = {s: sp.sympify(e).xreplace(self.inverses) for s, e in needed.items()}
         results = {name: sp.sympify(e).xreplace(self.inverses) for name, e in results.items()}
@@ -102,7 +104,7 @@ class LawWriter:
         ]
 
     def function(self, name: str, **rows: Iterable[sp.Expr]) -> str:
-        """Source of a function that puts these into the memory, each group from a row on."""
+        """Source of a function that writes results into the memory; rows: first row -> results."""
         places = {
             locate_entry(to, i): sp.sympify(x, strict=True)
             for to in rows

@@ -1,7 +1,7 @@
 """Linear equations with symbolic coefficients, solved by elimination.
 
-Where unknowns are joined by coefficients that are no numbers (accelerations through a mass matrix),
-expressions of their solution would grow beyond all bounds: its steps get names instead.
+Where unknowns are coupled by symbolic coefficients (accelerations through a mass matrix),
+expressions of the solution would become too large: its steps get names instead.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ def solve_linear(
 ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
     """Solve rows = 0, linear in the unknowns, one after the other; simplest pivots first.
 
-    returns: the solution, and the named steps that it is written in
-    raises ModelError: an unknown is not determined, or enters other than linearly
+    returns: the solution, and the named steps that it depends on
+    raises ModelError: an unknown is not determined, or an equation is not linear in it
     """
     rows, left = list(rows), set(unknown)
     solution: dict[sp.Symbol, sp.Expr] = {}
@@ -78,9 +78,9 @@ def _gather(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
 
 
 class _Named:
-    """Expressions under names, each used once computed.
+    """Names of expressions: a call stores an expression and returns its symbol.
 
-    bare: name -> value where all that the expressions depend on is zero, such as a gain that is
+    bare: name -> value where all symbols of the expression are zero; a gain of zero shows so
     """
 
     def __init__(self) -> None:
@@ -96,14 +96,14 @@ class _Named:
         return symbol
 
     def at_zero(self, expression: sp.Expr) -> sp.Expr:
-        """Value of an expression where all that it depends on is zero, or 1 where it divides."""
+        """Value of an expression where all its symbols are zero; divisors are 1."""
         powers = (p for p in expression.atoms(sp.Pow) if p.exp.is_negative)
         below = set[sp.Symbol]().union(*(p.base.free_symbols for p in powers))
         free = {s: sp.Integer(s in below) for s in expression.free_symbols}
         return expression.subs({s: self.bare.get(s, value) for s, value in free.items()})
 
     def is_there_at_zero(self, entry: sp.Expr) -> bool:
-        """Whether a number or name is other than zero where all that it depends on is zero."""
+        """Whether a number or name is finite and not zero, where all symbols are zero."""
         value = entry if entry.is_Number else self.bare.get(entry, sp.S(0))
         return bool(value.is_finite and value != 0)
 
@@ -111,7 +111,7 @@ class _Named:
 def _solve_rest(
     rows: list[sp.Expr], left: set[sp.Symbol], name: str
 ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
-    """Solution of what is left by Gaussian elimination, every step under a separate name."""
+    """Solution of the remaining equations by Gaussian elimination, with a name for every step."""
     named = _Named()
     values: dict[sp.Symbol, sp.Expr] = {}
     todo = sorted(left, key=str)
@@ -126,7 +126,7 @@ def _solve_rest(
 
 
 def _group(rows: list[sp.Expr], first: sp.Symbol, left: set[sp.Symbol]) -> set[sp.Symbol]:
-    """Unknowns that rows join to the first one."""
+    """Unknowns that equations couple to the first one, directly or through others."""
     group, grown = {first}, True
     while grown:
         more = set().union(*(left & r.free_symbols for r in rows if r.free_symbols & group))
@@ -166,9 +166,9 @@ def _eliminate(
 
 
 def _pivot(a: list[list[sp.Expr]], i: int, named: _Named) -> tuple[int | None, int]:
-    """Row and column of the next pivot; (None, i): column i has nothing left.
+    """Row and column of the next pivot; (None, i): column i has no pivot.
 
-    One that stays where parameters are zero, if there is one: a gain that is zero is no pivot.
+    Preferred is a pivot that is not zero where all parameters are zero: a gain of zero is no pivot.
     """
     left = range(i, len(a))
     places = ((row, column) for column in range(i, len(a[i])) for row in left)

@@ -38,7 +38,7 @@ entry = jitted
 
 
 def module_source(laws: str, *, jit: bool = True, lanes: int = 1) -> str:
-    """The module whose `run` simulates that many lanes;  laws: from `Generator.source`."""
+    """The module whose `run` simulates `lanes` simulations;  laws: from `Generator.source`."""
     return "\n".join([*_laws_part(laws, jit=jit, lanes=lanes), _integrator()])
 
 
@@ -65,6 +65,6 @@ def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
 
 @cache
 def _integrator() -> str:
-    """The file behind its line of "#": in front of that it imports what the laws define here."""
+    """The part of `integrator.py` below its line of "#"; above it are imports for reading it."""
     text = Path(__file__).with_name("integrator.py").read_text(encoding="utf-8")
     return text.split("#" * 98 + "\n", 1)[1]

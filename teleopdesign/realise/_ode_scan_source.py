@@ -1,7 +1,7 @@
-"""Source of the loop that carries an effect's coupled hidden states along a measured motion.
+"""Source of the loop that integrates an effect's coupled hidden states along a measured motion.
 
-Written from the rates, corrections and dry friction that the effect declares, each with its slopes
-by states and parameters; `ode_scan.py` says what the loop does, and runs it.
+It is written from the rates, corrections and dry friction that the effect declares, with their
+derivatives by states and parameters. `ode_scan.py` describes the loop, and runs it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def list_drivers(effect: Effect) -> list[str]:
 
 @lru_cache(maxsize=256)
 def list_parameters(effect: Effect) -> tuple[sp.Symbol, ...]:
-    """The effect's parameters, and others that its rates hold: an inertia, an environment's."""
+    """The effect's parameters, and other symbols of its rates, such as an inertia."""
     of_effect = effect.symbols().values()
     laws = (
         *effect.rates().values(),
@@ -46,11 +46,11 @@ def _write_tangents(
     parameters: Sequence[sp.Symbol],
     names: Names,
 ) -> tuple[list[str], str, dict[int, str]]:
-    """Code of a law's tangents: slopes once for all columns, then what each column makes of them.
+    """Code of a law's tangents: derivatives once, then the products for each column.
 
     name: of the law in the code
-    returns: lines that compute slopes; the sum over states in one column, from theirs, d_j; place
-        of a parameter -> its slope
+    returns: lines that compute the derivatives; the sum over states d_j in one column; index of a
+        parameter -> variable of its derivative
     """
     lines, terms, by_parameter = [], [], {}
     for j, symbol in enumerate((*states, *parameters)):
@@ -70,7 +70,7 @@ _LEFT = "left"
 
 
 def _name_symbols(effect: Effect) -> dict[sp.Symbol, str]:
-    """States, parameters and signals as local numbers: what does not change is computed once."""
+    """States, parameters and signals -> local variables of the code."""
     states = {s: f"z_{i}" for i, s in enumerate(effect.state_symbols().values())}
     parameters = {s: f"p_{i}" for i, s in enumerate(list_parameters(effect))}
     signals = {SIGNALS[d]: f"u_{i}" for i, d in enumerate(list_drivers(effect))}
@@ -78,7 +78,7 @@ def _name_symbols(effect: Effect) -> dict[sp.Symbol, str]:
 
 
 def _write_stage_signals(effect: Effect) -> list[str]:
-    """Code of the signals u and the states z in a stage; those of corrections after the drivers."""
+    """Code of the signals u and the states z in a stage; signals of corrections come last."""
     drivers = len(list_drivers(effect)) + (3 if effect.corrections() else 0)
     lines = []
     for i in range(drivers):
@@ -94,9 +94,9 @@ def _write_stage_signals(effect: Effect) -> list[str]:
 
 
 def _write_left(effect: Effect) -> list[str]:
-    """Code of what is left unexplained beyond the bounds of friction.
+    """Code of the force that is left unexplained beyond the bounds of friction.
 
-    bound: 1 or 2 for the one that it is beyond, 0 for neither
+    bound: 1 or 2 for the lower or upper bound that the force exceeds, 0 for neither
     """
     law, names, first = effect.expression(), _name_symbols(effect), len(list_drivers(effect))
     needed, low, high = (f"u_{first + i}" for i in range(3))
@@ -151,7 +151,7 @@ def _write_rates(effect: Effect) -> list[str]:
 
 
 def _write_dry(effect: Effect) -> list[str]:
-    """Code of hold, the rates by which dry friction slows the states, and their tangents."""
+    """Code of hold, the rates by which dry friction slows the states, and of their tangents."""
     states = list(effect.state_symbols().values())
     places = {n: i for i, n in enumerate(effect.states)}
     parameters, names = list_parameters(effect), _name_symbols(effect)
@@ -181,7 +181,7 @@ def _write_dry(effect: Effect) -> list[str]:
 
 
 def _write_friction_of_stage(effect: Effect) -> list[str]:
-    """Code that takes the rates of dry friction from those of a stage."""
+    """Code that subtracts the rates of dry friction from those of a stage."""
     if not effect.dry_bounds():
         return []
     first = [
@@ -200,8 +200,9 @@ def _write_friction_of_stage(effect: Effect) -> list[str]:
 def write_scan(effect: Effect) -> str:
     """Source of the scan: states `out` (s, n) and tangents `dout` (s, q, n) at the rows.
 
-    drive: signals (m, n), those that corrections need behind them;  bends: how they leave their
-    chords (2, m, n);  ddrive: tangents of the latter;  size, growth: when tangents begin anew
+    drive: signals (m, n), those of corrections last;  bends: their deviations from chords (2, m, n)
+    ddrive: tangents of the signals of corrections
+    size, growth: size of a difference of states, and the growth at which tangents restart
     """
     parameters = [f"p_{i} = p[{i}]" for i in range(len(list_parameters(effect)))]
     stage = [

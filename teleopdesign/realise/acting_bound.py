@@ -1,4 +1,4 @@
-"""The largest force that the actuation of a body makes of a command, as a bound."""
+"""An upper bound of the force that the actuation of a body makes from a command."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ def largest_acting_force(
 ) -> float:
     """Upper bound of abs(acting force), N, under any command of at most this size (N), also late.
 
-    errors: standard errors of the parameters to either side;  inf: where no bound is known
+    errors: range of the parameters to either side, in standard errors
+    returns: inf where no bound is known
     """
     body = without_absent(body, surely=True)
     box = signal_ranges(reach) | parameter_box(body, errors=errors)

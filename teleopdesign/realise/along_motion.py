@@ -3,12 +3,12 @@
 The motion is prescribed, so the effects decouple: each turns arrays into arrays, composed by role.
 
     command -> actuation stages (averages over each hold) -> acting force at the rows
-    needed friction = acting + interaction - inertia a - forces (- what the links of an arm need)
-    friction = shape(level, motion); where the position cannot tell a motion it is what balances
+    needed friction = acting + interaction - inertia a - forces (- force of an arm's links)
+    friction = shape(level, motion); where no motion is certain, the force that balances
     residual = needed friction - friction           > 0: more force acts than the model needs
 
-Every array carries its tangents, the derivatives by the parameters that are asked for; both come
-from the same sympy law. Hidden states advance exactly where their rate is affine in them.
+Every array has its tangents, the derivatives by the requested parameters; both come from the same
+sympy law. Hidden states advance exactly where their rate is affine in them.
 """
 
 from __future__ import annotations
@@ -56,8 +56,9 @@ DRIVE_STEP = 1e-3
 class Residual:
     """Residual of the model along one motion (n samples), SI, with tangents (p, n).
 
-    residual: force that acts beyond what the model needs;  friction: the model's friction force
-    acting: acting force at the rows;  moving: less the friction that it makes itself
+    residual: acting force less the force that the model needs;  friction: the model's friction
+    acting: acting force at the rows
+    moving: acting force less the friction that it causes
     """
 
     motion: Motion
@@ -73,8 +74,9 @@ def residual_along(
     """Residual force of the body's model along the motion.
 
     wrt: parameters ("coulomb.level"), `RECORD_SHIFT`, `INTERACTION_SHIFT`, probes or base
-        parameters of an arm, whose tangents are carried along
-    returns: n samples smoothed as the motion is, not yet through the comparison's low-pass
+        parameters of an arm; the residual has tangents by each of these p
+    returns: n samples, smoothed like the motion; the comparison's low-pass is not applied
+    raises ModelError: an effect needs a channel that the motion lacks
     """
     along = measured_along(body, motion, wrt)
     interaction = along.signals[SIGNALS["interaction_force"]]
@@ -106,7 +108,7 @@ def residual_along(
 
 
 def with_loads(body: Body, motion: Motion, along: Along, acting: Traced) -> Along:
-    """What is known along a motion, with the acting force and, where a level needs it, the carried.
+    """Signals along a motion, with the acting force and, where friction needs it, the carried one.
 
     acting: acting force at the rows
     """
@@ -120,7 +122,7 @@ def with_loads(body: Body, motion: Motion, along: Along, acting: Traced) -> Alon
 
 
 def _force_of_links(motion: Motion, force: Array, along: Along) -> Traced:
-    """The force (n,) that the links of an arm need, with its tangents by their base parameters."""
+    """The force (n,) of an arm's links, with its tangents by their base parameters."""
     places = [(j, c.index) for j, c in enumerate(along.columns) if isinstance(c, LinkParameter)]
     if not places or motion.links is None:
         return along.constant(force)
@@ -133,9 +135,10 @@ def _force_of_links(motion: Motion, force: Array, along: Along) -> Traced:
 def measured_along(
     body: Body, motion: Motion, wrt: Sequence[str | Probe | LinkParameter] = ()
 ) -> Along:
-    """What is known along a motion from its records alone, with the body's parameters.
+    """Signals along a motion from its records alone, with the body's parameters.
 
     wrt: as in `residual_along`
+    raises ModelError: an effect needs a channel that the motion lacks
     """
     shifts = {RECORD_SHIFT: COMMAND_LATE, INTERACTION_SHIFT: INTERACTION_LATE}
     symbols = {**body.symbols(), **shifts}
@@ -157,9 +160,10 @@ def measured_along(
 
 
 def _with_late_tangent(motion: Motion, columns: Sequence[object]) -> Traced:
-    """The hand's force, and what it changes by where its sensor is slower.
+    """The hand's force, with its tangent by the time constant T of its sensor.
 
-    The force is f + T df/dt of the logged one f, that of the sensor's low-pass with T: by T, df/dt.
+    With a sensor low-pass of T, the force is f + T df/dt of the logged force f, so the tangent is
+    df/dt.
     """
     tangent = np.zeros((len(columns), len(motion.time)))
     rate = motion.spectrum.derivative(1)
@@ -169,9 +173,9 @@ def _with_late_tangent(motion: Motion, columns: Sequence[object]) -> Traced:
 
 
 def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
-    """Force of an effect along the motion, its hidden states simulated.
+    """Force of an effect along the motion, with its hidden states simulated.
 
-    rest: force needed without it and the bounds of friction, to correct its states by
+    rest: signals that correct the states: force needed without the effect, bounds of friction
     """
     if effect.states:
         states = ode_scan(effect, along, rest)
@@ -182,9 +186,9 @@ def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
 def _with_late_drive(
     effect: Effect, along: Along, rest: Sequence[Traced], states: dict[sp.Symbol, Traced]
 ) -> dict[sp.Symbol, Traced]:
-    """The states with what a later log of the hand's force makes of them, by a difference.
+    """The states, with tangents by a delay of the hand's force log, from a finite difference.
 
-    A scan carries no tangents of the signals that drive it.
+    A scan computes no tangents by the signals that drive it.
     """
     force = SIGNALS["interaction_force"]
     if INTERACTION_LATE not in along.columns:
@@ -206,7 +210,7 @@ def _with_late_drive(
 
 
 def _leading_force(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> Traced:
-    """Force that it takes to lead a hidden body as its position is corrected."""
+    """Force that moves a hidden body along with the corrections of its position."""
     momentum = effect.led_momentum()
     if momentum == 0:
         return along.constant(np.zeros_like(unexplained.value))

@@ -1,6 +1,6 @@
 """Static friction along a measured motion: the force that balances where no motion is certain.
 
-Between its bounds friction has the value that leaves the smallest residual within the bandwidth.
+Within its bounds, friction has the value that leaves the smallest residual within the bandwidth.
 Accelerated projected steps (Beck, Teboulle, SIAM J. Imaging Sciences 2, 2009) compute it from the
 low-passed difference to the needed force. Clipping the needed force itself would turn its noise
 above the bandwidth into a bias below it. A few plain steps do not converge near the edge of the
@@ -40,10 +40,11 @@ def _balance(
     m: int,
     filters: tuple[Array, Array, Array, Array],
 ) -> Array:
-    """Friction at the rows where its bounds leave it open; columns: the value, then its tangents.
+    """Friction at the rows where its bounds differ; columns: the value, then its tangents.
 
     left: needed less friction at all samples, changed in place
-    there: (3, rows, columns), what is needed at these rows, least and largest friction
+    rows: indices of these rows
+    there: (3, rows, columns), needed force at these rows, least and largest friction
     spans: of `spans_of` these rows;  m: samples by which records are continued
     filters: as `filter_spans` takes them
     """
@@ -104,7 +105,10 @@ def side_by_side(signal: Traced, at: slice | NDArray[np.intp] = slice(None)) -> 
 def balance_within_bounds(
     needed: Traced, low: Traced, high: Traced, *, bandwidth: float, sample_time: float
 ) -> Traced:
-    """Friction between its bounds, with its tangents; bandwidth: Hz;  sample_time: s."""
+    """Friction between its bounds, with its tangents.
+
+    needed, low, high: (n,) force, its tangents (p, n) each;  bandwidth: Hz;  sample_time: s
+    """
     is_open = low.value != high.value
     both = None if low.moving is None or high.moving is None else {*low.moving, *high.moving}
     for j in range(len(low.tangent)) if both is None else both:
@@ -136,9 +140,9 @@ def _friction_at_open_rows(
     m: int,
     of_filter: tuple[float, float],
 ) -> Array:
-    """Friction and its tangents (1 + p, rows) where its bounds leave it open.
+    """Friction and its tangents (1 + p, rows) where its bounds differ.
 
-    m: samples by which the signals are continued;  of_filter: its bandwidth (Hz) and sample time
+    m: samples by which the signals are continued;  of_filter: bandwidth (Hz) and sample time (s)
     """
     left = side_by_side(needed - low)
     there = np.stack([side_by_side(a, rows) for a in (needed, low, high)])

@@ -1,8 +1,8 @@
 """A controller as difference equations in a C header: the same law in simulation and robot.
 
-The steps are those of the simulation's computer: a state is carried over a sample exactly for its
-rate, all else held, or as its law says itself; what is delayed waits in a ring of samples. Double
-precision, no memory but the struct, C99.
+The steps are those of the simulation's computer. Over a sample, a state is integrated exactly by
+its rate, with all other signals held, or its law states the next value. A delayed signal is kept in
+a ring buffer of samples. Double precision, no memory but the struct, C99.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ static inline double {name}_step(
 
 @dataclass(frozen=True)
 class _Ring:
-    """Samples of a signal that is late;  kept: the signal;  samples: by how many it is late."""
+    """A ring buffer of a delayed signal;  kept: the signal;  samples: its delay in samples."""
 
     number: int
     kept: sp.Expr
@@ -93,8 +93,8 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
 
     period: s;  name: begins every name in it: lower case letters, digits, underscores
     Values are constants of the text. States start at zero, as in the simulation.
-    raises ModelError: a name that is none, a period that is not positive, a law known as code only,
-        a dead time below the period
+    raises ModelError: the name is invalid, the period is not positive, a law is known as code only,
+        or a dead time is below the period
     """
     if not _NAME.fullmatch(name):
         raise ModelError(f'as_c_header: name: found "{name}", expected such as "observer_2"')

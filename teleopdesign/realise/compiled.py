@@ -1,9 +1,9 @@
 """Generated source -> compiled function, kept in a cache folder so that it compiles once a machine.
 
-The file name is a hash of the content and of what it imports; numba keeps its machine code beside
-it. What runs is the source in memory, never what a file holds: the file is what numba's cache goes
-by. The folder is the user's alone; where there is none, machine code is kept for this process, or
-not at all.
+The file name is a hash of the source and of the modules that it imports; numba keeps its machine
+code beside it. The source in memory is executed, never the content of the file: numba's cache only
+needs the file. Only the user can write to the folder. Where there is no such folder, machine code
+is kept for this process, or not at all.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ _OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 
 def cache_folder() -> Path | None:
-    """Where generated kernels are kept: in TELEOPDESIGN_CACHE, or the platform's cache folder.
+    """The folder of generated kernels: in TELEOPDESIGN_CACHE, or the platform's cache folder.
 
-    The folder has mode 0700. Where it cannot be written, or belongs to or can be written by
-    somebody else, a folder for this process alone; None where there is no place at all.
-    A home that does not exist is not made: whoever names none wants nothing to be kept there.
+    The folder has mode 0700. If it cannot be written, or belongs to another user or can be written
+    by one, it is a temporary folder of this process; None where there is none either.
+    A home that does not exist is not made: then nothing should be kept there.
     """
     if path := os.environ.get("TELEOPDESIGN_CACHE"):
         folder = Path(path)
@@ -54,7 +54,7 @@ def cache_folder() -> Path | None:
 
 
 def _is_private(folder: Path) -> bool:
-    """Make the folder and try it: ours alone, no link, and takes a file."""
+    """Make the folder, and check that it is the user's alone, no link, and can be written."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if hasattr(os, "getuid"):  # other systems have lists of access in place of modes
@@ -85,14 +85,17 @@ _EXECUTING = Lock()
 
 
 def compile_source(source: str, function: str) -> Callable[..., Any]:
-    """The function of that name in the source (a module that uses numba), from the cache folder."""
+    """The function of this name in the source (a module that uses numba), from the cache folder."""
     kernel: Callable[..., Any] = compiled_module(source, function)[function]
     return kernel
 
 
 @lru_cache(maxsize=256)
 def compiled_module(source: str, function: str) -> Mapping[str, Any]:
-    """Names of that source, a module that uses numba;  function: main one, in the file's name."""
+    """Names in this source, a module that uses numba.
+
+    function: name of its main function, for the name of the file
+    """
     imported = re.findall(r"^from teleopdesign\.([\w.]+) import", source, re.M)
     files = [_PACKAGE.joinpath(*module.split(".")).with_suffix(".py") for module in imported]
     digest = hashlib.sha256((source + hash_files(files)).encode()).hexdigest()[:20]
@@ -119,7 +122,7 @@ def _names(source: str, name: str, file: str) -> dict[str, Any]:
 
 
 def _holds(path: Path, source: str) -> bool:
-    """Whether the file holds the source; where it holds anything else it is written anew."""
+    """Whether the file holds the source, after it was written where it did not."""
     content = source.encode()
     try:
         if path.is_file() and path.read_bytes() == content:

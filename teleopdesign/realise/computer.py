@@ -1,4 +1,4 @@
-"""The computer's part of a diagram: what lies between sensors and commands."""
+"""The computer in a diagram: the parts between sensors and commands."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ from .wired_parts import NO_VELOCITY, SignalReader, place_controller, sum_inputs
 class ComputerEquations:
     """The sampled part: states before and after their step over one sample, and the signals.
 
-    rates: continuous rates, inputs held over a sample;  before: states stepped ahead of the output
-    steps: value at the next sample, for states that state it in place of a rate
-    late: symbol -> (expression, delay), of what it keeps for later samples
+    rates: state -> continuous rate, with inputs held over a sample
+    steps: state -> value at the next sample, for states that have no rate
+    before: states that are stepped ahead of the output
+    late: symbol -> (expression, delay) of signals that are kept for later samples
     """
 
     rates: Mapping[sp.Symbol, sp.Expr]
@@ -32,14 +33,14 @@ class ComputerEquations:
 
 
 def sensor_signals(diagram: Diagram) -> set[str]:
-    """Signals that the computer has from a sensor; those from outside it knows anyway."""
+    """Signals that the computer reads from a sensor; outside signals need none."""
     return set(diagram.measured) - set(diagram.outside)
 
 
 def computer_signals(diagram: Diagram) -> set[str]:
-    """Signals between sensors and commands, outside signals among them.
+    """Signals between sensors and commands, with outside signals among them.
 
-    ModelError: the computer would use a signal that no sensor measures
+    raises ModelError: the computer would use a signal that no sensor measures
     """
     made = {s: p for p in diagram.parts for s in p.outputs}
     sensors, electronic = sensor_signals(diagram), _electronic_signals(diagram)
@@ -69,9 +70,9 @@ def computer_signals(diagram: Diagram) -> set[str]:
 def held_signals(
     diagram: Diagram, computed: Collection[str], sampled_inputs: Collection[str]
 ) -> list[str]:
-    """Those of the computer's signals that something analog takes: the computer holds them.
+    """Signals of the computer that analog parts use: the computer holds them over a sample.
 
-    computed: what its parts make;  sampled_inputs: outside signals that it reads
+    computed: outputs of its parts;  sampled_inputs: outside signals that it reads
     """
     commands = _command_signals(diagram)
     takers = {s for s in commands if s in computed or s in sampled_inputs}
@@ -89,9 +90,9 @@ def _command_signals(diagram: Diagram) -> list[str]:
 
 
 def _electronic_signals(diagram: Diagram) -> set[str]:
-    """Outputs of analog controllers and of the junctions before and behind them.
+    """Outputs of analog controllers, and of the junctions before and behind them.
 
-    What a sensor reads of them the computer has from the sensor.
+    Signals that a sensor reads are not included: the computer reads these from the sensor.
     """
     made = {j.output: j for j in diagram.junctions}
     sensors = sensor_signals(diagram)
@@ -108,8 +109,9 @@ def _electronic_signals(diagram: Diagram) -> set[str]:
 class ComputerRows:
     """Equations of the computer's parts before they are solved.
 
-    rows: of its signals, each = 0;  rates, steps: state -> rate, or value at the next sample
-    before: states stepped ahead of the output;  outputs: names of the signals
+    rows: expressions in its signals, each = 0;  outputs: names of these signals
+    rates, steps: state -> rate, or value at the next sample
+    before: states that are stepped ahead of the output
     """
 
     rows: list[sp.Expr] = field(default_factory=list)
@@ -129,11 +131,11 @@ def write_computer(
     *,
     late: LateSignals,
 ) -> ComputerRows:
-    """Equations of the computer's parts; what they delay is put into `late`.
+    """Equations of the computer's parts; their delayed signals are put into `late`.
 
     digital: signals that the computer makes;  period: s, 0 in continuous time
     of, rate, speed: name of a signal -> symbol of its value, of its change over a sample, and of
-        its velocity as the computer knows it
+        its velocity as the computer estimates it
     """
     result = ComputerRows()
     for part in diagram.parts:
@@ -162,7 +164,7 @@ def write_computer(
 
 
 def solve_computer(diagram: Diagram, digital: Collection[str]) -> ComputerEquations:
-    """What a sampled computer does with its readings;  digital: signals that it makes."""
+    """Solved equations of a sampled computer;  digital: signals that it makes."""
     sensors = sensor_signals(diagram)
 
     def of(name: str) -> sp.Symbol:

@@ -1,7 +1,7 @@
 """A lower bound of the viscous damping at every speed, and the effects that may supply energy.
 
-Forces of velocity count together: a damping that differs with the direction takes from that of the
-other, and drag that grows with speed adds nothing at rest.
+Forces of velocity are added first: a damping that differs with the direction reduces the damping of
+another force in one direction, and drag that grows with speed adds nothing at rest.
 """
 
 from __future__ import annotations
@@ -22,8 +22,10 @@ from .simulated import without_absent
 
 @dataclass(frozen=True)
 class DampingInterval:
-    """least: force against the motion over speed, the least at any speed, N s/m; not below zero
-    supplying: forces that may release energy, by name
+    """Viscous damping at its lowest, and the effects that may supply energy.
+
+    least: force against the motion over speed, the least at any speed, N s/m; not below zero
+    supplying: names of forces that may release energy
     """
 
     least: Interval
@@ -31,10 +33,10 @@ class DampingInterval:
 
 
 def damping_interval(body: Body, reach: Reach | None = None, *, errors: float) -> DampingInterval:
-    """Forces of a body that depend on no hidden state, and on more than its position.
+    """Damping of all forces of a body without hidden states, and the forces that may supply energy.
 
-    One that is not declared to store or dissipate is covered where all of them together take
-    energy, whatever the parameters within so many standard errors.
+    A force that is not declared to store or dissipate supplies none where all counted forces
+    together dissipate, for all parameters within `errors` standard errors.
     """
     body = without_absent(body, surely=True)
     forces = [e for e in body.effects if e.role == "force" and e.energy != "stores"]
@@ -52,7 +54,7 @@ def damping_interval(body: Body, reach: Reach | None = None, *, errors: float) -
 
 
 def small_motion_damping(body: Body, *, errors: float) -> float:
-    """Least damping in small motion, of forces and of friction before it slides, N s/m."""
+    """Least damping in small motion, N s/m: of forces, and of friction before it slides."""
     damping = damping_interval(body, errors=errors).least.low
     for effect in body.effects:
         if effect.role == "friction_shape":

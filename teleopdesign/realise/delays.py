@@ -1,4 +1,4 @@
-"""A delay on a grid: whole steps or samples where possible, otherwise between two."""
+"""A delay on a grid: whole steps or samples where possible, otherwise between two of them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ _WHOLE = 1e-9
 
 
 def is_whole(count: float) -> bool:
-    """Whether a delay of so many steps or samples is a whole number of them."""
+    """Whether a delay of `count` steps or samples is whole, except for rounding."""
     return abs(count - round(count)) <= _WHOLE * max(count, 1.0)
 
 
 def delay_in_samples(delay: float, period: float, *, what: str) -> float:
     """The delay of a computer's signal in samples, at least one.
 
-    delay, period: s;  what: begins the error
+    delay, period: s;  what: first words of the error
     raises ModelError: the delay is below the period
     """
     count = delay / period

@@ -1,8 +1,9 @@
 """Interval enclosure of a law: bounds of its value over ranges of its symbols.
 
-Interval arithmetic of mpmath, rounded outward at 53 bits; what mpmath lacks (signs, pieces, tanh)
-or leaves too wide (zero times an unbounded range) stands here. An interval is a set of real
-numbers: where a law is not defined, as beyond the argument of a logarithm, it is the whole line.
+The arithmetic is that of mpmath, rounded outward at 53 bits. Operations that mpmath lacks (signs,
+pieces, tanh) or encloses too widely (zero times an unbounded range) are defined here. An interval
+is a set of real numbers. Where a law is not defined, as a logarithm of a negative number, its
+interval is the whole line.
 """
 
 from __future__ import annotations
@@ -32,16 +33,16 @@ _GUARD = iv.mpf([1 - 2.0**-50, 1 + 2.0**-50])
 
 
 class Singular(Exception):
-    """A law that may be undefined, or without bound, within the ranges."""
+    """The law may be undefined or unbounded within the ranges."""
 
 
 def interval(low: float, high: float) -> Enclosure:
-    """The interval from low to high, each as the number that it is."""
+    """The interval from low to high, both without rounding."""
     return iv.mpf([low, high])
 
 
 def ends(value: Enclosure) -> tuple[float, float]:
-    """Lower and upper end, as floats rounded outward."""
+    """Lower and upper end of an interval, as floats rounded outward."""
     low, high = value._mpi_
     below, above = libmp.to_float(low), libmp.to_float(high)
     # conversion rounds to the nearest float, to zero or infinity beyond the range of floats
@@ -57,8 +58,8 @@ def enclosure_of(
 ) -> Callable[[Sequence[Enclosure]], Enclosure]:
     """The law as a function of one interval for each variable.
 
-    smooth: raise `Singular` where the law divides by zero, or takes a root or logarithm of it
-    raises ModelError: a function of which no bound is known
+    smooth: raise `Singular` where the law divides by zero, or takes a root or logarithm of zero
+    raises ModelError: the law has a function without a known bound
     """
     places: dict[sp.Basic, int] = {v: i for i, v in enumerate(variables)}
     steps: list[tuple[Callable[..., Any], tuple[int, ...]]] = []
@@ -90,7 +91,7 @@ def _arguments(node: sp.Basic) -> tuple[sp.Basic, ...]:
 
 
 def _operation(node: sp.Basic, smooth: bool) -> Callable[..., Any]:
-    """What a node of the law makes of the intervals, or possibilities, of its arguments."""
+    """The operation of a node of the law on the intervals, or possibilities, of its arguments."""
     if node in (sp.true, sp.false):
         return lambda: (node == sp.true, node == sp.false)
     if node.is_Atom:
@@ -121,7 +122,7 @@ def _constant(node: sp.Basic) -> Enclosure:
 
 
 def multiply(x: Enclosure, y: Enclosure) -> Enclosure:
-    """Product; zero times an unbounded range is zero, for the range holds real numbers."""
+    """Product; zero times an unbounded range is zero, because a range holds real numbers only."""
     if x.a == 0 == x.b or y.a == 0 == y.b:
         return _ZERO
     return x * y
@@ -182,7 +183,7 @@ def _exponential(x: Enclosure) -> Enclosure:
 
 
 def _enclose_sine(x: Enclosure) -> Enclosure:
-    """The range of a sine, guarded."""
+    """The range of a sine, with a guard against rounding."""
     guarded = x * _GUARD
     return iv.mpf([max(guarded.a, -_ONE), min(guarded.b, _ONE)])
 
@@ -192,7 +193,7 @@ def _hull(*parts: Enclosure) -> Enclosure:
 
 
 def _enclose_rising(function: Callable[..., Any]) -> Callable[[Enclosure], Enclosure]:
-    """The interval of a function that rises everywhere, from its values at both ends."""
+    """The interval of an increasing function, from its values at both ends."""
 
     def enclose(x: Enclosure) -> Enclosure:
         low, high = x._mpi_
@@ -231,7 +232,7 @@ def _largest(*parts: Enclosure) -> Enclosure:
 
 
 def _pieces(*parts: Any) -> Enclosure:
-    """The pieces whose condition can be the first that is true."""
+    """The hull of the pieces whose condition can be the first that is true."""
     reached: list[Enclosure] = []
     for value, (can_be_true, can_be_false) in zip(parts[::2], parts[1::2], strict=True):
         if can_be_true:

@@ -1,8 +1,9 @@
-"""A diagram as explicit equations on sympy symbols: what every simulated form starts from.
+"""A diagram as explicit equations on sympy symbols: the start of every simulated form.
 
-Bodies and what connects them are continuous ("analog"). What lies between sensors and commands is
-the computer's: sampled, with its commands held, or, in the continuous approximation, part of the
-same set of equations. All equations are linear in accelerations and forces and are solved for them.
+Bodies and their connections are continuous ("analog"). The parts between sensors and commands
+belong to the computer: they are sampled, with held commands, or, in the continuous approximation,
+part of the same set of equations. All equations are linear in accelerations and forces and are
+solved for them.
 """
 
 from __future__ import annotations
@@ -49,12 +50,13 @@ _NO_COMMAND = sp.Symbol("no_command", real=True)
 class Equations:
     """Explicit equations of a diagram.
 
-    rates: state -> rate;  signals: analog signal -> expression, and the friction of each body
-    as "Z_M_friction";  inputs: analog inputs
-    commands: held commands (sampled) by signal;  late: symbol -> (expression, delay)
-    sampled_inputs: outside signals that the computer reads;  motions: motions that are simulated
-    prescribed: prescribed motions;  parameters: symbol -> name in `Diagram.values`
-    joined: quantities that all these are written in, in an order in which they can be computed
+    rates: state -> rate;  inputs: analog inputs
+    signals: analog signal -> expression, and the friction of each body as "Z_M_friction"
+    commands: signal -> held command (sampled);  late: symbol -> (expression, delay)
+    computer: the sampled part;  sampled_inputs: outside signals that the computer reads
+    motions: motions that are simulated;  prescribed: prescribed motions
+    parameters: symbol -> name in `Diagram.values`
+    joined: quantities that the other expressions are written in, in an order of computation
     """
 
     rates: Mapping[sp.Symbol, sp.Expr]
@@ -71,7 +73,7 @@ class Equations:
 
     @property
     def delays(self) -> tuple[sp.Expr, ...]:
-        """Delay of each late signal on parameters, s: of the analog ones, then the computer's."""
+        """Delay (s) of each late signal, by parameters: analog ones first, then the computer's."""
         return tuple(d for _, d in (*self.late.values(), *self.computer.late.values()))
 
 
@@ -81,13 +83,15 @@ def build_equations(
     """Explicit equations of a diagram whose blocks all have laws.
 
     prescribed: prescribed motions; the outside force that drives each is then a result
-    sampled: commands are held inputs and the computer is apart; False: all is one
+    sampled: True: commands are held inputs, with separate equations of the computer; False: one set
+        of continuous equations
+    raises ModelError: a prescribed motion is no motion, or equations cannot be solved
     """
     return _Builder(diagram, tuple(prescribed), sampled).build()
 
 
 def affine_slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
-    """Hidden state -> A, where its rate is A z + B with A free of the state."""
+    """Hidden state -> A, for states with a rate A z + B where A does not depend on the state z."""
     moving = {f(m) for m in equations.motions for f in (signal, velocity)}
     by_state = {}
     for state, rate in equations.rates.items():
@@ -164,7 +168,10 @@ class _Builder:
     def _place_acting_forces(
         self, solved: dict[sp.Symbol, sp.Expr], joined: Steps
     ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
-        """The solution with forces behind nonlinear actuators in place, and these forces."""
+        """The solution with the forces behind nonlinear actuators inserted, and the named steps.
+
+        raises ModelError: such a force depends on itself at once
+        """
         forces = {s: e.xreplace(solved) for s, e in self.acting.items()}
         if any(e.free_symbols & set(forces) for e in forces.values()):
             raise ModelError(
@@ -175,7 +182,7 @@ class _Builder:
         return known, {s: e.xreplace(forces) for s, e in joined.items()}
 
     def _feeds_analog(self, name: str) -> bool:
-        """Whether something analog takes this outside signal as it is."""
+        """Whether an analog part uses this outside signal directly."""
         parts = [p for p in self.diagram.parts if isinstance(p, Junction)]
         return any(name in p.terms and p.output not in self.digital for p in parts)
 
@@ -216,7 +223,7 @@ class _Builder:
         return [signal(s) - part.sign * force for s, force in pairs]
 
     def _balance_body(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
-        """inertia a + force + friction - acting: the force that the body needs from others."""
+        """inertia a + force + friction - acting: the force that the body needs from other parts."""
         assert isinstance(part.body, Body)
         refuse_unsimulated(part, self.diagram.name)
         equation = solve_carried_force(part.body.equation(), part.body.effects)

@@ -1,8 +1,8 @@
-"""The functions of exact steps, once for every generated source.
+"""Functions of exact integration steps, the same in every generated source.
 
     phi_1(z) = (e^z - 1)/z,   phi_2(z) = (phi_1(z) - 1)/z,   phi_3(z) = (phi_2(z) - 1/2)/z
 
-Their slopes need no others: phi_1' = phi_1 - phi_2, phi_2' = phi_2 - 2 phi_3.
+Their derivatives need no other functions: phi_1' = phi_1 - phi_2, phi_2' = phi_2 - 2 phi_3.
 """
 
 from __future__ import annotations
@@ -64,5 +64,5 @@ def jitted(function):
 
 
 def head(text: str, *, jit: bool = True) -> str:
-    """Beginning of a generated module: its docstring, what it imports, and `jitted`."""
+    """First lines of a generated module: its docstring, its imports, and `jitted`."""
     return f'"""{text}"""\nfrom math import *\n\nimport numpy as np\n{_JIT if jit else _NO_JIT}\n'

@@ -1,7 +1,7 @@
 """The least value of a law over ranges of its symbols, as a bound, and where it is reached.
 
-Branch and bound: the box with the least enclosure is halved until the least value at a point
-is as low as what no value is below. Where the law is monotone in a symbol its range is left out.
+Branch and bound: the box with the least lower bound is halved until this bound is as high as the
+least value at a point. Where the law is monotone in a symbol, only one end of its range counts.
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ Ranges = Mapping[sp.Symbol, tuple[float, float]]
 
 @dataclass(frozen=True)
 class Least:
-    """bound: no value is below;  met: the value at `point` is at most this;  point: symbol -> value
+    """The least value of a law, between a bound and a value that occurs.
 
-    A point far out stands for what is approached without end.
+    bound: no value is below;  met: the value at `point` is at most this
+    point: symbol -> value; a large value may stand for a limit at infinity
     """
 
     bound: float
@@ -49,7 +50,7 @@ class _Box:
 
 
 class _Search:
-    """A law on a box: enclosures, slopes, and the least value met so far."""
+    """A law on a box: enclosures, slopes, and the least value at a point so far."""
 
     def __init__(self, law: sp.Expr, ranges: Ranges) -> None:
         self.symbols = [s for s in ranges if law.has(s)]
@@ -68,7 +69,7 @@ class _Search:
             self.met, self.point = value, tuple(point)
 
     def box(self, ranges: tuple[tuple[float, float], ...]) -> _Box:
-        """The box, narrowed to the ends at which a monotone law is least, and looked at."""
+        """The box, narrowed to the ends where a monotone law is least, with points evaluated."""
         narrow = list(ranges)
         for i, slope in enumerate(self.slopes):
             low, high = narrow[i]
@@ -110,8 +111,8 @@ class _Search:
 def least_value(law: sp.Expr, ranges: Ranges) -> Least:
     """The least value of the law over ranges of its symbols, which may be unbounded.
 
-    The bound is -inf where the law has none, or where it has no finite one.
-    raises ModelError: a symbol without range, or a function of which no bound is known
+    The bound is -inf where the law has no finite least value, or no finite bound is known.
+    raises ModelError: a symbol has no range, or a function has no known bound
     """
     if strangers := law.free_symbols - set(ranges):
         raise ModelError(f"no guaranteed bound: no range of {', '.join(map(str, strangers))}")
@@ -138,7 +139,7 @@ def least_value(law: sp.Expr, ranges: Ranges) -> Least:
 def _slope(
     law: sp.Expr, symbol: sp.Symbol, symbols: Sequence[sp.Symbol]
 ) -> Callable[[Sequence[Enclosure]], Enclosure] | None:
-    """The derivative, where one tells the direction: not of pieces, whose jumps it leaves out."""
+    """The enclosure of the derivative; None where it does not show monotony: pieces may jump."""
     if law.has(sp.Piecewise, sp.Heaviside):
         return None
     try:
@@ -149,7 +150,7 @@ def _slope(
 
 
 def _middle(range_: tuple[float, float]) -> float:
-    """Where a range is halved; one without end is halved at twice its beginning."""
+    """The point where a range is halved; an unbounded range is halved at twice its finite end."""
     low, high = range_
     if math.isinf(low) and math.isinf(high):
         return 0.0

@@ -1,6 +1,7 @@
 """Friction along a measured motion: its level, its bounds, and the balance between them.
 
-friction = shape(level, motion); where the position cannot tell a motion it is what balances
+friction = shape(level, motion); where the position shows no certain motion, friction balances
+forces
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
 
 
 def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
-    """The friction level on symbols; along: with the hidden speeds that the level follows."""
+    """The friction level on symbols, and the signals with the hidden speeds that it depends on."""
     level = body.level()
     for effect in sort_by_action(body.effects, "friction_speed"):
         if effect.is_absent(along.values):
@@ -33,7 +34,7 @@ def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
 def bound_friction(
     body: Body, level: sp.Expr, motion: Motion, along: Along
 ) -> tuple[Traced, Traced]:
-    """Least and largest friction at each row; they coincide where the motion tells it."""
+    """Least and largest friction at each row; they coincide where the motion is certain."""
     n = len(motion.time)
     if level == 0:
         none = along.constant(np.zeros(n))
@@ -71,7 +72,7 @@ def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[T
 
 
 def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:
-    """Friction within its bounds that balances what is needed."""
+    """Friction within its bounds that balances the needed force."""
     if low is high:
         return low
     bandwidth, sample_time = motion.bandwidth, motion.sample_time
@@ -79,7 +80,7 @@ def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) 
 
 
 def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> Traced:
-    """The part of the friction that the acting force itself makes."""
+    """The part of the friction that the acting force itself causes."""
     if not level.has(_ACTING):
         return constant(np.zeros_like(friction.value), len(friction.tangent))
     rest = level.subs(_ACTING, 0)

@@ -1,9 +1,9 @@
 """Bounds of the friction of a body: the lowest and the highest level.
 
-Over the reach of a motion, and with each parameter anywhere within so many standard errors of its
-estimate and within its declared bounds: a box of parameters, so that a bound holds whatever their
-correlation, and a sinusoid of unknown phase never counts for more than its amplitude. The bounds
-are those of interval arithmetic on the body's law (`extremes`), not of draws or a grid.
+They hold over the reach of a motion, and for each parameter within some standard errors of its
+estimate and within its declared bounds. This is a box of parameters, so a bound holds for any
+correlation, and a sinusoid of unknown phase never exceeds its amplitude. The bounds come from
+interval arithmetic on the body's law (`extremes`), not from samples or a grid.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ _QUANTITIES = {
 
 @dataclass(frozen=True)
 class Interval:
-    """An estimate and what it is within, SI; both ends are the estimate where it is exact."""
+    """An estimate and its interval, SI; both ends equal the estimate where it is exact."""
 
     estimate: float
     low: float
     high: float
 
     def round_outward(self, *, digits: int) -> Interval:
-        """With so many digits, ends outward, so that the interval loses nothing; exact ones stay.
+        """The interval with `digits` digits and both ends rounded outward; an exact one is kept.
 
-        What is claimed of an interval is then about the numbers that are printed.
+        So a statement about the interval is true for the printed numbers.
         """
         if self.low == self.high:
             return self
@@ -72,9 +72,9 @@ class Interval:
 class FrictionInterval:
     """Levels of friction while sliding, N or N m, and the stiffness before it slides.
 
-    lowest, highest: level over the reach, with the identified parameters (`estimate`: a bound, met
-        within `extremes.TIGHTNESS`), and with any parameters within their intervals
-    where_lowest: in words;  over: the reach, in words
+    lowest, highest: level over the reach, with the identified parameters (`estimate`: a bound that
+        is reached within `extremes.TIGHTNESS`), and with any parameters in their intervals
+    where_lowest: signals at the lowest level, in words;  over: the reach, in words
     presliding: stiffness before it slides, N/m; None where friction is ideal
     unknown: parameters of the level without a standard error, taken as exact
     """
@@ -87,24 +87,25 @@ class FrictionInterval:
     unknown: tuple[str, ...] = ()
 
     def bristle_lengths(self, travel: float) -> float:
-        """Half of a travel (m or rad) in bristle lengths, inf without presliding."""
+        """Half of a travel (m or rad) over the bristle length; inf without presliding."""
         if self.presliding is None:
             return math.inf
         return travel / 2 * self.presliding.estimate / self.highest.estimate
 
     def slides_within(self, travel: float) -> bool:
-        """Whether friction comes near its level within a travel: else the level is a guess."""
+        """Whether friction comes near its level within a travel; otherwise the level is open."""
         return self.bristle_lengths(travel) > 1.0
 
 
 def friction_interval(
     body: Body, reach: Reach | None = None, *, errors: float
 ) -> FrictionInterval | None:
-    """The levels that a body's friction can take; None where it has no friction level at all.
+    """The levels that a body's friction can have; None where it has no friction level.
 
     reach: of the motions; None: every motion, as far as the law is bounded there
-    errors: standard errors to either side
-    raises ModelError: no bound is known; the message says of what, or which range is needed
+    errors: range of the parameters to either side, in standard errors
+    raises ModelError: no bound is known; the message says for which function, or which range is
+        needed
     """
     present = without_absent(body, surely=True)
     level = present.level()
@@ -128,13 +129,13 @@ def friction_interval(
 
 
 def value_interval(value: Value, *, errors: float) -> Interval:
-    """A parameter that is not negative, within so many standard errors."""
+    """A parameter that is not negative, within `errors` standard errors."""
     half = errors * value.stderr if _uncertain(value) else 0.0
     return Interval(value.value, max(value.value - half, 0.0), value.value + half)
 
 
 def without_error(body: Body, law: sp.Expr) -> tuple[str, ...]:
-    """Parameters of a law without a standard error, that are not known exactly either."""
+    """Parameters of a law that are not fixed and have no standard error."""
     return tuple(
         n
         for n, s in body.symbols().items()
@@ -150,10 +151,10 @@ def lowest_of(
     errors: float,
     ranges: Ranges | None = None,
 ) -> tuple[Interval, Mapping[sp.Symbol, float]]:
-    """The least of a law over the reach, at the estimates and over all parameters; and where.
+    """The least value of a law over the reach, as an interval over all parameters, and its point.
 
-    law: on symbols of `effects.SIGNALS`, of the body's parameters, of speeds that lag, and `SPEED`
-    ranges: of more symbols, or others than the reach says
+    law: on symbols of `effects.SIGNALS`, of the body's parameters, of lagging speeds, and `SPEED`
+    ranges: of further symbols, or in place of those of the reach
     """
     signals = _signals(body, reach, errors) | dict(ranges or {})
     exact = {s: (x, x) for s, x in body.numbers().items()}
@@ -175,14 +176,14 @@ def lowest_of(
 
 
 def parameter_box(body: Body, *, errors: float) -> dict[sp.Symbol, tuple[float, float]]:
-    """Symbol -> range within so many standard errors of the estimate and its declared bounds."""
+    """Symbol -> range within `errors` standard errors of the estimate and its declared bounds."""
     return {s: _box(body, n, errors) for n, s in body.symbols().items()}
 
 
 def stays_within(effect: Effect, state: sp.Symbol, ranges: Ranges) -> bool:
-    """Whether a hidden state stays in its range: at either end its rate leads inward, or to rest.
+    """Whether a hidden state stays in its range: at each end its rate leads inward, or is zero.
 
-    ranges: of all that the rate depends on
+    ranges: of all symbols in the rate
     """
     names = {v: n for n, v in effect.state_symbols().items()}
     rate = effect.rates()[names[state]]
@@ -200,7 +201,10 @@ def stays_within(effect: Effect, state: sp.Symbol, ranges: Ranges) -> bool:
 def _signals(
     body: Body, reach: Reach | None, errors: float
 ) -> dict[sp.Symbol, tuple[float, float]]:
-    """Ranges of signals, and of speeds that lag, which must stay within those of the motion."""
+    """Ranges of signals and of lagging speeds, which must stay within the speeds of the motion.
+
+    raises ModelError: a lagging speed can leave them
+    """
     speeds = 0.0, largest_speed(reach)
     known = signal_ranges(reach) | {SPEED: speeds}
     lagging = _list_lagging_speeds(body)
@@ -215,7 +219,7 @@ def _signals(
 
 
 def _least_either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol, float]]:
-    """The least of both directions, and where."""
+    """The least value over both directions of motion, and its point."""
     if not law.has(SIGNALS["velocity"], DIRECTION):
         least = least_value(law, ranges)
         return least, least.point
@@ -234,7 +238,7 @@ def _fix_direction(law: sp.Expr, way: float) -> sp.Expr:
 
 
 def _box(body: Body, name: str, errors: float) -> tuple[float, float]:
-    """A parameter within so many standard errors of its estimate and its declared bounds."""
+    """A parameter's range within `errors` standard errors and its declared bounds."""
     value, declared = body.parameters[name], body.parameter(name)
     if not _uncertain(value):
         return value.value, value.value
@@ -247,13 +251,13 @@ def _uncertain(value: Value) -> bool:
 
 
 def _list_lagging_speeds(body: Body) -> dict[sp.Symbol, Effect]:
-    """Hidden speeds that the level follows -> their effect."""
+    """Hidden speeds that the level depends on -> their effect."""
     speeds = sort_by_action(body.effects, "friction_speed")
     return {s: e for e in speeds for s in e.state_symbols().values()}
 
 
 def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
-    """The signals of a point, in words with units; parameters left out."""
+    """The signals of a point, in words with units, without parameters."""
     said = {SPEED: "speed"} | dict.fromkeys(_list_lagging_speeds(body), "speed")
     said |= {s: n for n, s in SIGNALS.items()}
     return (
@@ -265,13 +269,13 @@ def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
 
 
 def _unit_of(signal: str, body: Body) -> str:
-    """The unit of a signal behind its number; "" where it has none, as a direction."""
+    """The unit of a signal after its number; "" where it has none, such as a direction."""
     quantity = _QUANTITIES.get(signal)
     return "" if quantity is None else unit_after_number(unit_of(quantity, body.axis))
 
 
 def _explain_unbounded(level: sp.Expr, reach: Reach | None) -> str:
-    """What to state where a level has no lower bound."""
+    """A message on the missing lower bound of a level, and what the user can state."""
     names = sorted(
         n for n, s in SIGNALS.items() if level.has(s) and n not in ("direction", "position")
     )

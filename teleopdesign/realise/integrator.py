@@ -5,13 +5,13 @@ Cox, Matthews, J. Comput. Phys. 176 (2002) 430, eqs (26) to (29), with the rate 
 as A z + B, A frozen at the start of the step; for all other states the classical Runge-Kutta
 method. At every sample the computer reads its sensors and steps its states as its laws say.
 
-Several simulations of one grid run side by side in lanes; one lane is a simulation by itself. What
-the loop remembers is `memory`: a row for each quantity, in it an entry for each lane. A constant
-such as STATES is where its group begins, MANY_STATES how many there are, so that state i of a lane
+Several simulations of one grid run side by side in lanes; one lane is a simulation by itself. The
+state of the loop is `memory`: a row for each quantity, with an entry for each lane. A constant such
+as STATES is the place where its group begins, MANY_STATES the size of the group: state i of a lane
 is `memory[STATES + i * LANES + lane]`. With constant addresses the compiler keeps a step in
-registers, and works on several lanes by one instruction: while all that a step reads is in `memory`
-or in no array at all (parameters are, inputs come as numbers). It works on one lane after the other
-where it would have to check too often that two arrays do not overlap.
+registers, and computes several lanes by one instruction, as long as a step reads from `memory` only
+(parameters are in it) or from no array (inputs are passed as numbers). It computes one lane after
+the other where it would have to check too often that two arrays do not overlap.
 
 Everything below the line of "#" is the second half of every generated module; the first half holds
 the laws and constants that are imported here (`_codegen.py`). Those of `_free_mass.py` let this
@@ -29,7 +29,7 @@ from ._free_mass import *
 
 @jitted
 def largest_change(worst, slope, last, h):
-    """Largest change of a bristle's decay in a step, abs(A h), where it is reloaded."""
+    """The largest change of abs(A h) from step to step so far, where a bristle is reloaded."""
     z = abs(slope) * h
     y = abs(last) * h
     change = abs(z - y)
@@ -40,7 +40,7 @@ def largest_change(worst, slope, last, h):
 
 @jitted
 def find_slopes(first, time, h, inputs, memory, lane):
-    """Slopes A of the bristles, and how well the step resolves them."""
+    """Slopes A of the bristles, and the measure of how well the step resolves them."""
     slopes(time, STATES, BRISTLES, inputs, LATE, memory, SLOPES, lane)
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
@@ -53,7 +53,7 @@ def find_slopes(first, time, h, inputs, memory, lane):
 
 @jitted
 def are_near(h, memory):
-    """Whether abs(A h) < 2 for all bristles of all lanes, where series alone give the factors."""
+    """Whether abs(A h) < 2 for all bristles of all lanes, where series give the factors."""
     far = 0
     for at in range(MANY_BRISTLES * LANES):
         far += 0 if abs(h * memory[SLOPES + at]) < 2.0 else 1
@@ -62,7 +62,7 @@ def are_near(h, memory):
 
 @jitted
 def find_factors(is_near, h, memory, lane):
-    """Factors of the step by which the bristles advance;  is_near: from `are_near`."""
+    """Factors of the exact step of the bristles;  is_near: from `are_near`."""
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
         e_half, g_half, e, w0, w1, w3 = weights(h * memory[SLOPES + at], is_near)
@@ -76,7 +76,7 @@ def find_factors(is_near, h, memory, lane):
 
 @jitted
 def take_rests(bristles, rests, memory, lane):
-    """B of each bristle, whose rate is A z + B."""
+    """Reduce the rate A z + B of each bristle to its rest B."""
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
         memory[rests + at] -= memory[SLOPES + at] * memory[bristles + at]
@@ -84,7 +84,7 @@ def take_rests(bristles, rests, memory, lane):
 
 @jitted
 def move_straight(rates, length, memory, lane):
-    """States for the next stage: from the start of the step with these rates."""
+    """States for the next stage, from the start of the step with constant rates."""
     for i in range(MANY_STATES):
         at = i * LANES + lane
         memory[STAGE_STATES + at] = memory[STATES + at] + length * memory[rates + at]
@@ -92,7 +92,7 @@ def move_straight(rates, length, memory, lane):
 
 @jitted
 def move_half(rests, bristles, memory, lane):
-    """Bristles after half a step from its start."""
+    """Bristles after half a step from the start of the step."""
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
         decayed = memory[E_HALF + at] * memory[BRISTLES + at]
@@ -101,7 +101,7 @@ def move_half(rests, bristles, memory, lane):
 
 @jitted
 def move_second_half(memory, lane):
-    """Bristles after the second half of a step, from where the first stage led."""
+    """Bristles after the second half of a step, from the result of the first stage."""
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
         rest = 2 * memory[RESTS_2 + at] - memory[RESTS_0 + at]
@@ -128,7 +128,7 @@ def end_step(h, memory, lane):
 
 @jitted
 def step(time, h, inputs_0, inputs_1, inputs_2, memory, lane):
-    """One step of the scheme;  inputs_0, _1, _2: at its start, in its middle, at its end."""
+    """One step of the scheme;  inputs_0, _1, _2: inputs at its start, middle and end."""
     x, z, z1, m = STAGE_STATES, STAGE_BRISTLES, FIRST_BRISTLES, memory
     middle = time + 0.5 * h
     rates(time, STATES, BRISTLES, inputs_0, LATE, m, RATES_0, RESTS_0, lane)
@@ -150,7 +150,7 @@ def step(time, h, inputs_0, inputs_1, inputs_2, memory, lane):
 
 @jitted
 def advance(first, time, h, inputs_0, inputs_1, inputs_2, memory):
-    """All lanes over one step;  first: it is the first one;  inputs: as of `step`."""
+    """One step of all lanes;  first: whether it is the first one;  inputs: as in `step`."""
     # a short loop over a number that the compiler knows would become one lane after the other
     lanes = LANES if LANES == 1 else memory.size // ROWS
     for lane in range(LANES):
@@ -167,7 +167,7 @@ def advance(first, time, h, inputs_0, inputs_1, inputs_2, memory):
 
 @jitted
 def know_velocity(at, reading, period, smoothing, memory, lane):
-    """Travel rate of a motion over the last sample, and velocity as the computer knows it.
+    """Travel rate of a motion over the last sample, and velocity as the computer estimates it.
 
     The observer is Luenberger's for a motion of constant velocity (order 2) or acceleration
     (order 3), in its predictor-corrector form (alpha-beta and alpha-beta-gamma filters), all its
@@ -199,7 +199,7 @@ def know_velocity(at, reading, period, smoothing, memory, lane):
 
 @jitted
 def read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane):
-    """Positions in encoder steps, and what the computer makes of them."""
+    """Positions in encoder steps, and the computer's estimates of travel rate and velocity."""
     motions(STATES, inputs, memory, POSITIONS, VELOCITIES, lane)
     for i in range(MANY_MOTIONS):
         at = i * LANES + lane
@@ -218,9 +218,9 @@ def read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane):
 
 @jitted
 def recall(n, samples, past, slots, memory, lane):
-    """Late signals of the computer: between two samples, on the line that joins them.
+    """Late signals of the computer, interpolated between two samples.
 
-    samples: by how many each is late;  past: ring of what they were, `slots` samples long
+    samples: delay of each signal in samples;  past: ring of its values, `slots` samples long
     """
     width = MANY_SAMPLED_LATE * LANES
     for i in range(MANY_SAMPLED_LATE):
@@ -238,7 +238,7 @@ def recall(n, samples, past, slots, memory, lane):
 
 @jitted
 def retain(n, place, period, sampled, past, slots, memory, lane):
-    """Keep what the computer has now for later samples."""
+    """Keep the present values of the computer's late signals for later samples."""
     computer_late(n, period, sampled, memory, SAMPLED_LATE_VALUES, lane)
     for i in range(MANY_SAMPLED_LATE):
         at = i * LANES + lane
@@ -251,9 +251,9 @@ def sample(
     first, n, place, time, period, encoder_step, smoothing, inputs, sampled, late_samples,
     past, slots, memory, lane,
 ):  # fmt: skip
-    """The computer reads its sensors, makes its signals and steps its states.
+    """The computer reads its sensors, computes its signals and steps its states.
 
-    first: nothing was read before;  n: of this sample;  place: of it in the ring `past`
+    first: whether it is the first sample;  n: its number;  place: its number for the ring `past`
     """
     recall(place, late_samples, past, slots, memory, lane)
     # what sensors see: just before the new command
@@ -269,7 +269,7 @@ def sample(
 
 @jitted
 def hold(slot, memory, held, lane):
-    """Keep the new commands until they act;  held: ring of slots."""
+    """Keep the new commands in a ring until they act;  slot: their place;  held: the ring."""
     for i in range(MANY_COMMANDS):
         at = i * LANES + lane
         held[slot * MANY_COMMANDS * LANES + at] = memory[NEW_COMMANDS + at]
@@ -277,7 +277,7 @@ def hold(slot, memory, held, lane):
 
 @jitted
 def release(slot, held, memory, lane):
-    """Let the commands of that slot act."""
+    """The commands in this slot of the ring start to act."""
     for i in range(MANY_COMMANDS):
         at = i * LANES + lane
         memory[COMMANDS + at] = held[slot * MANY_COMMANDS * LANES + at]
@@ -285,9 +285,9 @@ def release(slot, held, memory, lane):
 
 @jitted
 def earlier(at, node, part, before, after, slots):
-    """A signal `part` of a step behind a node, 0 to 1: through four nodes, never across a jump.
+    """A signal at `part` of a step after a node, 0 to 1, from up to four nodes without a jump.
 
-    before, after: rings of the signal at the nodes, on either side of a jump; `slots` nodes long
+    before, after: rings of the signal at the nodes, before and after a jump; `slots` nodes long
     """
     if node < 0:
         return 0.0
@@ -310,7 +310,7 @@ def earlier(at, node, part, before, after, slots):
 
 @jitted
 def keep_late(j, time, inputs, ring, slots, memory, lane):
-    """What is late some time later, as it is at this node, into a ring."""
+    """Keep the values of late signals at this node in a ring."""
     late_values(time, STATES, BRISTLES, inputs, LATE, memory, LATE_VALUES, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
@@ -319,9 +319,9 @@ def keep_late(j, time, inputs, ring, slots, memory, lane):
 
 @jitted
 def delay(j, time, inputs, late_steps, before, after, slots, memory, lane):
-    """Late signals at the start, in the middle and at the end of the step that begins.
+    """Late signals at the start, middle and end of the step that begins.
 
-    late_steps: by how many steps each is late;  before, after: rings, as of `earlier`
+    late_steps: delay of each signal in steps;  before, after: rings, as in `earlier`
     """
     if j > 0:  # before the start all is zero, so that what is not jumps there
         keep_late(j, time, inputs, before, slots, memory, lane)
@@ -351,14 +351,14 @@ def delay(j, time, inputs, late_steps, before, after, slots, memory, lane):
 
 @jitted
 def notice_spoiled(memory, lane):
-    """NaN in the place of a zero where a signal of the row is no finite number."""
+    """Make the mark of a lane NaN where a signal of the row is not finite."""
     for i in range(MANY_COLUMNS):
         memory[SPOILED + lane] += 0.0 * memory[COLUMNS + i * LANES + lane]
 
 
 @jitted
 def is_unresolved(limit, memory):
-    """Whether a bristle of every lane is resolved so badly that no step of the ladder would do."""
+    """Whether in every lane a bristle is resolved so badly that no allowed step is short enough."""
     for lane in range(LANES):
         worst = 0.0
         for i in range(MANY_BRISTLES):
@@ -370,7 +370,7 @@ def is_unresolved(limit, memory):
 
 @jitted
 def keep(row, width, kept, out, kinds, columns, others, results, memory):
-    """Rows of `kept` into the result, and the reductions brought up to this row.
+    """Write the rows of `kept` into the result, and update the reductions with this row.
 
     kinds: 0 last value, 1 largest, 2 least, 3 largest size, 4 sum, 5 sum of a product with
     `others`, 6 its integral by trapezia, in rows
@@ -403,10 +403,10 @@ def keep(row, width, kept, out, kinds, columns, others, results, memory):
 
 @entry
 def differentiate_at_rest(inputs, memory, small, slopes_of):
-    """How rates change with states at rest, by a central difference over 2 small.
+    """Derivatives of the rates by the states at rest, by central differences over 2 small.
 
     memory: zeros, and the parameters
-    slopes_of: entry of d(rate i)/d(state k) of a lane, states before bristles
+    slopes_of: entries d(rate i)/d(state k) of all lanes, states before bristles
     """
     for lane in range(LANES):
         find_inverses(memory, lane)
@@ -450,7 +450,7 @@ def run(
 ):  # fmt: skip
     """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays.
 
-    limit: the run ends early where the measure of the reload is above it in every lane
+    limit: the run ends where the measure of the reload exceeds it in every lane
     """
     nodes, row = samples * inner, np.int64(0)  # no literal, see `module_source`
     for lane in range(LANES):

@@ -1,9 +1,9 @@
 """A diagram as an interconnected nonlinear python-control system: interchange and reference.
 
-Bodies, with what joins them, are one system; each controller and each of its junctions is another,
-joined by the names of their signals. Controllers act in continuous time: python-control cannot mix
-sampled and continuous blocks. With its computer the diagram is one system in discrete time
-(`sampled_iosystem.py`).
+Bodies and their connections are one system. Each controller and each of its junctions is another
+one; they are connected by the names of their signals. Controllers act in continuous time:
+python-control cannot mix sampled and continuous blocks. With its computer the diagram is one system
+in discrete time (`sampled_iosystem.py`).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ MECHANICS = "mechanics"
 
 @dataclass(frozen=True)
 class SymbolValues:
-    """Values of symbols in the equations: parameters, with the user's names, and what is fixed."""
+    """Values of symbols in the equations: parameters, with the user's names, and fixed values."""
 
     parameters: dict[sp.Symbol, tuple[str, float]]
     fixed: dict[sp.Symbol, float]
@@ -56,20 +56,20 @@ def to_iosystem(
 
     prescribed: motions that are inputs ("L", "L_velocity", "L_acceleration") instead of results
     give: m or rad, as in `simulate`
-    delay_order: of the Pade approximation in the place of each delay block, which python-control
-        cannot hold as it is; `simulate` and all responses have them exactly
-    dt: s; None: controllers act in continuous time. Else the system is one in discrete time of that
-        step: the diagram with its computer of that period, as `simulate` has it (velocity by the
+    delay_order: order of the Pade approximation of each delay block, as python-control has no
+        delays; `simulate` and all responses compute them exactly
+    dt: s; None: controllers act in continuous time. Otherwise the system is in discrete time with
+        this step: the diagram with its computer of this period, as in `simulate` (velocity by the
         difference of readings, no delay of commands, no encoder). All inputs are held over a step.
-        Outputs are the signals at the sample, sensed ones just before the command changes
-    step: longest inner step of bodies and analog blocks between samples, s
-    Inputs are the signals from outside, outputs all others; states are those of `simulate`.
-    Parameters are its `params`, by their names in `Diagram.values`: with other values it need not
-    be built anew, `input_output_response(..., params={"Z_M.inertia": 0.2})`.
-    Sampled, `params` are those of the diagram as its computer realises it, and states are also the
-    commands held ("u_held"), the positions read last ("L_read") and what delay blocks keep.
-    raises ModelError: a block without laws, a delay block without `delay_order` (sampled: an analog
-        one), or a dead time of an actuator; sampled: prescribed motions, which cannot be held
+        Outputs are the signals at the sample; measured ones just before the command changes
+    step: longest inner step of bodies and analog blocks between samples, s Inputs are the signals
+        from outside, outputs all others; states are those of `simulate`. Parameters are its
+        `params`, by their names in `Diagram.values`. They can change without building it anew:
+        `input_output_response(..., params={"Z_M.inertia": 0.2})`. With dt, `params` are those of
+        the diagram as its computer realises it, and states are also the held commands ("u_held"),
+        the last position readings ("L_read") and the samples of delay blocks.
+    raises ModelError: a block has no laws, a delay block has no `delay_order` (with dt: an analog
+        one), an actuator has a dead time, or, with dt, a motion is prescribed, which cannot be held
     """
     diagram = prepare_for_simulation(diagram, give, prescribed)
     if dt is not None:
@@ -100,9 +100,10 @@ def _build_sampled(
 def _approximate_delays(
     diagram: Diagram, order: int | None, *, analog_alone: bool = False
 ) -> Diagram:
-    """The diagram with a Pade approximation of that order in the place of each dead time.
+    """The diagram with a Pade approximation of this order in place of each delay block.
 
-    analog_alone: those of the computer stay, which keeps samples
+    analog_alone: delays of the computer stay, because it keeps samples
+    raises ModelError: a dead time without an order of at least 1
     """
     import control
 
@@ -128,7 +129,7 @@ def _approximate_delays(
 
 
 def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
-    """The parts of the diagram, built on private names, joined by the user's."""
+    """The parts of the diagram, built on private names, connected by the user's names."""
     import control
 
     diagram = names.diagram
@@ -185,7 +186,7 @@ def _mechanics(
 
 
 def _replace_code_by_wires(diagram: Diagram) -> Diagram:
-    """Systems that are known as code only become a wire: the mechanics do not see them."""
+    """The diagram with a wire in place of each system known as code; the mechanics are the same."""
     for part in diagram.controls:
         if _code(part) is not None:
             diagram = diagram.with_block(part.name, Controller(()))
@@ -193,7 +194,7 @@ def _replace_code_by_wires(diagram: Diagram) -> Diagram:
 
 
 def _code(part: Control) -> Any:
-    """The system in continuous time that the controller consists of; None where it is a law."""
+    """The continuous-time system that a controller consists of; None where it is a law."""
     assert isinstance(part.controller, Controller)
     stages = part.controller.stages
     system = stages[0].law.system if len(stages) == 1 and not part.others else None
@@ -222,7 +223,7 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
 
 
 def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
-    """A sum or a position without states."""
+    """A system without states: a sum or a position."""
     inputs = [signal(s) for s in part.inputs]
     value = sum_inputs(part, signal)
     name = f"sum_{names.public_name(part.output)}"
@@ -230,7 +231,7 @@ def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
 
 
 def _rename_signals(system: Any, part: Control, names: PrivateNames) -> Any:
-    """A python-control system under the block's name, on its signals."""
+    """A python-control system with the block's name and signals."""
     import control
 
     return control.nlsys(

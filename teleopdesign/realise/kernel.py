@@ -42,9 +42,10 @@ FINER = (1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 200)
 class Timing:
     """Grid and sampling of one run.
 
-    step: inner step, s;  inner: steps a sample;  lag: delay of commands in steps
-    late: delay of each late signal in steps, no whole number where it falls between them
-    smoothing: factor of the velocity filter a sample, the pole of an observer
+    step: inner step, s;  inner: steps per sample;  lag: delay of commands in steps
+    late: delay of each late signal in steps, not always whole
+    encoder_step: of the position readings, 0 for none
+    smoothing: factor of the velocity filter per sample, or the pole of an observer
     late_samples: delay of each late signal of the computer in samples
     """
 
@@ -69,7 +70,8 @@ class Timing:
 def velocity_smoothing(bandwidth: float, period: float) -> float:
     """Factor by which the velocity filter keeps its last output over a sample.
 
-    The filter is the control law that declares to be one, its rate's slope stepped exactly.
+    bandwidth: Hz;  period: s
+    The filter is the control law that declares `filter_bandwidth`; its rate is integrated exactly.
     """
     if math.isinf(bandwidth):
         return 0.0
@@ -95,7 +97,8 @@ def execute(
 
     inputs: (inputs, 2 steps + 1), at every half step;  sampled: (sampled inputs, samples + 1)
     start: state -> value, 0 by default
-    limit: measure of the reload above which the run ends, its other rows zero
+    every_step: whether each inner step is a row of the result, not only each sample
+    limit: measure of the reload above which the run ends; the remaining rows are zero
     returns: rows of the columns of the layout, and the measure of the reload (see module)
     """
     layout, rows = made.layout, (timing.steps if every_step else timing.samples) + 1
@@ -127,7 +130,7 @@ def execute(
 def first_memory(
     made: Program, lanes: int, parameters: np.ndarray, start: Mapping[str, float]
 ) -> np.ndarray:
-    """What the loop remembers, at its start: rows times lanes, flat.
+    """The memory of the loop at its start: rows times lanes, flat.
 
     parameters: flat, row by row
     """
@@ -142,7 +145,7 @@ def first_memory(
 
 
 def grid(made: Program, timing: Timing, lanes: int) -> tuple[Any, ...]:
-    """The first arguments of the loop: its grid, and rings for what is delayed."""
+    """The first arguments of the loop: its grid, and ring buffers for delayed signals."""
     held = timing.lag // timing.inner + 2
     # three nodes before the one that is looked up, and that of the running step
     late = math.ceil(max(timing.late, default=0)) + 4
@@ -169,9 +172,9 @@ def grid(made: Program, timing: Timing, lanes: int) -> tuple[Any, ...]:
 
 
 def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str]:
-    """Largest rate (1/s) of the equations at rest and the state that takes part in it most.
+    """Largest rate (1/s) of the equations at rest, and the state with the largest part in it.
 
-    Hidden states stepped exactly by themselves count only through what they couple to.
+    Hidden states that are integrated exactly count only by their coupling to other states.
     """
     states = made.layout.states
     if not states:
@@ -182,9 +185,10 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
 
 
 def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) -> np.ndarray:
-    """How rates change with states at rest, 1/s: (lanes, states, states).
+    """Derivatives of the rates by the states at rest, 1/s: (lanes, states, states).
 
-    parameters: flat, row by row;  exactly stepped states without their slope
+    parameters: flat, row by row
+    Exactly integrated states have no derivative by themselves here.
     """
     layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
     slopes = np.zeros(n * n * lanes)
@@ -199,7 +203,7 @@ def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) ->
 
 
 def fastest_rates(jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Largest rate of each lane, 0 where it is not finite, and which state takes part in it."""
+    """Largest rate of each lane, 0 where it is not finite, and index of the dominant state."""
     usable = np.isfinite(jacobian).all(axis=(1, 2))
     rates, vectors = np.linalg.eig(np.where(usable[:, None, None], jacobian, 0.0))
     sizes = np.abs(rates)
@@ -208,26 +212,32 @@ def fastest_rates(jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def refine_factor(measure: float, bound: float, power: float) -> int:
-    """By how much to divide a step whose measure, of that power in the step, is above the bound."""
+    """Factor by which to divide a step whose measure exceeds a bound.
+
+    power: of the step in the measure
+    """
     return math.ceil(math.pow(measure / bound, 1 / power) * 1.0001)
 
 
 def worst_reload(inner: int, least: int) -> float:
-    """Measure of the reload above which no step that `FINER` allows would do.
+    """Measure of the reload above which no step that `FINER` allows is short enough.
 
-    inner: steps a sample of the run;  least: of the grid that was asked for
+    inner: steps per sample of the run;  least: steps per sample of the requested grid
     """
     return RELOAD * (FINER[-1] * least / inner) ** 2
 
 
 def round_up_steps(needed: int, least: int) -> int | None:
-    """Steps a sample on a grid that `FINER` allows, as many as needed or more; None: none is so.
+    """Steps per sample on the coarsest grid of `FINER` with `needed` or more; None: no such grid.
 
-    least: steps a sample of the grid that was asked for
+    least: steps per sample of the requested grid
     """
     return next((least * f for f in FINER if least * f >= needed), None)
 
 
 def long_step_error(step: float, use: float, why: str) -> ModelError:
-    """The error for a step that is refused, with the step to use."""
+    """The error for a step that is refused.
+
+    step, use: s, the refused step, and a step that can be used;  why: reason, in words
+    """
     return ModelError(f"simulate: step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")

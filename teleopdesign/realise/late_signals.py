@@ -1,4 +1,4 @@
-"""Delayed signals of a law: each is a symbol that the simulation looks up in its history."""
+"""Delayed signals of a law: the simulation reads each from its history, under a symbol."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LateSignals = dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]
 def without_delays(
     equation: ControllerEquation, name: str, late: LateSignals
 ) -> ControllerEquation:
-    """The equation with a symbol for each signal that is late, which is put into `late`."""
+    """The equation with a symbol for each delayed signal; these signals are put into `late`."""
 
     def replaced(changes: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
         return {x: replace_delays(name, change, late) for x, change in changes.items()}
@@ -30,7 +30,7 @@ def without_delays(
 
 
 def replace_delays(name: str, expression: sp.Expr, late: LateSignals) -> sp.Expr:
-    """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
+    """The expression with a symbol for each delayed(x, tau), which is put into `late`."""
     while calls := expression.atoms(delayed):
         innermost = (c for c in calls if not any(x.has(delayed) for x in c.args))
         for call in sorted(innermost, key=str):

@@ -1,7 +1,7 @@
 """A law of a body along its signals, such as its friction level, with a standard error.
 
-The standard error is bounded by the sum of abs(dlaw/dp) times the error of each parameter p:
-whatever their correlation, it is not larger.
+The standard error is bounded by the sum of abs(dlaw/dp) times the error of each parameter p. For
+any correlation of the parameters it is not larger.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..measurement.filtering import Array
 
 
 def law_along(body: Body, law: sp.Expr, signals: Mapping[sp.Symbol, Any]) -> tuple[Array, Array]:
-    """The law, and the bound of its standard error, of the shape that the signals broadcast to.
+    """The law and the bound of its standard error, both in the broadcast shape of the signals.
 
     law: on symbols of the body's parameters and of the signals
     signals: symbol of `effects.SIGNALS` or of a hidden state -> array

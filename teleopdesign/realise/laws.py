@@ -1,9 +1,8 @@
-"""Laws as source text: the one place where an expression becomes code that is run.
+"""Laws as source text: the only place where an expression becomes code that is executed.
 
-An expression is printed with the private name of each of its symbols; a symbol without one, or a
-function that neither Python nor the package knows, has no source. A system that is known as code
-is called by a name of the package. So nothing that a user calls
-something by can stand in generated code.
+An expression is printed with private names of its symbols. A symbol without such a name, or a
+function that neither Python nor the package knows, has no source. A system known as code is called
+by a name of the package. So no name given by a user can appear in generated code.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ class _Printer(PythonCodePrinter):
 def source_of(expression: sp.Expr, names: Names) -> str:
     """The expression as one line of Python.
 
-    raises ModelError: a symbol without a private name, a function of no known source
+    raises ModelError: a symbol has no private name, or a function has no known source
     """
     functions = (f for f in expression.atoms(AppliedUndef) if not is_call(f))
     if strangers := sorted(str(f.func) for f in functions):
@@ -54,7 +53,7 @@ def source_of(expression: sp.Expr, names: Names) -> str:
 def assignments(results: Mapping[str, sp.Expr], names: Names, *, shared: str = "") -> list[str]:
     """Lines that compute the results, each under its private name.
 
-    shared: beginning of the names of parts that several results hold, computed once; "": none are
+    shared: beginning of the names of common parts, which are computed once; "": no common parts
     raises ModelError: as `source_of`
     """
     if not shared:
@@ -67,5 +66,5 @@ def assignments(results: Mapping[str, sp.Expr], names: Names, *, shared: str = "
 
 
 def indent(lines: Sequence[str], depth: int) -> str:
-    """Lines of source at a depth."""
+    """Lines of source, indented by `depth` spaces."""
     return "\n".join(" " * depth + line for line in lines)

@@ -1,4 +1,4 @@
-"""Names of what the loop of a simulation takes and returns, in its order."""
+"""Names of the arguments and results of a simulation loop, in its order."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Layout:
-    """Order of everything that the loop takes and returns, as names.
+    """Order of all arguments and results of the loop, as names.
 
-    columns: of a row of the result;  exponential: states stepped exactly in their affine part, the
-    last ones among the states
+    columns: of a row of the result
+    exponential: hidden states whose affine part is integrated exactly; they are the last states
     """
 
     states: tuple[str, ...]

@@ -1,8 +1,8 @@
 """Linear form of each block of a diagram, for one degree of freedom.
 
-Bodies bring the impedance that their effects declare; controllers their law at a frozen speed. What
-has no linear form is left out, and named. Numbers are exact, as they were written: what cancels on
-paper does so here.
+Bodies have the impedance that their effects declare; controllers have their law at a frozen speed.
+An effect or block without a linear form is left out, and named. Numbers are exact, as they were
+written: terms that cancel on paper cancel here.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ class LinearBlocks:
     """Transfer function of each block at `s`: of bodies the impedance relative to position (N/m).
 
     actuation: name of a body -> transfer function from its command to its acting force
-    left_out: "block.effect" or "block" for what has no linear form;  speed: frozen, m/s or rad/s
-    held: controllers in discrete time, which are there as their samples are held
+    left_out: "block.effect" or "block" without a linear form;  speed: frozen, m/s or rad/s
+    held: names of discrete-time controllers, which are included with their held samples
     dead_times: of delay blocks, s
-    along: of controllers that take the velocity of a motion which is not their input, what they
-        make of that motion; `blocks` holds what they make of their input
+    along: for controllers that use the velocity of a motion other than their input: transfer
+        function from that motion; `blocks` has the one from their input
     """
 
     blocks: Mapping[str, sp.Expr]
@@ -51,13 +51,14 @@ class LinearBlocks:
 def linear_blocks(
     diagram: Diagram, *, speed: float = 0.0, held: bool = False, only: str = ""
 ) -> LinearBlocks:
-    """Linear forms of all blocks with their values in place, which are exact numbers.
+    """Linear forms of all blocks, with exact numbers for their values.
 
-    only: name of the one block that is asked for; blank: all
+    only: name of one block; blank: all blocks
     speed: at which smoothed friction and schedules are frozen
-    held: whether controllers in discrete time take part, as H(e^(s T)) (1 - e^(-s T))/(s T); that
-        is a frequency response below half the sampling rate, and no ground for a proof
-    raises ModelError: a block is known by its name only, a law takes a velocity of no motion
+    held: whether discrete-time controllers are included, as H(e^(s T)) (1 - e^(-s T))/(s T). This
+        is a frequency response below half the sampling rate, and no basis for a proof
+    raises ModelError: a block is known by its name only, a plant as code only, or a law uses a
+        velocity without a motion
     """
     along: dict[str, sp.Expr] = {}
     blocks: dict[str, sp.Expr] = {}
@@ -108,7 +109,7 @@ def _stages(part: Control) -> tuple[Stage, ...]:
 def _forms_of_controller(
     diagram: Diagram, part: Control, speed: float, held: bool
 ) -> tuple[sp.Expr, ...]:
-    """What a controller makes of its input, and of a motion that is not its input; (): no form."""
+    """Transfer functions of a controller from its input, and from another motion; (): none."""
     if not isinstance(part.controller, Controller):
         raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
     forms = part.controller.linear_parts(part.name, S, exact_decimal(abs(speed)), held=held)
@@ -124,13 +125,17 @@ def _forms_of_controller(
 
 
 def _insert_numbers(form: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> sp.Expr:
-    """The form with values in place, as they were written."""
+    """The form with exact values of its symbols, as they were written."""
     exact = {symbol: exact_decimal(value) for symbol, value in numbers.items()}
     return make_exact(sp.sympify(form).subs(exact))
 
 
 def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> control.TransferFunction:
-    """A rational expression in `S`, dead times by Pade of that order, as python-control system."""
+    """A rational expression in `S` as a python-control system, with dead times by Pade.
+
+    delay_order: of the Pade approximation
+    raises ModelError: the expression holds a measured frequency response
+    """
     import control
 
     def rational(power: sp.Expr) -> sp.Expr:

@@ -1,18 +1,18 @@
 """Several coupled hidden states along a measured motion, such as a tip body, with tangents.
 
 Runge-Kutta steps; sub-steps keep the fastest mode well within the method's stability. Between rows
-the motion that drives them follows the cubic of its rates, for a straight line weakens what
-swings at a tenth of the sample rate by 3 %. Generated from the effect's rates.
+the driving motion is interpolated by a cubic with its rates, because a straight line weakens an
+oscillation at a tenth of the sample rate by 3 %. The code is generated from the effect's rates.
 
-A state that declares a correction is led back by the force r that is left unexplained, as by an
-observer: dz/dt = rate + correction(r), r = rest - law - friction, 0 where friction can take it up.
-Without it two bodies that part and meet fall out of step with the machine after a few meetings.
-Dry friction on a state is a constant rate over each sub-step: what brings the state to rest at its
-end where the friction can, else its bound (time stepping by Moreau and Jean). A stuck state rests,
-without a stiff law.
+A state that declares a correction is led back by the unexplained force r, as by an observer: dz/dt
+= rate + correction(r), r = rest - law - friction, 0 where friction can balance it. Without the
+correction, two bodies that part and meet differ from the machine after a few meetings. Dry friction
+on a state is a constant rate over each sub-step: the rate that brings the state to rest at the end
+of the sub-step, within the bound of the friction (time stepping by Moreau and Jean). A stuck state
+rests, without a stiff law.
 
-Where a course of meetings depends on its past more and more, so do its tangents, until they say
-nothing of any change that could be made: they begin anew wherever a small difference has grown by
+Where a sequence of meetings depends on its past ever more strongly, so do its tangents, until they
+describe no finite change of a parameter. So they restart wherever a small difference has grown by
 `GROWTH` since it was smallest.
 """
 
@@ -40,10 +40,10 @@ GROWTH = 30.0
 
 @lru_cache(maxsize=32)
 def _stiffness(effect: Effect) -> tuple[list[str], Any]:
-    """Signals, and a function of them and the parameters: slopes of the rates by the states (1/s).
+    """Names of signals, and a function of them and the parameters: Jacobian of the rates (1/s).
 
-    Laws with gaps or stops are judged where they are stiffest, by the first of their pieces, and
-    what stiffens with the motion where no state has left the signal that it starts at.
+    Laws with gaps or stops are evaluated where they are stiffest, by the first of their pieces,
+    with every state at the signal that it starts at.
     """
     # a correction is fastest where little is left unexplained, and then linear in it
     law, corrections = effect.expression(), effect.corrections()
@@ -62,7 +62,7 @@ def _stiffness(effect: Effect) -> tuple[list[str], Any]:
 
 
 def _fastest(effect: Effect, along: Along, parameters: Array) -> float:
-    """Largest rate (rad/s) of the states among themselves, at the ends of the measured motion."""
+    """Largest rate (rad/s) of the coupled states, at the extremes of the measured motion."""
     names, slopes = _stiffness(effect)
     signals = [along.signals[SIGNALS[n]].value for n in names]
     ends = {int(end(row)) for row in signals for end in (np.argmin, np.argmax)} or {0}
@@ -79,14 +79,14 @@ _RATES = {"position": "velocity", "velocity": "acceleration"}
 
 
 def _slope_of(name: str, along: Along) -> Array | None:
-    """Rate of a driving signal at the rows; None where a straight line is all that is known."""
+    """Rate of change of a driving signal at the rows; None where no rate is known."""
     if name in _RATES:
         return along.signals[SIGNALS[_RATES[name]]].value
     return None
 
 
 def _bends(drive: Array, slopes: Sequence[Array | None], step: float) -> Array:
-    """How far each signal (m, n) leaves its chord at the begin and end of each step, (2, m, n)."""
+    """Slope less chord of each signal (m, n) at both ends of each step, in its units, (2, m, n)."""
     bends = np.zeros((2, *drive.shape))
     for i, slope in enumerate(slopes):
         if slope is not None:
@@ -99,9 +99,10 @@ def _bends(drive: Array, slopes: Sequence[Array | None], step: float) -> Array:
 def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[sp.Symbol, Traced]:
     """The effect's hidden states at the rows, with tangents, driven by the measured signals.
 
-    along: signals at the rows, which carry no tangents themselves
-    rest: what corrections need: force at the rows that the effect and friction have to take up,
-        and the least and largest that friction can; with tangents
+    along: signals at the rows, which have no tangents here
+    rest: signals of corrections: force at the rows for the effect and friction together, least and
+        largest friction; with tangents
+    returns: NaN where the states are too fast for the sample rate
     """
     parameters_of_effect, signals, step, columns = (
         list_parameters(effect),

@@ -1,6 +1,6 @@
 """Responses of a device with a compliance or backlash, as two bodies.
 
-A hand leads the tip, so that a prescribed motion is that of the tip.
+A hand moves the tip, so a prescribed motion is that of the tip.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from .tips import led_motion, linear_tips, with_tips
 
 
 def linear_parted(diagram: Diagram, motions: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:
-    """The diagram with linear structures apart, and each prescribed motion -> the one that is led.
+    """The diagram with linear structures as two bodies, and each prescribed motion -> the led one.
 
     Backlash has no linear form: there the body stays whole, and its left-out effects name it.
     """
@@ -24,7 +24,7 @@ def linear_parted(diagram: Diagram, motions: tuple[str, ...]) -> tuple[Diagram, 
 
 
 def simulated_parted(diagram: Diagram, motion: str) -> tuple[Diagram, str]:
-    """The diagram with every structure apart, and the motion that a hand leads."""
+    """The diagram with every structure as two bodies, and the motion that a hand leads."""
     for part in diagram.bodies:
         if isinstance(part.body, Body) and any(e.role == "structure" for e in part.body.effects):
             diagram = diagram.with_block(part.name, without_absent(part.body))

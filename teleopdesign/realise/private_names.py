@@ -1,9 +1,9 @@
-"""A diagram under private names: what equations and generated source are written in.
+"""A diagram with private names, on which equations and generated source are written.
 
-Signals are s000_, s001_ ... and blocks b000_, b001_ ... in their order, whatever the user calls
-them. So no name of a user meets a word of the generated source, or a name that the package makes
-itself (`s000__velocity`), and a diagram whose signals are called otherwise has the same numbers
-to the last bit. What the user sees is translated back.
+Signals are s000_, s001_ ... and blocks b000_, b001_ ... in their order, whatever their names are.
+So no name of a user equals a word of the generated source, or a name that the package makes itself
+(`s000__velocity`). A diagram with other names gives the same numbers to the last bit. All names
+that a user reads are translated back.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ _TITLE = "d000_"
 
 @dataclass(frozen=True)
 class PrivateNames:
-    """The diagram under private names, and the way back.
+    """The diagram with private names, and the translation back.
 
-    public: private name -> that of the user;  private: signal -> its private name
+    public: private name -> name of the user;  private: signal -> its private name
     """
 
     diagram: Diagram
@@ -47,12 +47,15 @@ class PrivateNames:
     private: Mapping[str, str]
 
     def public_name(self, name: str) -> str:
-        """The user's word for a private name, or for one made from it, such as a velocity's."""
+        """The user's name for a private name, or for one derived from it, such as a velocity."""
         begin = _BEGIN.match(name)
         return name if begin is None else self.public[begin[0]] + name[begin.end() :]
 
     def public_names(self, *names: str) -> tuple[str, ...]:
-        """As `public_name`; ModelError where two are the same, or one is "time"."""
+        """The user's names, as of `public_name`.
+
+        raises ModelError: two of them are equal, or one is "time"
+        """
         owners: dict[str, str] = {"time": "the time"}
         for name in dict.fromkeys(names):
             public = self.public_name(name)
@@ -77,7 +80,7 @@ class PrivateNames:
 
     @contextmanager
     def in_errors(self) -> Iterator[None]:
-        """Errors about the private diagram are raised in the user's words."""
+        """A context in which errors on the private diagram are raised with the user's names."""
         try:
             yield
         except ModelError as error:
@@ -86,7 +89,7 @@ class PrivateNames:
 
 
 def private_names(diagram: Diagram) -> PrivateNames:
-    """The diagram with private names for its signals and blocks, values and wiring as they are."""
+    """The diagram with private names of its signals and blocks; values and wiring are the same."""
     signals = {s: f"s{i:03d}_" for i, s in enumerate(diagram.signals)}
     blocks = {b.name: f"b{i:03d}_" for i, b in enumerate(diagram.blocks)}
     symbols = {position_symbol(s): position_symbol(p) for s, p in signals.items()}

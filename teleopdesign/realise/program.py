@@ -1,7 +1,7 @@
 """The loop for one structure of a diagram: equations -> generated source -> numba, compiled once.
 
-Values are arguments: only another structure (other blocks, effects or laws) compiles anew. What has
-the same structure under other names shares the loop (`private_names`).
+Values are arguments: only another structure (other blocks, effects or laws) is compiled again.
+Diagrams of one structure with different names share the loop (`private_names`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .private_names import PrivateNames, private_names
 
 @dataclass(frozen=True)
 class CompiledLoop:
-    """Entries of `integrator.py` on the laws of one structure, compiled or plain Python."""
+    """Functions of `integrator.py` with the laws of one structure, compiled or plain Python."""
 
     lanes: int
     run: Callable[..., None]
@@ -36,9 +36,9 @@ class CompiledLoop:
 class Program:
     """The simulation loop for one structure of a diagram, for any values.
 
-    laws: their source;  loop: the loop around them, for one simulation
-    functions: names of the plain module: its laws, its constants
-    equations: on private symbols (`private_names`), their parameters by the user's names
+    equations: on private symbols (`private_names`), their parameters with the user's names
+    laws: source of the laws;  loop: the loop with them, for one simulation
+    functions: names of the plain Python module: its laws, its constants
     has_code: whether a block is known as code only, so that the loop is plain Python
     """
 
@@ -64,10 +64,10 @@ def program(
     observer: int = 0,
     jit: bool = True,
 ) -> Program:
-    """The loop for this diagram's structure, built and compiled where it is not yet.
+    """The loop for this diagram's structure, built and compiled at the first call.
 
-    observer: its order, where the computer observes velocities in place of filtering differences
-    jit: False runs the same generated source in plain Python, some hundred times slower
+    observer: order of the velocity observer of the computer; 0: a filtered difference
+    jit: False: the same generated source runs as plain Python, some hundred times slower
     """
     named = (_named_structure(diagram), prescribed, sampled, observer, jit)
     if named not in _named:
@@ -101,7 +101,7 @@ def _program(
 
 @lru_cache(maxsize=256)
 def loop_of(laws: str, lanes: int) -> CompiledLoop:
-    """The compiled loop on laws for that many simulations side by side."""
+    """The compiled loop with these laws, for `lanes` simulations side by side."""
     return _entries(compiled_module(module_source(laws, lanes=lanes), "run"), lanes)
 
 
@@ -132,9 +132,10 @@ def _execute(source: str) -> dict[str, Any]:
 
 
 def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
-    """As `_structure`, names included, of what diagrams with other values share.
+    """Structure with names, for diagrams that differ in values only.
 
-    Wiring and laws count by identity: the diagram that is kept beside the program keeps them alive.
+    Wiring and laws are compared by identity: the diagram that is kept with the program keeps them
+    alive.
     """
     out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
     out.append((diagram.name, *map(id, diagram.junctions), *map(id, diagram.kinematics)))
@@ -162,7 +163,7 @@ def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
 
 
 def _structure(diagram: Diagram) -> tuple[Any, ...]:
-    """What the equations depend on apart from values; laws compare by identity."""
+    """All of a diagram that its equations depend on, without values; laws compare by identity."""
     out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
     for part in diagram.parts:
         wires = (part.name, part.inputs, part.outputs)

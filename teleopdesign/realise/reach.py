@@ -1,4 +1,4 @@
-"""Reach of a motion: travel, speed, command, and the ranges of signals that follow."""
+"""Reach of a motion: travel, speed, command, and the resulting ranges of signals."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ ANY_MOTION = "any motion"
 class Reach:
     """The recorded range of one body; SI.
 
-    low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
-    duration: of the longest record;  sample_period: s;  step: what one reading leaves open
-    unresolved: length below which the deflection of a contact before it slides does not show:
-        within the steps that tell a motion, or half a period of the comparison's bandwidth after a
+    low, high: of its position;  command: largest commanded force
+    duration: of the longest record;  sample_period: s;  step: of the position readings
+    unresolved: length below which the deflection of a contact before it slides cannot be resolved:
+        by the steps of the readings, or within half a period of the comparison's bandwidth after a
         reversal
     measures_force: whether the force of hand or environment is a channel
     both_ways: whether it moves forward and backward for at least `RARE` of the time it moves
@@ -44,19 +44,19 @@ class Reach:
 
     @property
     def travel(self) -> float:
-        """Length of the travel."""
+        """Length of the travel (m, rad)."""
         return self.high - self.low
 
 
 def largest_speed(reach: Reach | None) -> float:
-    """Speed up to which friction is asked for; inf where no reach is known."""
+    """Largest speed for which friction is bounded; inf where no reach is known."""
     return math.inf if reach is None else FASTER * reach.peak_speed
 
 
 def signal_ranges(reach: Reach | None) -> dict[sp.Symbol, tuple[float, float]]:
-    """Symbol of a signal -> its range, but for velocity and direction, which `largest_speed` says.
+    """Symbol of a signal -> its range, except velocity and direction (see `largest_speed`).
 
-    Signals that no reach speaks of, and all where none is known, have no end; time begins at zero.
+    Signals without a known range are unbounded; time starts at zero.
     """
     ends = {name: (-math.inf, math.inf) for name in SIGNALS}
     ends["time"] = 0.0, math.inf
@@ -70,7 +70,7 @@ def signal_ranges(reach: Reach | None) -> dict[sp.Symbol, tuple[float, float]]:
 def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> str:
     """The ranges of a law's signals in words: "speeds up to 3 m/s, position -0.1 to 0.1 m".
 
-    speed: whether it follows a speed, that of the body or a lagging one
+    speed: whether the law depends on a speed, of the body or a lagging one
     """
     top = largest_speed(reach)
     parts = [_range("speed", 0.0, top, unit_of("velocity", axis))] if speed else []

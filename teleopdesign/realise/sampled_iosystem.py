@@ -1,9 +1,9 @@
 """A diagram with its computer as a python-control system in discrete time.
 
 One step is one sample of the simulation: the computer reads its sensors and acts, then bodies and
-analog blocks go on by inner steps of the same loop (`integrator.py`), all inputs held. What a later
-sample needs is a state: those of bodies and controllers, the commands that are held, the positions
-that were read last, and what a delay block keeps.
+analog blocks advance by inner steps of the same loop (`integrator.py`), with all inputs held. All
+that a later sample needs is a state: states of bodies and controllers, held commands, last position
+readings, and samples of delay blocks.
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ _MOST_KEPT = 10_000
 
 
 def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.NonlinearIOSystem:
-    """The system of a diagram whose bodies are as they are simulated (`prepare_for_simulation`).
+    """The discrete-time system of a diagram whose bodies are ready for simulation.
 
-    dt: of a step, the computer's period, s;  step: longest inner step, s
-    raises ModelError: what is late lies between samples
+    diagram: from `prepare_for_simulation`
+    dt: s, period of the computer and step of the system;  step: longest inner step, s
+    raises ModelError: an analog signal is late, or a delay takes too many samples
     """
     import control
 
@@ -63,7 +64,10 @@ def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.Nonlin
 
 
 def _delays_in_samples(made: Program, form: Diagram, dt: float) -> tuple[float, ...]:
-    """By how many samples each late signal of the computer is late."""
+    """Delay of each late signal of the computer, in samples.
+
+    raises ModelError: a delay takes too many samples
+    """
     e, values = made.equations, form.values
     at = {x: values[n] for x, n in e.parameters.items()}
     counts = tuple(
@@ -79,7 +83,7 @@ def _delays_in_samples(made: Program, form: Diagram, dt: float) -> tuple[float, 
 
 @dataclass(frozen=True)
 class _Answer:
-    """signals: outputs at the sample;  after: state at the next one."""
+    """Results of one sample;  signals: outputs at the sample;  after: state at the next one."""
 
     signals: np.ndarray
     after: np.ndarray
@@ -109,7 +113,7 @@ class _Sample:
         self.last: tuple[Any, _Answer] | None = None
 
     def _motions(self) -> tuple[str, ...]:
-        """Motions whose readings the computer keeps, by the names of the user."""
+        """Motions whose last readings are states, by the user's names."""
         e, layout = self.made.equations, self.made.layout
         if not layout.commands:
             return ()
@@ -142,7 +146,7 @@ class _Sample:
             self._check(inner)
 
     def _first_inner(self, values: tuple[float, ...]) -> int:
-        """Inner steps that resolve the fastest rate at rest."""
+        """Number of inner steps that resolve the fastest rate at rest."""
         named = dict(zip(self.made.layout.parameters, values, strict=True))
         rate, _ = fastest_rate(self.made, named)
         measure = rate * self.dt / self.least
@@ -162,7 +166,7 @@ class _Sample:
         values: tuple[float, ...],
         inner: int,
     ) -> tuple[_Answer, float]:
-        """The sample with that many inner steps, and how well they resolve bristles."""
+        """The sample with `inner` inner steps, and a measure of how well they resolve bristles."""
         at, layout, h = self.made.functions, self.made.layout, self.dt / inner
         memory = first_memory(self.made, 1, np.array(values), {})
         memory[self.rows] = x[: len(self.rows)]
@@ -193,7 +197,7 @@ class _Sample:
         return _Answer(signals, after), float(worst)
 
     def _ring(self, kept: np.ndarray) -> np.ndarray:
-        """What is late, as the loop keeps it; the sample that is made has the place `slots`."""
+        """Delayed samples in the ring of the loop; the present sample has the place `slots`."""
         many = len(self.late)
         past = np.zeros((self.slots, many))
         for age in range(1, self.slots):
@@ -201,6 +205,6 @@ class _Sample:
         return past.reshape(-1)
 
     def _order_ring(self, past: np.ndarray) -> np.ndarray:
-        """The samples of the ring by their age at the next sample, from 1 on."""
+        """The samples of the ring by their age at the next sample, starting at 1."""
         ring = past.reshape(self.slots, len(self.late))
         return np.concatenate([ring[-age % self.slots] for age in range(self.slots - 1)])

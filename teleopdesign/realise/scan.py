@@ -28,7 +28,10 @@ STATE = "z_0"
 
 
 def affine_rate(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
-    """The effect's one state z with its rate as A z + B."""
+    """The effect's only state z, with A and B of its rate A z + B.
+
+    raises ModelError: another number of states, or a rate that is not affine
+    """
     if len(effect.states) != 1:
         raise ModelError(f"{effect.name}: {len(effect.states)} states in one scan; one is possible")
     (name,) = effect.states
@@ -40,7 +43,7 @@ def affine_rate(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
 
 
 def names_in_source(effect: Effect) -> dict[sp.Symbol, str]:
-    """Signals, parameters and the state under private names."""
+    """Symbols of signals, parameters and the state -> private names."""
     signals = {s: f"u_{n}" for n, s in SIGNALS.items()}
     parameters = {s: f"p_{i}" for i, s in enumerate(effect.symbols().values())}
     return signals | parameters | dict.fromkeys(effect.state_symbols().values(), STATE)
@@ -49,24 +52,27 @@ def names_in_source(effect: Effect) -> dict[sp.Symbol, str]:
 def slope_lines(
     what: str, expression: sp.Expr, by: dict[str, sp.Symbol], names: Names
 ) -> list[str]:
-    """Slopes of an expression by signals and parameters, as what_key."""
+    """Code of the derivatives of an expression by signals and parameters.
+
+    what: name of the expression;  by: key -> symbol, for variables `what_key`
+    """
     return assignments({f"{what}_{k}": sp.diff(expression, s) for k, s in by.items()}, names)
 
 
 def signals_in(effect: Effect) -> list[str]:
-    """Names of the signals that the effect's law and the rates of its states hold."""
+    """Names of the signals in the effect's law and the rates of its states."""
     laws = (effect.expression(), *effect.rates().values())
     return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
 
 
 def slopes_by(effect: Effect, signal: str) -> dict[str, sp.Symbol]:
-    """What slopes are taken by: a signal, and the parameters by their number."""
+    """Key -> symbol of the derivatives: one signal, and the parameters by their number."""
     parameters = {str(i): s for i, s in enumerate(effect.symbols().values())}
     return {signal: SIGNALS[signal], **parameters}
 
 
 def slope_of_column(effect: Effect, what: str) -> str:
-    """Slope by the parameter that column j stands for."""
+    """Code of the derivative by the parameter that belongs to column j."""
     terms = (f"{what}_{i} * (columns[{i}] == j)" for i in range(len(effect.parameters)))
     return " + ".join(terms) or "0.0"
 
@@ -119,7 +125,7 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
 
 
 def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
-    """Row of the tangents that belongs to each parameter of the effect; -1 where none does."""
+    """Row of the tangents for each parameter of the effect; -1 where there is none."""
     symbols = effect.symbols()
     return np.array(
         [columns.index(symbols[n]) if symbols[n] in columns else -1 for n in effect.parameters],
@@ -128,7 +134,7 @@ def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
 
 
 def contiguous(tangent: Array) -> Array:
-    """Tangents (p, n) without gaps in memory, and writable: kernels are compiled for no others."""
+    """Tangents (p, n) as contiguous, writable memory, as compiled kernels require."""
     return np.require(tangent, requirements=("C", "W"))
 
 
@@ -142,7 +148,7 @@ def stage_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
 def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
     """State that the measured motion drives, at the rows, with tangents.
 
-    The motion at a row stands for the sample before it: without a lag the state is in step with it.
+    The motion at a row stands for the sample before it, so without a lag the state is not delayed.
     """
     end, _ = _advance(effect, along, along.signals[SIGNALS["velocity"]])
     (symbol,) = effect.state_symbols().values()
@@ -151,7 +157,7 @@ def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
 
 
 def _advance(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
-    """The effect's state at the rows and its average over the hold of each."""
+    """The effect's state at the rows, and its average over the hold of each row."""
     scan = compile_source(_stage_source(effect), "stage")
     tangent = contiguous(command.tangent)
     end, dend = np.empty_like(command.value), np.empty_like(tangent)

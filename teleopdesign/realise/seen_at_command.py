@@ -2,10 +2,10 @@
 
     gain g: r / g     lag: (1 + tau s) r     delay: r, earlier by it     ripple: r / (1 + r sin ...)
 
-No effect is known here by name. Each law between the command and the force that moves the body is
-linearised along the motion by its derivatives: the stages of the actuation, friction and forces
-that depend on the acting force. A law is then a gain for a constant command, sample by sample,
-times dynamics that are 1 at rest, with coefficients at their mean along the motion:
+This works for any effect, without its name. Each law between the command and the force that moves
+the body is linearised along the motion by its derivatives: the stages of the actuation, friction,
+and forces that depend on the acting force. A law is then a gain for a constant command, sample by
+sample, times dynamics that are 1 at rest, with coefficients at their mean along the motion:
 
     H(s) = law_command + law_delayed e^(-s delay) + law_state (s - rate_state)^-1 rate_command
 
@@ -52,10 +52,11 @@ _CARRIED, _INTERACTION = SIGNALS["carried_force"], SIGNALS["interaction_force"]
 class SeenAtCommand:
     """Residual of a model along one motion (n samples), as an error of the recorded command.
 
-    residual: mapped back, SI; in blind samples only through what the command passes elsewhere
-    blind: samples in which the command has next to no influence on what moves the body
-    passed: part of the interaction force that reaches the body, signed as it
-    weak: the actuator cannot deliver, at any command, what the model needs to slide
+    residual: mapped back, SI; in blind samples divided by the largest gain
+    blind: samples in which the command has almost no influence on the moving force
+    passed: part of the interaction force that reaches the body, with its sign
+    weak: whether the actuator cannot deliver, at any command, the force that the model needs to
+        slide
     """
 
     residual: Array
@@ -66,9 +67,9 @@ class SeenAtCommand:
 
 @dataclass(frozen=True)
 class _Way:
-    """A way from one signal to another along a motion, linearised.
+    """The linearised transfer from one signal to another along a motion.
 
-    gain: (n,) of a signal held for good;  dynamics: of what oscillates, over frequency;  delay: s
+    gain: (n,) static gain;  dynamics: over frequency, for oscillations;  delay: s
     """
 
     gain: Array
@@ -77,7 +78,7 @@ class _Way:
 
 
 def is_between(body: Body) -> bool:
-    """Whether a law stands between the recorded forces and what moves the body."""
+    """Whether a law acts between the recorded forces and the force that moves the body."""
     return (
         any(e.role == "actuation" for e in body.effects)
         or body.level().has(_ACTING, _CARRIED, _INTERACTION)
@@ -88,7 +89,7 @@ def is_between(body: Body) -> bool:
 def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -> SeenAtCommand:
     """The residual along a motion as an error of the recorded command.
 
-    along: what `residual_along` says of this body and motion, if it is known already
+    along: result of `residual_along` for this body and motion; None: it is computed
     """
     model = along or residual_along(body, motion)
     residual, blind = model.residual.value.copy(), np.zeros(len(motion.time), dtype=bool)
@@ -107,7 +108,7 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
 
 
 def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
-    """Effects that take from the forces that move the body, by laws that depend on this signal."""
+    """Effects that reduce the moving force, by laws that depend on this signal."""
     taking = [e for e in body.effects if e.role in ("force", "structure")]
     return [e for e in taking if any(x.has(signal) for x in (e.expression(), *e.rates().values()))]
 
@@ -116,7 +117,7 @@ def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
 def _slopes(
     effect: Effect, law: sp.Expr, signals: tuple[sp.Symbol, ...]
 ) -> tuple[list[sp.Expr], list[sp.Expr], list[list[sp.Expr]], list[sp.Expr]]:
-    """Derivatives of a law by signals and its states, and of its rates by states and the first."""
+    """Derivatives of a law by signals and states, and of its rates by states and one signal."""
     states, rates = list(effect.state_symbols().values()), list(effect.rates().values())
     return (
         [slope(law, s) for s in signals],
@@ -133,7 +134,7 @@ def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
 
 
 def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
-    """An expression along the motion (n,); a hidden state that is not stated is at rest."""
+    """An expression along the motion (n,); a hidden state without a signal is zero."""
     signals, values = along.signals, along.values
     symbols, call = _function(expression)
     # arrays all: what is printed for a Max of a number and an array stacks the two
@@ -154,7 +155,7 @@ def _trace_influence(
     delays: Mapping[sp.Symbol, float] = MappingProxyType({}),
     parts: int = 1,
 ) -> _Way:
-    """The way from a signal through a law, with its hidden states and delayed copies."""
+    """The transfer from a signal through a law, with its hidden states and delayed copies."""
     n = len(motion.time)
 
     def at_rows(expression: sp.Expr) -> Array:
@@ -180,7 +181,7 @@ def _trace_influence(
 
 
 def _solve_systems(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
-    """Solutions (k, m) of k systems of m equations; what has none is not a number."""
+    """Solutions (k, m) of k systems of m equations; NaN where one has no solution."""
     try:
         return np.linalg.solve(matrices, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
@@ -196,7 +197,7 @@ def _trace_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
 
 
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
-    """The way from a force to the part of it that moves the body, after all forces it causes."""
+    """The transfer from a force to the force that moves the body, less all that it causes."""
     gain, over = np.ones(len(motion.time)), np.ones(len(motion.spectrum.frequency), dtype=complex)
     for effect in _effects_that_take(body, signal):
         if effect.states and effect.is_absent(along.values):
@@ -215,7 +216,7 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
 def _undo_way(
     residual: Array, blind: NDArray[np.bool_], way: _Way, motion: Motion
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """A residual behind a way as one before it, with the samples that are blind there."""
+    """A residual mapped back through a transfer, with the mask of blind samples before it."""
     finite = np.isfinite(way.gain)
     most = float(np.max(np.abs(way.gain), initial=0.0, where=finite))
     slight = ~finite | (np.abs(np.where(finite, way.gain, 0.0)) < SLIGHT * most)
@@ -236,12 +237,12 @@ def _undo_way(
 
 
 def _from_rest(way: _Way) -> NDArray[np.complex128]:
-    """Dynamics over what they are at rest; those that pass nothing at rest as they are."""
+    """Dynamics over their value at rest; unchanged where this value is zero."""
     return way.dynamics / way.dynamics[0] if way.dynamics[0] != 0 else way.dynamics
 
 
 def _transmit(force: Array, way: _Way, motion: Motion) -> Array:
-    """The part of a force that a way transmits; a resonance does not amplify it."""
+    """The part of a force that passes a transfer; a resonance does not amplify it."""
     # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
     gain = np.where(np.isfinite(way.gain), way.gain, 1.0)
     dynamics = np.where(np.isfinite(way.dynamics), way.dynamics, 1.0)
@@ -256,9 +257,9 @@ def _transmit(force: Array, way: _Way, motion: Motion) -> Array:
 
 
 def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
-    """Whether no command would slide the body as the model says it slid, most of the time.
+    """Whether no command would make the body slide as it does, during most of the time.
 
-    What it needs to slide is what friction and other forces take, without what accelerates it.
+    The force needed to slide is that of friction and other forces, without inertia.
     """
     inertia = body.parameters["inertia"].value * motion.acceleration
     needed = model.acting.value - model.residual.value - inertia
@@ -278,7 +279,7 @@ def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
 
 
 def blind_share(stretches: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
-    """Share of blind samples among those where the body slides; of all, where it never does."""
+    """Share of blind samples among those where the body slides; of all, where it never slides."""
     blind = np.concatenate([s.blind for s in stretches])
     slides = np.concatenate([m.direction != 0 for m in motions])
     counted = blind[slides] if slides.any() else blind

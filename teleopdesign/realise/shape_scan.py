@@ -1,7 +1,7 @@
 """Bounds of the friction of a shape along a measured motion: its hidden states, row by row.
 
-A shape has one state whose rate is affine in it, or several that each follow the motion up to a
-stop. Where the motion is not sure, friction lies between two bounds; tangents go with both.
+A shape has one state with an affine rate, or several states that each follow the motion up to a
+stop. Where the motion is not certain, friction lies between two bounds. Both have tangents.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .traced import Along, Traced
 
 
 def _signals_of_shape(effect: Effect) -> list[str]:
-    """Signals of a shape's laws besides those that its scan has in any case."""
+    """Signals of a shape's laws, except those that every scan has."""
     return [n for n in signals_in(effect) if n not in ("velocity", "level")]
 
 
@@ -49,9 +49,11 @@ def _shape_module(
 ) -> str:
     """Source of the bounds of a shape's friction, and of their tangents, at each sample.
 
-    start: its states at rest;  advance: how a sample moves them on;  slope: force by position
-    weights: slopes of the force by the states, once for all columns
-    tangents: how column j of the states' tangents moves on;  moved: what they change of the force
+    start: code of the states at rest;  advance: code of their step over a sample
+    slope: derivative of the force by position
+    weights: code of the derivatives of the force by the states, once for all columns
+    tangents: code of the step of column j of the states' tangents
+    moved: code of the resulting change of the force
     """
     law, used = effect.expression(), _signals_of_shape(effect)
     by = slopes_by(effect, "level")
@@ -93,7 +95,7 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 
 @lru_cache(maxsize=64)
 def _shape_source(effect: Effect) -> str:
-    """Of a shape with one state, whose rate is affine in it: exact over each sample."""
+    """Source for a shape with one state and an affine rate: exact over each sample."""
     state, a, b = affine_rate(effect)
     names, by = names_in_source(effect), slopes_by(effect, "level")
     return _shape_module(
@@ -122,7 +124,7 @@ def _shape_source(effect: Effect) -> str:
 
 
 def _stop_lines(count: int) -> list[str]:
-    """Code that moves each state on by its rate, up to its stop."""
+    """Code that advances each state by its rate, up to its stop."""
     lines: list[str] = []
     for i in range(count):
         lines += [
@@ -136,7 +138,7 @@ def _stop_lines(count: int) -> list[str]:
 
 
 def _stop_tangents(effect: Effect) -> list[str]:
-    """Code of column j of each state's tangents: those of its stop where it is held there."""
+    """Code of column j of each state's tangents; at a stop they are those of the stop."""
     lines: list[str] = []
     for i in range(len(effect.states)):
         by_stop = f"s{i}_level * dlevel + {slope_of_column(effect, f's{i}')}"
@@ -152,7 +154,10 @@ def _stop_tangents(effect: Effect) -> list[str]:
 
 @lru_cache(maxsize=64)
 def _stopped_source(effect: Effect) -> str:
-    """Of a shape whose states follow the motion alone, each up to its stop: exact in each step."""
+    """Source for a shape whose states follow the motion, each up to its stop: exact in each step.
+
+    raises ModelError: some states have no stop, or a state depends on others
+    """
     stops, states = effect.stops(), list(effect.state_symbols().values())
     if len(stops) < len(states) or any(r.has(*states) or s.has(*states) for r, s in stops.values()):
         raise ModelError(f"{effect.name}: states with a stop beside others, or that need others")
@@ -179,7 +184,7 @@ def _stopped_source(effect: Effect) -> str:
 
 @lru_cache(maxsize=64)
 def _shape_of(effect: Effect) -> tuple[str, tuple[str, ...]]:
-    """Source of a shape's bounds, and the signals besides that it is called with."""
+    """Source of a shape's bounds, and the names of further signals that are its arguments."""
     source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
     return source, tuple(_signals_of_shape(effect))
 
@@ -190,10 +195,9 @@ def shape_bounds(
     """Bounds of the friction of a shape, driven by the measured motion.
 
     It has one hidden state, or several that each follow the motion up to a separate stop.
-
-    forward, backward: friction level that way
-    They coincide where the motion is sure; where it is not, they lie apart by what half a step of
-    the position means to the bristle, and no further than the level.
+    forward, backward: friction level in that direction
+    The bounds coincide where the motion is certain. Elsewhere they lie to either side by the force
+    that half a step of the position causes in the bristle, and never exceed the level.
     """
     source, used = _shape_of(effect)
     scan = compile_source(source, "shape")

@@ -1,8 +1,8 @@
 """Many simulations of one structure side by side: blocks of lanes over all cores.
 
-A block runs without Python's lock, in the same loop and on the same laws as one simulation
-(`integrator.py`); blocks share nothing that is written. Numbers differ from those of one simulation
-by rounding: exp is another one (`lane_exp.py`).
+A block runs without Python's lock, with the same loop and laws as one simulation (`integrator.py`);
+blocks share no memory that is written. Numbers differ from those of one simulation by rounding,
+because exp is computed differently (`lane_exp.py`).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ KINDS: Mapping[str, tuple[int, float]] = {
 
 @dataclass(frozen=True)
 class Reduction:
-    """A number that stands for a signal over time.
+    """A number computed from a signal over time.
 
     kind: of `KINDS`;  column: of the program;  other: for "energy" the column of the velocity
     """
@@ -50,9 +50,9 @@ class Reduction:
 
 @dataclass(frozen=True)
 class GridRun:
-    """Cases that run on one grid.
+    """Cases that run on one grid of steps.
 
-    parameters: (cases, parameters of the layout);  inputs, sampled, limit: as `kernel.execute`
+    parameters: (cases, parameters of the layout);  inputs, sampled, limit: as in `kernel.execute`
     """
 
     parameters: np.ndarray
@@ -64,10 +64,11 @@ class GridRun:
 
 @dataclass(frozen=True)
 class LaneResults:
-    """What simulations side by side return, case by case.
+    """Results of simulations side by side, case by case.
 
-    kept: (cases, rows, columns asked for);  reduced: (cases, reductions)
-    worst: measure of the reload of bristles (see `kernel`);  is_finite: all signals stayed so
+    kept: (cases, rows, requested columns);  reduced: (cases, reductions)
+    worst: measure of the reload of bristles (see `kernel`)
+    is_finite: whether all signals remained finite
     """
 
     kept: np.ndarray
@@ -77,7 +78,7 @@ class LaneResults:
 
 
 def workers() -> int:
-    """Threads that compute: as many as cores, or NUMBA_NUM_THREADS."""
+    """Number of computing threads: as many as cores, or NUMBA_NUM_THREADS."""
     asked_for = os.environ.get("NUMBA_NUM_THREADS", "")
     return (
         int(asked_for) if asked_for.isdigit() and int(asked_for) else len(os.sched_getaffinity(0))
@@ -85,7 +86,10 @@ def workers() -> int:
 
 
 def lanes_of(made: Program) -> CompiledLoop:
-    """The loop of this program for a block of lanes."""
+    """The loop of this program for a block of lanes.
+
+    raises ModelError: a block is known as code only
+    """
     if made.has_code:
         raise ModelError(
             "simulate_many: a nonlinear python-control system is code, which no lanes run side by "
@@ -95,7 +99,7 @@ def lanes_of(made: Program) -> CompiledLoop:
 
 
 def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Fastest rate at rest (1/s) of each case and the state that takes part in it most.
+    """Fastest rate at rest (1/s) of each case, and index of the state with the largest part in it.
 
     parameters: (cases, parameters of the layout)
     """
@@ -121,9 +125,9 @@ def execute_many(
     reductions: Sequence[Reduction],
     begin: int,
 ) -> list[LaneResults]:
-    """Run cases, each on its grid, all blocks of all grids shared by the cores.
+    """Run cases, each on its grid; all blocks of all grids share the cores.
 
-    start: as `kernel.execute`, for all;  kept: columns whose rows are asked for
+    start: as in `kernel.execute`, for all cases;  kept: columns whose rows are returned
     begin: first row that is reduced
     """
     wanted = _Wanted(start, kept, reductions, begin)
@@ -145,7 +149,7 @@ def execute_many(
 
 @dataclass(frozen=True)
 class _Wanted:
-    """Where all runs start, and what is asked of them: arguments of `execute_many`."""
+    """Start and requested results of all runs: arguments of `execute_many`."""
 
     start: Mapping[str, float]
     kept: Sequence[int]
@@ -166,7 +170,7 @@ def _empty_results(run: GridRun, wanted: _Wanted) -> LaneResults:
 def _run_block(
     made: Program, run: GridRun, wanted: _Wanted, result: LaneResults, first: int
 ) -> None:
-    """Run the block that begins with that case, and write what its cases return."""
+    """Run the block of cases that starts with case `first`, and write their results."""
     here = slice(first, min(first + LANES, len(run.parameters)))
     columns, timing, used = made.functions["COLUMNS"], run.timing, here.stop - first
     rows, kept, loop = timing.samples + 1, wanted.kept, lanes_of(made)

@@ -1,4 +1,4 @@
-"""The symbols that stand for the signals of a diagram in its equations."""
+"""The symbols of a diagram's signals in its equations."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PERIOD = CONTROL_SIGNALS["period"]
 
 
 def signal(name: str) -> sp.Symbol:
-    """Symbol of a signal; of a motion, its position."""
+    """Symbol of a signal; for a motion, of its position."""
     return sp.Symbol(name, real=True)
 
 
@@ -29,27 +29,27 @@ def acceleration(motion: str) -> sp.Symbol:
 
 
 def reading_symbol(name: str) -> sp.Symbol:
-    """The reading of a sensor at a sample."""
+    """Symbol of a sensor's reading at a sample."""
     return sp.Symbol(f"{name}_measured", real=True)
 
 
 def travel_rate(motion: str) -> sp.Symbol:
-    """Measured travel of the last sample over its duration."""
+    """Symbol of the measured travel of the last sample over its duration."""
     return sp.Symbol(f"{motion}_travel_rate", real=True)
 
 
 def estimate(motion: str) -> sp.Symbol:
-    """Velocity as the computer knows it: filtered travel rate."""
+    """Symbol of the velocity as the computer estimates it: filtered travel rate, or an observer."""
     return sp.Symbol(f"{motion}_velocity_estimate", real=True)
 
 
 def rate_of(position: sp.Expr, rate: Callable[[str], sp.Expr]) -> sp.Expr:
-    """Rate of a position that bodies determine;  rate: motion -> its velocity."""
+    """Rate of change of a position on motions of bodies;  rate: motion -> its velocity."""
     return sp.Add(*(sp.diff(position, x) * rate(x.name) for x in position.free_symbols))
 
 
 def motion_of(diagram: Diagram, name: str) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Position, velocity and acceleration of a motion on those of the moving bodies."""
+    """Position, velocity and acceleration of a motion, written in those of the moving bodies."""
     position = diagram.position(name)
     speed = rate_of(position, velocity)
     bent = (sp.diff(speed, x) * velocity(x.name) for x in position.free_symbols)

@@ -1,4 +1,4 @@
-"""Bodies as they are simulated: absent effects left out, ideal friction with a short bristle."""
+"""Bodies prepared for simulation: without absent effects, ideal friction with a short bristle."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ _LOADS = SIGNALS["acting_force"], SIGNALS["carried_force"]
 def without_absent(body: Body, *, surely: bool = False) -> Body:
     """The body without absent effects, effects that need them, and parameters that are zero.
 
-    An optional parameter at zero is left out too, for the equations are simpler without it.
-    surely: keep those whose values have a standard error, so that they may be there
+    An optional parameter at zero is left out too, because the equations are simpler without it.
+    surely: keep effects whose values have a standard error, because they may be present
     """
     values = body.parameters
 
@@ -67,7 +67,7 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
 
 @lru_cache(maxsize=2)  # laws compare by identity
 def _bristle(of_any_level: bool) -> Effect:
-    """Presliding, or presliding of any friction level: of a tip, of a user's effect."""
+    """The effect presliding; of_any_level: for a tip or a user's friction level as well."""
     bristle = EFFECTS["presliding"]
     return replace(bristle, needs=frozenset()) if of_any_level else bristle
 
@@ -75,7 +75,8 @@ def _bristle(of_any_level: bool) -> Effect:
 def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
     """Ideal Coulomb friction realised by a bristle that deflects by `deflection` before it slides.
 
-    damping_ratio: of the inertia on this bristle while it sticks
+    deflection: m or rad;  damping_ratio: of the inertia on this bristle while it sticks
+    returns: the body itself where it has no friction level, or a friction shape already
     """
     roles = {e.role for e in body.effects}
     if "friction_level" not in roles or "friction_shape" in roles:
@@ -104,9 +105,10 @@ def _typical_load(body: Body) -> float:
 
 
 def check_levels(body: Body, where: str) -> None:
-    """ModelError where friction is below zero in a direction of motion, at rest or in fast sliding.
+    """Refuse friction below zero in a direction of motion, at rest or in fast sliding.
 
-    A bristle of such friction grows without bound while it slides, and the force with it.
+    A bristle of such friction would grow without bound while it slides, and the force with it.
+    raises ModelError: with the level and its effects
     """
     levels = least_levels(body, body.numbers().get) if may_be_negative(body) else {}
     for way, level in levels.items():
@@ -119,7 +121,7 @@ def check_levels(body: Body, where: str) -> None:
 
 
 def may_be_negative(body: Body) -> bool:
-    """Whether an effect that sets the friction level does not declare that it is non-negative."""
+    """Whether an effect of the friction level does not declare itself non-negative."""
     levels = (e for e in body.effects if e.role == "friction_level")
     return not all("non-negative" in e.always for e in levels)
 
@@ -127,7 +129,7 @@ def may_be_negative(body: Body) -> bool:
 def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any]:
     """Direction -> least friction level of the body, at rest and in fast sliding.
 
-    value: of a parameter's symbol, a number or an array: levels have its shape
+    value: symbol of a parameter -> number or array; levels have its shape
     """
     equation = body.equation()
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(equation.rates, 0)
@@ -143,9 +145,9 @@ def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any
 
 
 def realise_in_computer(diagram: Diagram, period: float) -> Diagram:
-    """The diagram with controllers as a computer of that period (s) realises them.
+    """The diagram with controllers as a computer of this period (s) realises them.
 
-    States that several controllers share are there once.
+    States that several controllers share exist once.
     """
     realised = {
         part.name: part.controller.sampled(period)
@@ -162,7 +164,7 @@ def without_no_delay(controller: Controller) -> Controller:
 
 
 def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) -> Diagram:
-    """The diagram with these in the places of their names; itself where nothing is another."""
+    """The diagram with these contents of its blocks, by name; itself where nothing changes."""
 
     def placed(part: Block) -> Block:
         if part.name not in contents:
@@ -182,10 +184,10 @@ def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) ->
 def prepare_for_simulation(
     diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()
 ) -> Diagram:
-    """The diagram with bodies as they are simulated: absent effects out, ideal friction with a
-    bristle.
+    """The diagram with bodies for simulation: no absent effects, ideal friction with a bristle.
 
-    prescribed: prescribed motions
+    deflection: of the bristle, m or rad;  prescribed: prescribed motions
+    raises ModelError: a block is known by its name only, or a friction level is negative
     """
     bodies: dict[str, Body | Controller] = {}
     for part in diagram.blocks:

@@ -1,8 +1,8 @@
 """An identified model as a file of a rigid-body simulator: MJCF (MuJoCo) and URDF (ROS, others).
 
-A joint of such a simulator has a Coulomb friction level, viscous damping, with MJCF a spring, an
-armature (inertia that turns with the joint) and a largest motor force. Nothing else of a model fits
-in: what does not is named in a comment of the file, and in `SimulatorFile.left_out`.
+A joint of such a simulator has a Coulomb friction level, viscous damping and a largest motor force;
+with MJCF also a spring and an armature (inertia that turns with the joint). Other effects of a
+model have no place. They are named in a comment of the file, and in `SimulatorFile.left_out`.
 """
 
 from __future__ import annotations
@@ -43,9 +43,10 @@ _LIMIT = "actuator_saturation.limit"
 
 @dataclass(frozen=True)
 class SimulatorFile:
-    """The text of a file, and what of the model it cannot hold.
+    """The text of a file, and the effects of the model that it cannot hold.
 
-    holds: (parameter, value in SI, unit, where in the file);  left_out: effects with their place
+    holds: (parameter, value in SI, unit, attribute in the file);  left_out: effects with their
+        place
     """
 
     text: str
@@ -54,10 +55,10 @@ class SimulatorFile:
 
 
 def as_simulator_file(model: Model, form: str, *, name: str = "identified") -> SimulatorFile:
-    """The model's bodies as separate joints, with a motor each; nothing couples them.
+    """The model's bodies as separate joints, each with a motor, without coupling.
 
     form: a key of `FORMS`;  name: of the model in the file
-    raises ModelError: no such form, or a body whose inertia is not a positive number
+    raises ModelError: the form is unknown, or an inertia is not positive
     """
     if form not in FORMS:
         raise ModelError(
@@ -167,7 +168,7 @@ def _inertia(body: Body) -> float:
 
 
 def _value(body: Body, parameter: str) -> float | None:
-    """A parameter's value; None where the body has no such effect, or it is absent."""
+    """A parameter's value; None where the body lacks the effect, or it is absent."""
     effect, _, local_name = parameter.partition(".")
     if parameter not in body.parameters:
         return None
@@ -183,7 +184,7 @@ def _list_left_out(model: Model, held: tuple[str, ...]) -> tuple[str, ...]:
 def _explain(
     root: ElementTree.Element, model: Model, of_form: str, *, held: tuple[str, ...]
 ) -> None:
-    """Put a comment first: the model's parameters, and what the form has no place for."""
+    """Put a comment first: the model's parameters, and the effects that the format cannot hold."""
     lines = [
         f"{n} = {v.value:.5g}{unit_after_number(model.unit(n))}"
         for n, v in model.parameters.items()

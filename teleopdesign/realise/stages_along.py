@@ -1,7 +1,7 @@
 """The actuation along a measured motion: from the recorded command to the force that acts.
 
-Each stage turns averages over the hold of a row into averages, over parts of it where a command
-acts late: that turns edges of the staircase into something between the rows.
+Input and output of a stage are averages over the hold of a row. Where a command acts late, they are
+averages over parts of the row, because edges of the held command then lie between the rows.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class ActuationStage:
     """A stage of the actuation along a motion: its input, hidden states and output.
 
     law: on symbols, its delayed signals as separate symbols;  delays: those symbols -> s
-    signals: symbols -> signals over `parts` equal parts of each row;  output: as long
+    signals: symbols -> signals over `parts` equal parts of each row;  output: likewise
     """
 
     effect: Effect
@@ -52,7 +52,10 @@ class ActuationStage:
 
 
 def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
-    """Acting force at the rows; along: at the rows, the command among its signals."""
+    """Acting force at the rows.
+
+    along: signals at the rows, the command among them
+    """
     stages = stages_along(body, motion, along)
     acting = filter_traced(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
     if COMMAND_LATE in along.columns:
@@ -66,7 +69,7 @@ def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
 def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStage]:
     """Each stage of the actuation, on averages over the hold of a row, or over parts of it.
 
-    along: at the rows, the command among its signals
+    along: signals at the rows, the command among them
     """
     effects = along.present(body.effects, "actuation")
     if not effects:
@@ -105,7 +108,7 @@ def _stage(effect: Effect, along: Along, parts: int) -> ActuationStage:
 
 
 def _shift(along: Along, delay: sp.Expr) -> Traced:
-    """The held command some time earlier, averaged over each hold: exact, linear between rows."""
+    """The held command delayed by `delay`, averaged over each hold: exact, linear between rows."""
     signal, step = along.signals[_COMMAND], along.step
     tau = float(delay.subs(along.values))
     whole, part = divmod(max(tau, 0.0) / step, 1.0)
@@ -122,7 +125,7 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
 
 
 def _delay_samples(y: Array, steps: int) -> Array:
-    """Signals (..., n) so many steps later: before they begin they are what they begin with."""
+    """Signals (..., n) delayed by `steps` samples; before that, they have their first value."""
     held = min(steps, y.shape[-1])
     shifted = np.empty_like(y)
     shifted[..., :held] = y[..., :1]

@@ -40,8 +40,8 @@ def tip_along(
     """Acceleration (n,) that the transmission gives the tip: f of this file, mean of each row.
 
     position, velocity: (n,) of the actuator's side, m or rad;  gap: g, its width
-    swing: q, rad/s, of the tip in contact with the actuator's side held;  damping_ratio: z
-    slowing: d, acceleration that dry friction takes from a tip that slides
+    swing: q, rad/s, natural frequency of the tip in contact;  damping_ratio: z
+    slowing: d, deceleration of a sliding tip by dry friction (m/s^2, rad/s^2)
     """
     steps = max(1, math.ceil(swing * sample_time / SWING))
     return _follow_tip(
@@ -61,9 +61,9 @@ def _follow_tip(
     law: tuple[float, float, float, float],
     steps: int,
 ) -> Array:
-    """Semi-implicit steps of one tip, which begins in the middle of its gap, at the same speed.
+    """Semi-implicit steps of one tip that starts in the middle of its gap, at the same speed.
 
-    step: seconds of one, `steps` a row;  law: half of the gap, stiffness, damping and slowing
+    step: s, of one of `steps` steps per row;  law: half of the gap, stiffness, damping and slowing
     """
     half, stiffness, damping, slowing = law
     out = np.zeros(len(position))

@@ -1,6 +1,6 @@
 """A body with compliance or backlash as two moving bodies, for simulation.
 
-The body of a `Moving` block with an effect of that role is parted at its transmission:
+The body of a `Moving` block with an effect of role "structure" is divided at its transmission:
 
     Z_M      (m - m_t) with friction and actuator, on the motion L that sensors see
     Z_M_tip  m_t, on the motion L_tip; hand, loads and contact act here
@@ -28,12 +28,12 @@ from ..errors import ModelError
 
 
 def tip(motion: str) -> str:
-    """Name of the motion of the tip behind that motion."""
+    """Name of the motion of the tip behind this motion."""
     return f"{motion}_tip"
 
 
 def led_motion(diagram: Diagram, motion: str) -> str:
-    """The motion that a hand leads: the tip's where a structure lies between, else itself."""
+    """The motion that a hand leads: the tip's where the body has a structure, else this motion."""
     for part in diagram.blocks:
         if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):
             if any(e.role == "structure" for e in part.body.effects):
@@ -42,9 +42,9 @@ def led_motion(diagram: Diagram, motion: str) -> str:
 
 
 def linear_tips(diagram: Diagram) -> Diagram:
-    """The diagram with bodies apart whose structure has a linear form; absent ones left out.
+    """The diagram with two bodies for each linear structure; absent structures are left out.
 
-    A structure without one (backlash) stays where it is: linear forms leave it out, by name.
+    A structure without a linear form (backlash) is not divided: linear forms leave it out, by name.
     """
     for part in diagram.blocks:
         if not isinstance(part, Moving) or not isinstance(part.body, Body):
@@ -64,9 +64,8 @@ def linear_tips(diagram: Diagram) -> Diagram:
 def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with every body that has a structure as two bodies.
 
-    prescribed: prescribed motions; of such a body only the tip's can be
-    raises ModelError: the tip is no lighter than the body, a prescribed motion that no outside
-        force drives
+    prescribed: prescribed motions; of such a body only the tip's can be prescribed
+    raises ModelError: the tip is not lighter than the body, or the actuator's side is prescribed
     """
     for part in diagram.blocks:
         if not isinstance(part, Moving) or not isinstance(part.body, Body):
@@ -118,7 +117,10 @@ def _part_body(diagram: Diagram, part: Moving, body: Body, structure: Effect) ->
 
 
 def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tuple[Body, Body]:
-    """The actuator's side, and the tip with what it touches."""
+    """The actuator's side, and the tip with its contact effects.
+
+    raises ModelError: the tip's inertia is not between zero and the body's
+    """
     inertia = body.parameters["inertia"].value
     behind = body.parameters[f"{structure.name}.tip_inertia"].value
     if not 0 < behind < inertia:
@@ -148,13 +150,13 @@ def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tup
 
 @lru_cache(maxsize=8)  # laws compare by identity
 def move_to_tip_body(effect: Effect) -> Effect:
-    """Friction of a tip as the friction level that it is of the tip as a separate body."""
+    """Friction of a tip, as the friction level of a separate body."""
     return replace(effect, role="friction_level", needs=frozenset())
 
 
 @lru_cache(maxsize=8)  # laws compare by identity: one structure, one kernel
 def transmission(structure: Effect) -> ControlLaw:
-    """The force of a structure from the difference of its two motions, as a law."""
+    """The force of a structure from the difference of its two motions, as a control law."""
 
     def force(now: Any, p: Any) -> sp.Expr:
         assert structure.coupling is not None

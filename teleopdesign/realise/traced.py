@@ -1,6 +1,6 @@
-"""Signals with their derivatives by parameters, and laws that carry both.
+"""Signals with their derivatives by parameters, and laws that compute both.
 
-`Along` holds what laws are evaluated on along one motion, and what their tangents are by.
+`Along` holds the signals and values for laws along one motion, and the parameters of the tangents.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..measurement.filtering import Array
 
 @dataclass(frozen=True)
 class Traced:
-    """A signal of n samples and its tangents (p, n) by the p parameters asked for.
+    """A signal of n samples and its tangents (p, n) by p parameters.
 
     moving: rows of the tangents that may differ from zero; None: any of them
     """
@@ -30,11 +30,11 @@ class Traced:
     moving: tuple[int, ...] | None = None
 
     def rows(self, at: slice | NDArray[np.intp] = slice(None)) -> Array:
-        """Value and tangents as rows of one array (1 + p, n);  at: of some samples only."""
+        """Value and tangents as rows of one array (1 + p, n);  at: selected samples."""
         return np.vstack([self.value[at][None], self.tangent[:, at]])
 
     def between(self, at: slice) -> Traced:
-        """The signal from one sample to another."""
+        """The signal at a slice of samples."""
         return Traced(self.value[at], self.tangent[:, at], self.moving)
 
     @property
@@ -52,7 +52,7 @@ class Traced:
         return self.subtract([other])
 
     def subtract(self, others: Sequence[Traced]) -> Traced:
-        """The signal without others; of their tangents only rows that may not be zero are read."""
+        """The signal less others; of their tangents only rows that may not be zero are read."""
         value = self.value
         for other in others:
             value = value - other.value
@@ -80,7 +80,7 @@ class Traced:
 
 
 def constant(value: Array, parameters: int) -> Traced:
-    """A signal (n,) that none of so many parameters changes: its tangents take no memory."""
+    """A signal (n,) that no parameter changes; its (p, n) tangents use no memory."""
     return Traced(value, _zero_signal(parameters, len(value)))
 
 
@@ -90,7 +90,7 @@ def _zero_signal(parameters: int, n: int) -> Array:
 
 
 def filter_traced(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
-    """A signal and its tangents through a linear filter; tangents that are zero stay so."""
+    """A signal and its tangents after a linear filter; tangents that are zero stay zero."""
     if signal.is_constant:
         return constant(filtered(signal.value), len(signal.tangent))
     rows = signal.moving
@@ -107,9 +107,9 @@ def filter_traced(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """A direction in which a model may be changed: the strength of an effect that it has at zero.
+    """A direction in which a model may change: the strength of an effect, at zero.
 
-    at: place;  symbol: of the strength;  values: parameter symbol -> value, of the effect's others
+    at: place;  symbol: of the strength;  values: symbol -> value of the effect's other parameters
     """
 
     at: str
@@ -119,7 +119,7 @@ class Probe:
 
 @dataclass(frozen=True)
 class LinkParameter:
-    """A base parameter of the arm that a body is a joint of; at: the body;  index: its number."""
+    """A base parameter of an arm; at: body of the joint;  index: number of the parameter."""
 
     at: str
     index: int
@@ -130,7 +130,7 @@ class Along:
     """Signals and values for laws along one motion of n samples.
 
     signals: symbol -> signal with its tangents;  values: parameter symbol -> value (SI)
-    columns: the p parameters and probes that the tangents (p, n) are by;  step: s between samples
+    columns: the p parameters and probes of the tangents (p, n);  step: s between samples
     """
 
     signals: Mapping[sp.Symbol, Traced]
@@ -147,11 +147,11 @@ class Along:
         return constant(signal, len(self.columns))
 
     def evaluate(self, law: sp.Expr) -> Traced:
-        """A law on these signals and values; hidden states carry tangents besides `TRACED`."""
+        """A law on these signals and values, with tangents by `TRACED` and hidden states."""
         return _law_beside(law, tuple(s for s in self.signals if s not in _KNOWN))(self)
 
     def present(self, effects: Sequence[Effect], role: Role) -> list[Effect]:
-        """Effects of a role, without absent ones that have states: their laws may divide by 0."""
+        """Effects of a role, without absent effects with states: their laws may divide by 0."""
         return [
             e
             for e in sort_by_action(tuple(effects), role)
@@ -161,7 +161,7 @@ class Along:
 
 @dataclass(frozen=True)
 class NumericLaw:
-    """A sympy expression as a numpy function of signals and parameters, with its derivatives."""
+    """A sympy expression as a numpy function of signals and parameters, with derivatives."""
 
     expression: sp.Expr
     signals: tuple[sp.Symbol, ...]
@@ -216,13 +216,13 @@ TRACED = frozenset(
 
 
 def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
-    """Derivative almost everywhere; at a jump, such as that of sgn, the derivative of its sides."""
+    """Derivative almost everywhere; at a jump, such as of sgn, the derivative beside it."""
     return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
 
 
 @lru_cache(maxsize=512)
 def _law_beside(law: sp.Expr, more: tuple[sp.Symbol, ...]) -> NumericLaw:
-    """The law on all signals and on these besides, which carry tangents."""
+    """The law on all signals and on these additional ones, which have tangents."""
     return law_of(law, (*_SIGNALS, *more), TRACED | set(more))
 
 
@@ -234,7 +234,7 @@ def law_of(
 ) -> NumericLaw:
     """The expression as a numpy function; every symbol that is no signal is a parameter.
 
-    traced: the signals that carry tangents; the motion is prescribed and carries none
+    traced: signals with tangents; the prescribed motion has none
     """
     used = tuple(s for s in signals if expression.has(s))
     parameters = tuple(sorted(expression.free_symbols - set(signals), key=str))

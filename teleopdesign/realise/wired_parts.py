@@ -1,4 +1,4 @@
-"""One part of a diagram as an equation on its signals; parts that have no equation."""
+"""One part of a diagram as an equation on its signals, and parts without equations."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ def _uses(effect: Effect, signal: sp.Symbol) -> bool:
 
 
 def refuse_unsimulated(part: Moving | Attached, diagram: str) -> None:
-    """Refuse a body with an effect that no simulation has: a hidden tip, or a record's channel."""
+    """Refuse a body with an effect that no simulation has: a hidden tip, or a record's channel.
+
+    raises ModelError: with the effect
+    """
     assert isinstance(part.body, Body)
     if parted := [e.name for e in part.body.effects if e.role == "structure"]:
         raise ModelError(
@@ -48,7 +51,10 @@ def refuse_unsimulated(part: Moving | Attached, diagram: str) -> None:
 
 
 def check_inputs(diagram: Diagram, motions: list[str]) -> None:
-    """Refuse a motion as input of a law that takes a force."""
+    """Refuse a motion as the input of a law that takes a force.
+
+    raises ModelError: with the law and the motion
+    """
     for part in diagram.controls:
         stages = part.controller.stages[:1] if isinstance(part.controller, Controller) else ()
         if part.input in motions and any(g.law.takes == "force" for g in stages):
@@ -68,7 +74,10 @@ def place_controller(
     others: tuple[sp.Expr, ...],
     late: LateSignals,
 ) -> ControllerEquation:
-    """The equation of a controller on signals; what it delays is put into `late`."""
+    """The equation of a controller on signals; its delayed signals are put into `late`.
+
+    raises ModelError: the law uses a velocity, but the controller has no motion
+    """
     assert isinstance(part.controller, Controller)
     signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
     signals["period"] = period
@@ -82,7 +91,7 @@ def place_controller(
 
 
 def sum_inputs(part: Junction | Kinematics, of: SignalReader) -> sp.Expr:
-    """Output of a junction or kinematics;  of: signal -> symbol that stands for it."""
+    """Output of a junction or kinematics;  of: name of a signal -> its symbol."""
     if isinstance(part, Kinematics):
         return _read(part.expression, of)
     return sp.Add(*(_read(weight, of) * of(s) for s, weight in part.terms.items()))

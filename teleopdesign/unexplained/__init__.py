@@ -39,7 +39,7 @@ __all__ = [
 class ResidualDescription(ByValue):
     """Residual of a fitted model on every body, and the signals that it depends on.
 
-    parts: one a body
+    parts: one per body
     """
 
     model: Model
@@ -83,9 +83,11 @@ def describe_residual(
 ) -> ResidualDescription:
     """Describe the force residual of a fitted model on each body.
 
-    model: with its free parameters re-estimated on the fit records (to first order they move here
-    too);  floor: that of a diagnosis that ended with this model: of the bodies' floors the same
-    part counts;  seed: of the draws for the noise floor
+    model: with its free parameters estimated on the fit records (here they change too, to first
+        order)
+    floor: noise floor of a diagnosis that ended with this model; the same part of each body's floor
+        counts; None: the whole floor
+    seed: of the random numbers for the noise floor
     """
     chosen = model.model if isinstance(model, Fit) else model
     bodies = [b for b in chosen.bodies if any(s.motion.body == b for s in prepared.of("fit"))]
@@ -107,8 +109,9 @@ def where_it_fails(
 def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> ResidualDescription:
     """Estimate the model again, then describe where it fails and what its residual depends on.
 
-    model: starting values;  experiment: its fit records estimate, its check records judge
-    seed: of the draws for the noise floor
+    model: its values are start values
+    experiment: dependences are estimated on its fit records and tested on its check records
+    seed: of the random numbers for the noise floor
     """
     prepared = prepare(experiment)
     return describe_residual(estimate_stated(model, prepared), prepared, seed=seed)

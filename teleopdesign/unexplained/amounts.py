@@ -1,4 +1,4 @@
-"""Numbers with units as one says them: "4 mm/s", "0.3 N", "12 %"."""
+"""Numbers with units in a readable form: "4 mm/s", "0.3 N", "12 %"."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _LENGTHS = ("position", "velocity")
 
 
 def unit_for(quantity: str, axis: str, largest: float) -> tuple[float, str]:
-    """Factor from SI and unit in which a quantity up to `largest` reads well."""
+    """Factor from SI, and the unit in which a quantity up to `largest` reads well."""
     unit = unit_of(quantity, axis)
     if quantity == "dimensionless":
         return 100.0, "%"
@@ -24,7 +24,7 @@ def unit_for(quantity: str, axis: str, largest: float) -> tuple[float, str]:
 
 
 def number(value: float) -> str:
-    """Two significant digits, without an exponent where that reads well."""
+    """A number with two significant digits, without an exponent where possible."""
     if value == 0.0 or not math.isfinite(value):
         return f"{value:g}"
     digits = max(0, 1 - math.floor(math.log10(abs(float(f"{value:.1e}")))))
@@ -34,7 +34,7 @@ def number(value: float) -> str:
 
 
 def amount(value: float, quantity: str, axis: str) -> str:
-    """A value (SI) with its unit."""
+    """A value (SI) with its unit, in a readable form."""
     factor, unit = unit_for(quantity, axis, value)
     return f"{number(factor * value)}{unit_after_number(unit)}"
 

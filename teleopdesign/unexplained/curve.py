@@ -1,4 +1,4 @@
-"""A dependence as one sees it in the residual: a smooth curve with a band, and binned means."""
+"""A dependence as it appears in the residual: a smooth curve with a band, and binned means."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ TELLS = 0.05
 
 @dataclass(frozen=True)
 class Curve:
-    """f of a shape: learnt from fit records, beside means over the checked rows.
+    """f of a shape, estimated on fit records, with means over the checked rows.
 
-    x: of the variable (g,), one zero where there is none;  y, low, high: f and its band (g,)
+    x: values of the variable (g,), one zero where there is none;  y, low, high: f and its band (g,)
     means: rows x, y, low, high of the binned means (4, b)
-    weight: squares of the carrier in the rows nearest to each x (g,)
-    All SI; the band holds under residuals that are correlated within a quarter of a second.
+    weight: sum of squares of the carrier in the rows nearest to each x (g,) All SI; the band holds
+        under residuals that are correlated within a quarter of a second.
     """
 
     x: Array
@@ -41,8 +41,8 @@ class Curve:
 def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
     """The curve in the residual without the earlier dependences.
 
-    A constant, a sinusoid and what the command loses are stated at their full size, that is with
-    the model's parameters free beside them; other lines are what the model as it is leaves.
+    A constant, a sinusoid and a lost command have their full size, estimated with the model's
+    parameters free. Other curves are the residual of the model with its present parameters.
     """
     left = rows.residual * rows.root
     for before in earlier:
@@ -64,11 +64,11 @@ def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...]
 
 
 def _coefficients(rows: Rows, columns: Columns, left: Array, last: int) -> tuple[Array, Array]:
-    """The last coefficients and their covariance.
+    """The last `last` coefficients (k,) and their covariance (k, k).
 
-    Curves of penalised least squares with the covariance of their smoothness taken as a prior cover
-    the truth across the curve; the noise is that of block sums, for rows are correlated.
-    Wahba, J. R. Stat. Soc. B 45 (1983) 133.
+    In penalised least squares, the covariance with the smoothness as a prior gives bands that cover
+    the truth across the curve. The noise is that of block sums, because rows are correlated. Wahba,
+    J. R. Stat. Soc. B 45 (1983) 133.
     """
     learnt = rows.learnt
     a, target = columns.values[learnt], left[learnt]
@@ -108,7 +108,7 @@ def _weight(rows: Rows, shape: Shape, x: Array) -> Array:
 
 
 def _means(rows: Rows, shape: Shape, left: Array, x: Array) -> Array:
-    """Means over bins of the checked rows, each with its band from blocks."""
+    """Means over bins of the checked rows with their bands: rows x, mean, low, high (4, b)."""
     if shape.variable is None:
         return np.zeros((4, 0))
     carrier = shape.carrier.at(rows) * rows.root
@@ -130,6 +130,6 @@ def _means(rows: Rows, shape: Shape, left: Array, x: Array) -> Array:
 
 
 def without_columns(dependence: Dependence) -> Dependence:
-    """The dependence without its columns, which are as long as the records."""
+    """The dependence without its columns, to save memory."""
     none = Columns(np.zeros((0, len(dependence.coefficients))), dependence.columns.penalty)
     return replace(dependence, columns=none)

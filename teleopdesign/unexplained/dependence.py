@@ -1,9 +1,10 @@
-"""How the residual depends on something, learnt on fit records and held against check records.
+"""How the residual depends on a variable, estimated on fit records and tested on check records.
 
-Beside each dependence the model's parameters move freely (to first order), so that nothing is
-called missing that another value of a parameter would explain. Roughness is weighed by blocks of
-the fit records held out in turn. What counts is the gain on rows that were not learnt from, in
-standard deviations of its chance part, by blocks: see `evidence`.
+With each dependence the model's parameters are free (to first order), so that a dependence is not
+reported where another value of a parameter explains the residual. The weight of the roughness
+penalty is chosen with blocks of the fit records held out in turn. The score is the gain on rows
+that were not used for the estimate, in standard deviations of its chance part, by blocks: see
+`evidence`.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ ALARM = 0.01
 
 @dataclass(frozen=True)
 class Columns:
-    """Weighted columns (n, k) with the penalty on their coefficients (k, k)."""
+    """Weighted regressor columns (n, k), and a penalty (k, k) on their coefficients."""
 
     values: Array
     penalty: Array
@@ -57,14 +58,14 @@ class Columns:
 
 @dataclass(frozen=True)
 class Dependence:
-    """One dependence, tested.
+    """One dependence with its test.
 
-    knots: of f, see `shapes.hats`;  columns: as fitted, weighted;  coefficients: of f (k,)
+    knots: of f, see `shapes.knots_of`;  columns: as fitted, weighted;  coefficients: of f (k,)
     before, after: weighted residual of the checked rows without and with it
-    score: gain on the checked rows in standard deviations of chance;  probability: that chance
-    alone brings such a score to one or more of all that was looked at
-    explained: part of the squares on the checked rows that it takes away
-    alike: names of others that do as well
+    score: gain on the checked rows in standard deviations of chance
+    probability: that chance alone gives this score to one or more of all tested dependences
+    explained: part of the squares on the checked rows that it removes
+    alike: names of other dependences that explain as much
     """
 
     shape: Shape
@@ -80,12 +81,12 @@ class Dependence:
 
     @property
     def squares(self) -> float:
-        """Sum of squares that it leaves on the checked rows."""
+        """Sum of squares that the dependence leaves on the checked rows."""
         return float(self.after @ self.after)
 
 
 def model_columns(rows: Rows) -> Columns:
-    """The columns of the model's free parameters: weighted, no penalty."""
+    """The columns of the model's free parameters: weighted and normalised, without penalty."""
     values = rows.tangents * rows.root[:, None]
     size = np.linalg.norm(values, axis=0)
     values = values[:, size > 0] / size[size > 0]
@@ -93,9 +94,9 @@ def model_columns(rows: Rows) -> Columns:
 
 
 def shape_columns(rows: Rows, shape: Shape, left: Array) -> tuple[Array, Columns] | None:
-    """Knots and columns of a shape, not smoothed; None where no row depends on it.
+    """Knots and columns of a shape, without smoothing; None where no row depends on it.
 
-    left: weighted residual (n,) that a sinusoid is looked for in
+    left: weighted residual (n,) in which a sinusoid is searched
     """
     knots = np.zeros(1)
     if shape.is_wave:
@@ -112,7 +113,7 @@ def shape_columns(rows: Rows, shape: Shape, left: Array) -> tuple[Array, Columns
 
 
 def predict_held_out(rows: Rows, columns: Columns) -> Array:
-    """Weighted residual of the checked rows beside what columns learnt elsewhere predict."""
+    """Weighted residual of the checked rows, less the prediction of columns fitted elsewhere."""
     target = rows.residual * rows.root
     left = np.zeros_like(target)
     for train, test in rows.splits:
@@ -123,7 +124,7 @@ def predict_held_out(rows: Rows, columns: Columns) -> Array:
 def fit_dependence(
     rows: Rows, beside: Columns, shape: Shape, knots_and_columns: tuple[Array, Columns]
 ) -> Dependence:
-    """Learn one dependence beside other columns and test it on the checked rows."""
+    """Estimate one dependence together with other columns, and test it on the checked rows."""
     knots, columns = knots_and_columns
     if shape.variable is not None and not shape.is_wave:
         columns = _with_smoothness(rows, beside, columns, roughness(shape, knots))
@@ -181,11 +182,12 @@ def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
 
 
 def is_real(dependence: Dependence, whole: float, floor_squares: float) -> bool:
-    """Whether the checked rows support it, by more than chance and by enough to matter.
+    """Whether the checked rows support a dependence, by more than chance and by enough to matter.
 
-    whole: squares on the checked rows that the model leaves;  floor_squares: what sensors alone do.
-    By the same measures as an effect of the ladder, where the gain may be the method's; one
-    beyond all that the sensors leave needs only to be no chance.
+    whole: squares on the checked rows that the model leaves
+    floor_squares: squares that the sensors alone leave there
+    The thresholds are those for an effect of the ladder, whose small gains may be errors of the
+    method. A gain above all that the sensors leave must only exceed chance.
     """
     gain = float(dependence.before @ dependence.before) - dependence.squares
     return (
@@ -198,10 +200,11 @@ def is_real(dependence: Dependence, whole: float, floor_squares: float) -> bool:
 def dependences(
     rows: Rows, floor_squares: float, *, most: int = 3
 ) -> tuple[tuple[Dependence, ...], tuple[Dependence, ...]]:
-    """What the residual depends on, largest first; and every test of the first round.
+    """The dependences of the residual, largest first, and every test of the first round.
 
-    floor_squares: what sensors alone leave on the checked rows;  most: dependences, at most
-    Each one is taken into account before the next is looked for.
+    floor_squares: squares that the sensors alone leave on the checked rows
+    most: largest number of dependences
+    Each dependence is fitted beside those before it.
     """
     target = rows.residual * rows.root
     whole = float(np.sum(target[rows.checked] ** 2))

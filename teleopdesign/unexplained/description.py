@@ -1,4 +1,4 @@
-"""One body: its rows, what they depend on, and the sentences made from that."""
+"""The description of one body: its rows, the dependences of its residual, and the sentences."""
 
 from __future__ import annotations
 
@@ -32,9 +32,10 @@ MOSTLY = 0.5
 
 @dataclass(frozen=True)
 class DescribedDependence:
-    """One dependence with all that is said about it.
+    """One dependence with its curve, formula and sentence.
 
-    curve: as the residual shows it;  formula: None where none with few terms holds
+    curve: as in the residual;  formula: None where none with few terms holds
+    contrasts: sizes in both directions, and after a rest or a reversal
     sentence: without its full stop;  graph: the figure of the sentence
     """
 
@@ -50,12 +51,13 @@ class DescribedDependence:
 class BodyResidual:
     """Residual of the model on one body, described.
 
-    error: relative force error on the check records (blocks of the fit records where none)
-    floor: what sensors alone would leave of it;  after: error without the explained part,
-    while it slides
-    at_rest: part of the squares that is left where no motion is sure
-    dependences: what the residual depends on, largest first
-    tests: of each dependence looked at, best first;  views: name -> graph of the residual
+    error: relative force error on the check records (or blocks of the fit records, without these)
+    floor: the error that sensors alone would leave
+    after: error without the explained part, on rows where the body slides; `error` without
+        dependences
+    at_rest: part of the residual's squares on rows where no motion is certain
+    dependences: dependences of the residual, largest first
+    tests: of every dependence, best first;  views: name -> graph of the residual
     """
 
     body: str
@@ -71,7 +73,7 @@ class BodyResidual:
 
     @property
     def floors(self) -> float:
-        """Error in noise floors."""
+        """Error as a multiple of the noise floor."""
         return self.error / self.floor if self.floor else float("inf")
 
     @property
@@ -85,7 +87,8 @@ def describe_body(
 ) -> BodyResidual:
     """Describe the force residual of a fitted model on one body.
 
-    counted: part of the noise floor that counts, 0 to 1;  seed: of the draws for the noise floor
+    counted: part of the noise floor that counts, 0 to 1
+    seed: of the random numbers for the noise floor
     """
     stretches = tuple(s for s in prepared.stretches if s.motion.body == body)
     of_body = replace(prepared, stretches=stretches)
@@ -173,7 +176,7 @@ def _finding(one: DescribedDependence, where: str) -> Finding:
 
 
 def _rest(part: BodyResidual, where: str) -> list[Finding]:
-    """Findings on the rest: its frequencies, its correlation in time, and its size."""
+    """Findings on the remaining residual: its frequencies, correlation in time, and size."""
     low, high = part.whiteness.band
     numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
     said = f"Half of what is left lies between {number(low)} and {number(high)} Hz"

@@ -1,7 +1,7 @@
 """A dependence as an effect file, in the form of `teleopdesign/effects`.
 
-With a formula its coefficients and numbers are the parameters, to be estimated; otherwise the
-curve's form is written down as numbers and only its size is estimated.
+With a formula, its coefficients and numbers are the parameters to be estimated. Otherwise the form
+of the curve is written as numbers, and only its size is estimated.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ EFFECT = Effect(
 def write_effect(
     path: str | Path, part: BodyResidual, described: DescribedDependence, prepared: Prepared
 ) -> None:
-    """Write the effect file of a dependence; the file's name becomes the effect's.
+    """Write the effect file of a dependence; the file's name becomes the effect's name.
 
-    raises ModelError: no law can say it, or the file's name is none for an effect
+    raises ModelError: no law can express the dependence, or the name is no name of an effect
     """
     path = Path(path)
     if not path.stem.isidentifier() or path.suffix != ".py":
@@ -74,7 +74,10 @@ def write_effect(
 
 
 def effect_text(part: BodyResidual, described: DescribedDependence, prepared: Prepared) -> str:
-    """The effect file as text; raises ModelError where no law can say the dependence."""
+    """The effect file as text.
+
+    raises ModelError: no law can express the dependence
+    """
     shape, formula = described.dependence.shape, described.formula
     variable = shape.variable
     if shape.carrier is LATENESS or (variable is not None and variable.name not in SIGNALS):
@@ -115,7 +118,7 @@ def capitalise(sentence: str) -> str:
 
 
 def _known_range(part: BodyResidual, described: DescribedDependence) -> str:
-    """The range of the variable that the records cover."""
+    """A sentence on the range of the variable in the records; "" without a variable."""
     variable, x = described.dependence.shape.variable, described.curve.x
     if variable is None:
         return ""
@@ -157,9 +160,9 @@ def _names(law: str) -> str:
 
 
 def _docstring_line(text: str) -> str:
-    """The text as it may stand in a docstring: nothing in it can end it, or begin an escape.
+    """The text in a form that is safe in a docstring: it cannot end it, or begin an escape.
 
-    It holds titles and file names, which are anybody's.
+    It contains titles and file names, which may hold any characters.
     """
     plain = "".join(c if c.isprintable() else " " for c in text)
     plain = plain.replace("\\", "/").replace('"', "'")

@@ -21,7 +21,11 @@ EXACT = 0.01
 
 @dataclass(frozen=True)
 class LawText:
-    """f as text on u and p, its parameters as lines of the file, those that are zero if absent."""
+    """A law as text: f on u and p, with its parameters.
+
+    parameters: lines of the file;  strengths: names of parameters that are zero if absent
+    equation: f in words, for the docstring of the file
+    """
 
     text: str
     parameters: tuple[str, ...]
@@ -42,7 +46,7 @@ def _parameter(
 
 
 def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> LawText:
-    """A formula, its coefficients and numbers as parameters."""
+    """The law of a formula, with its coefficients and numbers as parameters."""
     variable = formula.shape.variable
     assert variable is not None
     texts: list[str] = []
@@ -62,7 +66,7 @@ def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> La
 
 
 def _reach(quantity: str, unit: Mapping[str, float]) -> float:
-    """A round number of the record's scale: f is counted there, so that it has one unit."""
+    """A round number of the record's scale: the strength is that of f at this value."""
     return 1.0 if quantity == "time" else float(f"{unit[quantity]:.1g}")
 
 
@@ -80,7 +84,7 @@ def _term(
     quantity: str,
     unit: Mapping[str, float],
 ) -> tuple[str, float, list[str]]:
-    """Text of a term, its coefficient as the parameter counts it, lines of its numbers."""
+    """Text of a term, the value of its strength parameter, and lines of its other parameters."""
     n = term.number
     if term.kind == "power":
         return _power(term, float(value[0]), strength, quantity, unit)
@@ -124,7 +128,7 @@ def _power(
 
 
 def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) -> LawText:
-    """A line between points, of which only the size is a parameter; or a constant."""
+    """A law as a line between points, with its size as the only parameter; or a constant."""
     shape = dependence.shape
     quantity = shape.carrier.quantity
     values = dependence.coefficients
@@ -160,7 +164,7 @@ def _line(knots: Array, values: Array, u: str) -> str:
 
 
 def _select_points(knots: Array, values: Array) -> list[int]:
-    """The points that a line must pass so that it is nowhere off by more than `EXACT`."""
+    """Indices of points through which a line deviates nowhere by more than `EXACT`."""
     kept, start = [0], 0
     for end in range(2, len(knots)):
         inner = slice(start + 1, end)

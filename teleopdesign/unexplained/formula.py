@@ -1,4 +1,4 @@
-"""A sparse formula for a dependence: fitted on the fit records, kept if it holds on the others."""
+"""A sparse formula for a dependence: fitted on fit records, kept if it holds on check records."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ SURE = 3.0
 
 @dataclass(frozen=True)
 class Formula:
-    """Sum of coefficient times term, of one variable, times the carrier of the shape.
+    """Sum of coefficients times terms of one variable; times the carrier of the shape.
 
-    coefficients, errors: (k,), a sinusoid has two;  share: of the smooth curve's gain on the
-    checked rows, which it was not learnt from
+    coefficients, errors: (k,), two for a sinusoid
+    share: part of the smooth curve's gain on the checked rows
     """
 
     shape: Shape
@@ -57,7 +57,7 @@ class Formula:
 
 
 def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula | None:
-    """The formula with the fewest terms that does as well as the smooth curve; None if none does.
+    """The formula with the fewest terms that explains as much as the smooth curve; None: none does.
 
     beside: columns of the model's parameters and of earlier dependences
     """
@@ -98,7 +98,7 @@ def _terms(rows: Rows, beside: Columns, dependence: Dependence) -> list[FormulaT
 
 @dataclass(frozen=True)
 class _Search:
-    """Residual on the learning rows, beside columns with free coefficients.
+    """Residual on the learning rows, orthogonal to columns with free coefficients.
 
     span: orthonormal columns (n, k);  left: (n,), orthogonal to them
     """
@@ -113,14 +113,14 @@ class _Search:
         return cls(span, target - span @ (span.T @ target))
 
     def gains(self, columns: Array) -> Array:
-        """Squares that each column takes away by itself (k,)."""
+        """Squares that each column removes alone (k,)."""
         beyond_span = columns - self.span @ (self.span.T @ columns)
         size = np.sum(beyond_span**2, axis=0)
         kept = size > 1e-8 * np.sum(columns**2, axis=0)
         return np.where(kept, (beyond_span.T @ self.left) ** 2 / np.where(kept, size, 1.0), 0.0)
 
     def rank(self, terms: list[FormulaTerm], columns: Array) -> list[FormulaTerm]:
-        """Those first whose columns take most away; a sinusoid's two are nearly orthogonal."""
+        """The terms in the order of the squares that they remove; a sinusoid has two columns."""
         gains, at, each = self.gains(columns), 0, []
         for term in terms:
             each.append(float(gains[at : at + term.functions].sum()))
@@ -142,7 +142,7 @@ def _columns(rows: Rows, shape: Shape, terms: tuple[FormulaTerm, ...]) -> Column
 
 
 def _refine_number(rows: Rows, search: _Search, shape: Shape, term: FormulaTerm) -> FormulaTerm:
-    """The term with its number searched between its neighbours on the grid."""
+    """The term with its number optimised near its value on the grid."""
     if not term.is_searched or term.kind == "wave":  # a wave number is searched already
         return term
 
@@ -159,7 +159,7 @@ def _refine_number(rows: Rows, search: _Search, shape: Shape, term: FormulaTerm)
 def _checked_formula(
     rows: Rows, beside: Columns, dependence: Dependence, terms: tuple[FormulaTerm, ...]
 ) -> Formula | None:
-    """The formula of these terms, if each is sure and they hold on the checked rows."""
+    """The formula of these terms, if each is significant and they hold on the checked rows."""
     columns = _columns(rows, dependence.shape, terms)
     together = beside.beside(columns)
     after = predict_held_out(rows, together)

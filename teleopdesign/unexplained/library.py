@@ -1,6 +1,6 @@
-"""Terms that a sparse formula may be made of: powers, decays, bells, ramps, sinusoids.
+"""Terms of a sparse formula: powers, decays, bells, ramps, sinusoids.
 
-Each is a function of one variable with at most one number that it is not linear in.
+Each is a function of one variable, and nonlinear in at most one number.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ STARTS = 24
 
 @dataclass(frozen=True)
 class FormulaTerm:
-    """One term.
+    """One term of a formula: its kind and its number n.
 
-    kind: "power" (u^n), "decay" (exp(-u/n)), "bell" (exp(-(u/n)^2)), "above" and "below" (how far u
-    is beyond n), "beyond" (how far u is outside -n .. n), "wave" (cosine and sine of n cycles per
-    unit: two coefficients)
+    kind: "power" (u^n), "decay" (exp(-u/n)), "bell" (exp(-(u/n)^2)), "above" and "below" (distance
+        of u beyond n), "beyond" (distance of u from the range -n .. n), "wave" (cosine and sine
+        with n cycles per unit: two coefficients)
     """
 
     kind: str
@@ -47,19 +47,19 @@ class FormulaTerm:
 
     @property
     def functions(self) -> int:
-        """How many functions, and coefficients, it has."""
+        """Number of its functions, which is the number of coefficients."""
         return 2 if self.kind == "wave" else 1
 
     @property
     def is_searched(self) -> bool:
-        """Whether its number is searched."""
+        """Whether its number is optimised."""
         return self.kind != "power"
 
 
 def terms_of(variable: Variable, knots: Array, wave: float) -> list[FormulaTerm]:
     """The candidate terms over a variable whose f has these knots.
 
-    wave: number of cycles per unit to try, 0 for none
+    wave: cycles per unit of a sinusoid; 0: no sinusoid
     """
     low, high = float(knots[0]), float(knots[-1])
     terms = [FormulaTerm("power", p) for p in (1.0, 2.0, 3.0)]

@@ -21,7 +21,7 @@ ONLY = 0.25
 
 @dataclass(frozen=True)
 class Contrast:
-    """A dependence's size on two sides, each relative to its size overall, with standard errors.
+    """The size of a dependence on two sides, relative to its overall size, with standard errors.
 
     sides: such as ("forward", "backward");  sizes, errors: (2,)
     """
@@ -44,9 +44,9 @@ class Contrast:
 
 
 def contrasts(rows: Rows, dependence: Dependence, left: Array) -> tuple[Contrast, ...]:
-    """The dependence's size forward and backward, after a rest and after a mere reversal.
+    """Sizes of the dependence forward and backward, and after a rest and after a mere reversal.
 
-    left: weighted residual (n,) that it describes
+    left: weighted residual (n,) that the dependence describes
     """
     whole = dependence.columns.values @ dependence.coefficients
     direction, rested = rows.at("direction"), rows.at("rested")

@@ -1,7 +1,7 @@
-"""Where along a curve the device needs more than the model, or less: the ranges and the sizes.
+"""Ranges of a curve where the device needs more force than the model, or less, with sizes.
 
-The ranges that come first are those in which most of the residual's squares lie, not those where f
-is largest: a curve is large at its ends, where few rows are.
+The first ranges are those with most of the residual's squares, not those with the largest f: a
+curve is large at its ends, where few rows are.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ MOST, TURNS = 3, 4
 
 @dataclass(frozen=True)
 class SignRegion:
-    """A range of the variable (SI) where f keeps its sign and half of its extreme there.
+    """A range of the variable (SI) where f keeps its sign and at least half of its extreme value.
 
-    low, high: infinite where the range goes on to the end of what is known
-    share: of the squares that the curve explains, those where f has this sign around here
+    low, high: infinite where the range continues to the end of the known values
+    extreme: f of largest size in the range
+    share: part of the squares of the whole curve, in the run where f has this sign
     backward: the variable is negative here
     """
 
@@ -38,9 +39,9 @@ class SignRegion:
 
 
 def regions_of(curve: Curve, *, signed: bool = False) -> tuple[SignRegion, ...]:
-    """The ranges where f differs from zero by more than its band, largest size first.
+    """The ranges where f differs from zero by more than its band, largest share of squares first.
 
-    signed: f has a branch for each sign of the variable, looked at apart
+    signed: f has a separate branch for each sign of the variable
     """
     half = len(curve.x) // 2
     parts = [slice(None, half), slice(half, None)] if signed else [slice(None)]
@@ -58,18 +59,18 @@ def regions_of(curve: Curve, *, signed: bool = False) -> tuple[SignRegion, ...]:
 
 
 def largest_regions(regions: tuple[SignRegion, ...]) -> tuple[SignRegion, ...]:
-    """The largest ranges, those of a tenth of the squares or more, from low to high."""
+    """The first range, and further ones of more than a tenth of the squares, from low to high."""
     chosen = regions[:1] + tuple(r for r in regions[1:MOST] if r.share > NAMED)
     return tuple(sorted(chosen, key=lambda r: r.low))
 
 
 def goes_up_and_down(regions: tuple[SignRegion, ...]) -> bool:
-    """Whether the curve has so many ranges that none stands out."""
+    """Whether the curve has too many ranges to name them one by one."""
     return sum(r.share > 0.5 * NAMED for r in regions) >= TURNS
 
 
 def _runs(sign: Array) -> list[slice]:
-    """Runs of one sign; an uncertain part between two runs of one sign does not split them."""
+    """Runs of one sign; an uncertain part between two runs of one sign does not separate them."""
     edges = np.flatnonzero(np.diff(sign)) + 1
     runs: list[slice] = []
     for a, b in zip([0, *edges], [*edges, len(sign)], strict=True):

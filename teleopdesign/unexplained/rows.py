@@ -1,8 +1,8 @@
-"""Residual rows of one body, what else is known at each, and how a missing force would show there.
+"""Residual rows of one body, with all signals that the residual is compared with.
 
-Where a body sticks, friction balances whatever acts: a force that the model lacks leaves no
-residual. So every quantity that a residual is held against is first multiplied by what the
-residual would show of it (`push`, `grip`), then low-passed as the residual is.
+Where a body sticks, friction balances every force: a force that the model lacks leaves no residual.
+So every regressor is first multiplied by the residual per missing force (`push`, `grip`), then
+low-passed like the residual.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ PUSH, GRIP = _PUSH.named("unexplained_force", ""), _GRIP.named("unexplained_leve
 class StretchSignals:
     """One stretch at full rate: n samples, SI.
 
-    signals: name -> (n,): what a residual may depend on
+    signals: name -> (n,), signals that a residual may depend on
     push: residual per missing force: 1 while the body slides, 0 where it sticks
     grip: residual per missing friction level: the direction of sliding, 0 where it sticks
     """
@@ -56,9 +56,11 @@ class Rows:
 
     residual: low-passed, unit of the forces;  tangents: (n, p) by the free parameters
     measured: measured force, low-passed likewise
-    root: square root of the samples that a row stands for, 0 where no motion is sure: friction
-    is known there no better than between its bounds;  blocks: number of its quarter second
-    number: of its stretch;  splits: (rows to learn from, rows to hold it against), masks
+    root: square root of the samples that a row represents, 0 where no motion is certain: there only
+        bounds of friction are known
+    blocks: number of the row's quarter second
+    number: of the row's stretch
+    splits: pairs of masks: rows for estimates, rows for tests
     """
 
     body: str
@@ -75,16 +77,16 @@ class Rows:
 
     @property
     def checked(self) -> NDArray[np.bool_]:
-        """The rows on which learnt dependences are tested."""
+        """Mask of the rows on which dependences are tested."""
         return np.asarray(sum(test for _, test in self.splits), dtype=bool)
 
     @property
     def learnt(self) -> NDArray[np.bool_]:
-        """The rows that the description is learnt from in the end: those of the fit records."""
+        """Mask of the rows of the final estimates: those of the fit records."""
         return np.asarray(sum(train for train, _ in self.splits), dtype=bool)
 
     def lowpassed(self, columns: Callable[[StretchSignals], Array]) -> Array:
-        """Columns (n, k) at the rows, from signals (k, samples) of each stretch."""
+        """Low-passed columns (n, k) at the rows, from signals (k, samples) of each stretch."""
         return np.concatenate(
             [a.stretch.motion.lowpassed(columns(a))[:, a.stretch.keep].T for a in self.alongs]
         )

@@ -85,7 +85,7 @@ def _describe_since(region: SignRegion, variable: Variable, axis: str) -> str:
 
 
 def _size(value: float, shape: Shape, axis: str, *, backward: bool = False) -> str:
-    """How much more or less, in the words of the carrier."""
+    """The difference in force, in the words of the carrier."""
     carrier = shape.carrier
     if backward:  # there, more is against the motion
         value = -value
@@ -105,7 +105,7 @@ def _size(value: float, shape: Shape, axis: str, *, backward: bool = False) -> s
 def sentence_for(
     shape: Shape, curve: Curve, formula: Formula | None, contrasts: Sequence[Contrast], axis: str
 ) -> str:
-    """The sentence, without its full stop; "" where no range differs from zero for sure."""
+    """The sentence, without its full stop; "" where no range surely differs from zero."""
     if shape.variable is None:
         return _constant(shape, float(curve.y[0]), axis)
     regions = regions_of(curve, signed=shape.variable.signed)

@@ -1,9 +1,9 @@
-"""What a missing force may look like: a carrier times a function of one variable.
+"""Shapes of a missing force: a carrier times a function of one variable.
 
     missing force = carrier * f(variable)
 
-The carrier says what kind of physics it is (a force, a friction, a damping, a mass, ...). f is a
-line between knots, or a sinusoid of a wave number that is searched; without a variable a constant.
+The carrier is the kind of physics (a force, a friction, a damping, a mass, ...). f is a line
+between knots, or a sinusoid whose wave number is searched; without a variable it is a constant.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ from .rows import Rows, StretchSignals
 
 @dataclass(frozen=True)
 class Carrier:
-    """name: in results;  quantity: of f;  signal: what it multiplies beside push (or grip)."""
+    """The factor of f in a missing force.
+
+    name: in results;  quantity: of f;  signal: factor besides push (or grip)
+    friction: whether it acts as friction, with grip in place of push
+    """
 
     name: str
     quantity: str
@@ -27,12 +31,12 @@ class Carrier:
     friction: bool = False
 
     def along(self, along: StretchSignals) -> Array:
-        """The residual per f, not yet low-passed (samples,)."""
+        """The residual per f, before the low-pass (samples,)."""
         shown = along.grip if self.friction else along.push
         return shown * along.signals[self.signal] if self.signal else shown
 
     def at(self, rows: Rows) -> Array:
-        """The same at the rows, not low-passed (n,)."""
+        """The residual per f at the rows, before the low-pass (n,)."""
         shown = rows.grip if self.friction else rows.push
         return shown * rows.at(self.signal) if self.signal else shown
 
@@ -47,12 +51,12 @@ LATENESS = Carrier("lateness", "time", "force_rate")
 
 @dataclass(frozen=True)
 class Variable:
-    """What f depends on.
+    """The variable that f depends on.
 
-    name: a signal of `Along`;  knots: how many;  signed: f has a separate branch for each sign
-    bent: knots lie closer where the variable is small, as what happens at low speed takes little
-    of the range;  wave: f is a sinusoid
-    expected: the signal as the model expects it, for one that holds the residual itself
+    name: a signal of `StretchSignals`;  knots: their number;  signed: f has a branch for each sign
+    bent: knots are closer where the variable is small, because effects at low speed cover little of
+        the range;  wave: f is a sinusoid
+    expected: the signal as predicted by the model, for a variable that contains the residual
     """
 
     name: str
@@ -80,24 +84,24 @@ TRAVEL = Variable("travel", "position", knots=12, bent=True)
 
 @dataclass(frozen=True)
 class Shape:
-    """A carrier and what its size depends on (None: nothing, it is a constant)."""
+    """A carrier and the variable of f; None: f is constant."""
 
     carrier: Carrier
     variable: Variable | None = None
 
     @property
     def of_command(self) -> bool:
-        """Whether it may stand for another gain of the actuator."""
+        """Whether the shape may describe another gain of the actuator."""
         return self.carrier is LOST or (self.carrier is FORCE and self.variable is COMMAND)
 
     @property
     def is_wave(self) -> bool:
-        """Whether f is a sinusoid, whose wave number is looked for."""
+        """Whether f is a sinusoid, whose wave number is searched."""
         return self.variable is not None and self.variable.wave
 
     @property
     def name(self) -> str:
-        """Such as "friction over speed", or "force repeating over position"."""
+        """Name such as "friction over speed", or "force repeating over position"."""
         if self.variable is None:
             return self.carrier.name
         how = "repeating over" if self.is_wave else "over"
@@ -124,7 +128,7 @@ SHAPES = (
 
 
 def knots_of(variable: Variable, rows: Rows) -> Array:
-    """Knots of f over the range that the rows learnt from cover; empty where nothing is known."""
+    """Knots of f over the range of the learning rows; empty where these have no range."""
     values = rows.at(variable.name)
     shown = (rows.root > 0) & rows.learnt & np.isfinite(values)
     if np.count_nonzero(shown) < variable.knots or np.ptp(values[shown]) == 0.0:
@@ -147,9 +151,9 @@ def smallest_resolved(variable: Variable, rows: Rows) -> float:
 
 
 def basis(variable: Variable, knots: Array, values: Array) -> Array:
-    """Functions of the variable (k, n) that f is a sum of.
+    """Functions of the variable (k, n) whose weighted sum is f; zero where a value is not known.
 
-    knots: for a sinusoid its wave number, in cycles per unit;  zero where a value is not known
+    knots: for a sinusoid, its wave number in cycles per unit
     """
     known = np.isfinite(values)
     values = np.where(known, values, 0.0)
@@ -163,7 +167,7 @@ def basis(variable: Variable, knots: Array, values: Array) -> Array:
 
 
 def _hats(values: Array, knots: Array) -> Array:
-    """Lines between knots, continued beyond the outer ones: (k, n)."""
+    """Hat functions of lines between knots, continued beyond the outer knots: (k, n)."""
     place = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, len(knots) - 2)
     part = (values - knots[place]) / (knots[place + 1] - knots[place])
     hats = np.zeros((len(knots), len(values)))
@@ -174,7 +178,7 @@ def _hats(values: Array, knots: Array) -> Array:
 
 
 def functions_of(shape: Shape, knots: Array, values: Array) -> Array:
-    """Functions (k, n) at values of the variable (n,) that f is a sum of."""
+    """Functions (k, n) at values of the variable (n,) whose weighted sum is f."""
     variable = shape.variable
     if variable is None:
         return np.ones((1, len(values)))
@@ -185,21 +189,21 @@ def functions_of(shape: Shape, knots: Array, values: Array) -> Array:
 
 
 def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
-    """What the residual would show of each coefficient of f (n, k), low-passed."""
+    """The residual per coefficient of f (n, k), low-passed."""
     name = "time" if shape.variable is None else shape.variable.name
     return columns_from(shape, rows, lambda a: functions_of(shape, knots, a.signals[name]))
 
 
 def columns_from(shape: Shape, rows: Rows, functions: Callable[[StretchSignals], Array]) -> Array:
-    """What the residual would show (n, k) of functions (k, samples) times the shape's carrier."""
+    """The residual (n, k) by functions (k, samples) times the shape's carrier, low-passed."""
     columns = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
     return _relative_to_force(columns, rows) if shape.of_command else columns
 
 
 def _relative_to_force(columns: Array, rows: Rows) -> Array:
-    """Columns of what changes the acting force, relative to the force that is left to act.
+    """Columns of a change of the acting force, relative to the remaining acting force.
 
-    Where no other force is measured, less command with less of everything else leaves less
+    Where no other force is measured, a smaller command with smaller other forces leaves a smaller
     residual and explains nothing: see `residual.relative_residuals`.
     """
     learnt = rows.learnt

@@ -1,4 +1,4 @@
-"""What the model leaves, against everything that is looked at: graphs, one a view."""
+"""Graphs of the residual against each signal: one graph per view."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ LACKS = {
 
 
 def label(words: str, quantity: str, axis: str, largest: float = np.inf) -> tuple[float, str]:
-    """Factor from SI and the axis label with its unit; in SI unless the values are small."""
+    """Factor from SI, and the axis label with its unit; prefixed units for small values."""
     if not quantity:
         return 1.0, words
     if quantity == "acceleration" or not np.isfinite(largest):
@@ -57,7 +57,7 @@ def label(words: str, quantity: str, axis: str, largest: float = np.inf) -> tupl
 
 
 def views_of(rows: Rows, whiteness: Whiteness) -> dict[str, Graph]:
-    """The residual of every row against each view, forward and backward apart, with means."""
+    """Graphs of the residual against each view, forward and backward separately, with means."""
     return {
         **{name: _view(rows, *VIEWS[name]) for name in VIEWS},
         "frequency": _frequency(rows, whiteness),
@@ -86,7 +86,7 @@ def _view(rows: Rows, signal: str, quantity: str, words: str) -> Graph:
 
 
 def _bin_means(x: Array, y: Array, blocks: NDArray[np.intp]) -> Array:
-    """Means in bins of equally many rows with bands by blocks: rows x, y, low, high (4, b)."""
+    """Means in bins of equally many rows, with bands by blocks: rows x, mean, low, high (4, b)."""
     if not len(x):
         return np.zeros((4, 0))
     edges = np.unique(np.quantile(x, np.linspace(0, 1, BINS + 1)))

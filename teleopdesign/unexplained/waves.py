@@ -1,4 +1,4 @@
-"""The wave number of what repeats along the travel or in time, by search on the residual."""
+"""The wave number of a pattern along the travel or in time, by search on the residual."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ FINENESS = 4
 
 
 def wave_number(rows: Rows, left: Array, shape: Shape) -> float:
-    """Cycles per unit of the variable of the sinusoid that takes most from what is left.
+    """Cycles per unit of the variable of the sinusoid that removes most of the residual.
 
-    left: weighted residual (n,);  0 where the rows know nothing of the variable
+    left: weighted residual (n,)
+    returns: 0 where the rows have no range of the variable
     """
     assert shape.variable is not None
     values = rows.at(shape.variable.name)
@@ -45,7 +46,7 @@ def wave_number(rows: Rows, left: Array, shape: Shape) -> float:
 
 
 def _gain(wave: NDArray[np.complex128], carrier: Array, left: Array) -> float:
-    """Squares that carrier times a sinusoid takes away: two columns by their normal equations."""
+    """Squares that carrier times a sinusoid removes: two columns, by their normal equations."""
     p, q = carrier * wave.real, carrier * wave.imag
     pp, qq, pq, pl, ql = (float(np.dot(*d)) for d in ((p, p), (q, q), (p, q), (p, left), (q, left)))
     free = max(pp * qq - pq * pq, 1e-9 * (pp + qq) ** 2, 1e-300)

@@ -1,7 +1,7 @@
-"""Whether what is left is more than sensor noise by its pattern: memory, and its frequencies.
+"""Whether the residual differs from sensor noise by its pattern: correlation and frequencies.
 
-Sensor noise below the comparison's low-pass remembers no more than that filter does. What is left
-of a force is slower: it goes along with itself some tenths of a second later.
+Sensor noise below the comparison's low-pass is correlated only as long as this filter responds. The
+residual of a missing force is slower: it is correlated over some tenths of a second.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ LAGS = 12
 class Whiteness:
     """Autocorrelation of the residual.
 
-    lag: s, (l,);  correlation: (l,), with noise: its standard deviation by chance
-    probability: that chance alone brings the largest, over all lags
+    lag: s, (l,);  correlation: (l,);  noise: (l,) standard deviation of the correlation by chance
+    probability: that chance alone gives the largest correlation, over all lags
     spectrum: rows frequency (Hz), rms of the residual and of the measured force per band (3, f)
     """
 
@@ -40,7 +40,7 @@ class Whiteness:
 
     @property
     def band(self) -> tuple[float, float]:
-        """The frequencies (Hz) between which half of what is left lies, a quarter on each side."""
+        """The frequencies (Hz) with a quarter of the residual's squares below, and above."""
         squares = np.cumsum(self.spectrum[1] ** 2)
         share = squares / max(float(squares[-1]), 1e-300)
         low, high = np.interp([0.25, 0.75], share, self.spectrum[0])
@@ -48,7 +48,7 @@ class Whiteness:
 
 
 def whiteness_of(rows: Rows) -> Whiteness:
-    """Look for memory in what is left on all rows, by blocks of a quarter of a second."""
+    """Autocorrelation of the residual on all rows, tested by blocks of a quarter of a second."""
     lags = np.geomspace(FORGOTTEN / rows.bandwidth, 2 * BLOCK, LAGS)
     left = rows.residual
     whole = float(left @ left)
@@ -71,7 +71,10 @@ def whiteness_of(rows: Rows) -> Whiteness:
 
 
 def _spectrum(rows: Rows, parts: list[NDArray[np.intp]], steps: list[float]) -> Array:
-    """Rms per band of a hertz or more, of the residual and of the measured force."""
+    """Band frequency, rms of the residual and of the measured force per band (3, f).
+
+    The bands are logarithmic from 1 Hz to the bandwidth, with one band below 1 Hz.
+    """
     edges = np.concatenate([[0.0], np.geomspace(1.0, rows.bandwidth, 25)])
     squares = np.zeros((2, len(edges) - 1))
     for part, step in zip(parts, steps, strict=True):

@@ -1,11 +1,11 @@
 """Answer files, read back: the model that a diagnosis ended with, or the diagnosis itself.
 
-saved = load_answer("answer.json")
-saved.model(catalogue(effect_files), experiment)    # with its axes, environment and users' effects
-restored(saved, experiment, known)                  # a Diagnosis: nothing is sought anew
+    saved = load_answer("answer.json")
+    saved.model(catalogue(effect_files), experiment)  # with axes, environment and users' effects
+    restore_diagnosis(saved, experiment, known)       # a Diagnosis: nothing is searched again
 
-`diagnose.answer` writes them, with the words on models and experiment by `bodies` and
-`fingerprint` here.
+`diagnose.answer` writes answer files; `bodies` and `fingerprint` here describe the models and the
+experiment in them.
 """
 
 from .restored import restore_diagnosis

@@ -1,4 +1,4 @@
-"""Bodies of a model as plain data, in the tables of experiments, diagrams and answers."""
+"""Bodies of a model as plain data, in the format of experiments, diagrams and answers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def model_data(model: Model) -> dict[str, Any]:
 def body_data(body: Body) -> dict[str, Any]:
     """A body as the table that `measurement.description.body_from` reads.
 
-    A value that is not finite is left out: its effect is absent there, and is read so.
+    A value that is not finite is left out: its effect is absent there, and a reader restores it so.
     """
     return {
         "axis": body.axis,
@@ -65,10 +65,11 @@ def _error(value: Value) -> dict[str, float]:
 def model_from(
     content: Mapping[str, Any], known: Mapping[str, Effect], *, file: str, key: str
 ) -> Model:
-    """The model of such data.
+    """The model of data that `model_data` wrote.
 
-    file, key: where the data stand, for messages;  known: effects by name
-    raises ExperimentError: what no model is, or an effect that is not known
+    known: effects by name
+    file, key: where the data are, for messages
+    raises ExperimentError: the data are no model, or an effect is unknown
     """
     bodies = {}
     effects = with_block_effects(known)
@@ -86,7 +87,10 @@ def model_from(
 
 
 def _links_from(entry: object, where: str) -> tuple[float, ...]:
-    """The base parameters of an arm, in SI."""
+    """The base parameters of an arm, in SI.
+
+    raises ExperimentError: the entry is no list of finite numbers
+    """
     if isinstance(entry, list) and all(
         isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in entry
     ):
@@ -95,7 +99,7 @@ def _links_from(entry: object, where: str) -> tuple[float, ...]:
 
 
 def _shifts_from(shifts: Table) -> dict[str, Value]:
-    """The shifts of the records, by body."""
+    """The shifts of the records (s) by log."""
     tables = {place: shifts.table(place) for place in shifts.content}
     return {
         place: Value(
@@ -108,7 +112,10 @@ def _shifts_from(shifts: Table) -> dict[str, Value]:
 
 
 def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effect:
-    """The effect of that name; a line that asks for its file where it is a user's effect."""
+    """The effect of that name.
+
+    raises ExperimentError: the name is unknown; the message asks for the file of a user's effect
+    """
     if name not in known:
         raise ExperimentError(
             f"{where}: no effect {quote(name)}{did_you_mean(name, known)}; "

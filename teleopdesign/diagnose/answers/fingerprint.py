@@ -1,4 +1,4 @@
-"""Fingerprint of an experiment: title, records and a digest, so that an answer fits its records."""
+"""Fingerprint of an experiment: title, records and a digest, to match answers and records."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def experiment_data(experiment: Experiment) -> dict[str, Any]:
 def digest(experiment: Experiment) -> str:
     """SHA-256 of every record as it was read: use, clock and signals in SI, by their names.
 
-    How a file is packed does not count, a unit, sign or column that is read otherwise does.
+    The packing of a file does not change it; another unit, sign or column does.
     """
     whole = hashlib.sha256()
     for r in experiment.records:
@@ -39,7 +39,7 @@ def digest(experiment: Experiment) -> str:
 
 
 def difference(expected: Mapping[str, Any], experiment: Experiment) -> str | None:
-    """How the expected experiment differs from this one, in words; None where they are the same."""
+    """How the expected experiment differs from this one, in words; None: they are equal."""
     present = experiment_data(experiment)
     for key, words in (("title", "title"), ("axes", "bodies"), ("records", "records")):
         if expected[key] != present[key]:
@@ -50,7 +50,7 @@ def difference(expected: Mapping[str, Any], experiment: Experiment) -> str | Non
 
 
 def bodies_text(axes: Mapping[str, str]) -> str:
-    """Bodies by name with their axes: "device (prismatic)"."""
+    """Names of bodies with their axes, as text: "device (prismatic)"."""
     return ", ".join(f"{place} ({axis})" for place, axis in axes.items())
 
 

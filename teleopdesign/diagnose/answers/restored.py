@@ -33,9 +33,10 @@ _NEEDED = ("models", "floor", "open", "bandwidth")
 class _Steps:
     """The content of an answer as objects, before any residual is computed.
 
-    models: of each rung;  estimated: the last before what its readings do was taken off
+    models: of each rung
+    estimated: the last model, before the error of its readings was removed
     added, replaced, equals, could_be: of each rung
-    open: candidates with the models that they were compared by
+    open: for each question, the accepted effect, and its rivals with their models
     """
 
     models: tuple[Model, ...]
@@ -54,13 +55,13 @@ def restore_diagnosis(
     *,
     records: Prepared | None = None,
 ) -> Diagnosis:
-    """The diagnosis in an answer, with its figures; residuals are computed, nothing is estimated.
+    """The diagnosis in an answer, with its errors; residuals are computed, nothing is estimated.
 
-    known: effects by name, those of the user among them
-    records: made ready for comparison, as those of an arm's joint; default: made ready now
-    It has no rankings: the candidates are in the answer, what is left open in `Diagnosis.open`.
-    raises ExperimentError: the answer to another experiment, one of an earlier version, an effect
-        that is not known
+    known: effects by name, with those of the user
+    records: prepared records, as of an arm's joint; None: they are prepared here
+    It has no rankings: the candidates are in the answer, open questions in `Diagnosis.open`.
+    raises ExperimentError: the answer is to another experiment or of an earlier version, or an
+        effect is unknown
     """
     saved.require(experiment)
     steps, content = steps_of(saved, known), saved.content
@@ -107,7 +108,7 @@ def restore_diagnosis(
 
 
 def _set_aside(saved: SavedAnswer, known: Mapping[str, Effect]) -> tuple[SetAside, ...]:
-    """Effects that were accepted and are not there, with the reason."""
+    """Effects that were accepted and later removed, each with the reason."""
     return tuple(
         SetAside(
             _restore_candidate(saved, row, known, "set_aside"),
@@ -119,7 +120,7 @@ def _set_aside(saved: SavedAnswer, known: Mapping[str, Effect]) -> tuple[SetAsid
 
 
 def with_errors_of(row: Mapping[str, Any], fit: Fit) -> Fit:
-    """A fit with the errors that a row of an answer states; NaN where it has no such record."""
+    """A fit with the errors that a row of an answer states; NaN where the row states none."""
     return replace(
         fit, fit_error=error_from(row["fit_error"]), check_error=error_from(row["check_error"])
     )
@@ -128,13 +129,16 @@ def with_errors_of(row: Mapping[str, Any], fit: Fit) -> Fit:
 def evaluate_fit(model: Model, prepared: Prepared) -> Fit:
     """A fit with the residuals of a model and their derivatives; no parameter changes.
 
-    Without check records, what is held out is fitted from here, as `estimate` does.
+    Without check records, the held-out blocks are fitted from these values, as by `estimate`.
     """
     return replace(estimate(model, prepared, effort=EFFORTS.stay), model=model)
 
 
 def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
-    """The models and candidates of an answer; raises ExperimentError: they do not go together."""
+    """The models and candidates of an answer.
+
+    raises ExperimentError: the answer is of an earlier version, or its parts contradict each other
+    """
     _require_models(saved)
     content = saved.content
     rows, models = content["ladder"], content["models"]
@@ -192,7 +196,10 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
 
 
 def _require_models(saved: SavedAnswer) -> None:
-    """Raises ExperimentError: an answer without what restoring needs, a model for each row."""
+    """Refuse an answer that lacks data for restoring, or a model for each row of its ladder.
+
+    raises ExperimentError: it lacks them
+    """
     content = saved.content
     for key in _NEEDED:
         if key not in content:
@@ -231,7 +238,7 @@ def _is_named_nonetheless(group: Sequence[Mapping[str, Any]], known: Mapping[str
 def _restore_candidate(
     saved: SavedAnswer, row: Mapping[str, Any], known: Mapping[str, Effect], key: str
 ) -> Candidate:
-    """The candidate of a row, whether or not a model of the answer has it."""
+    """The candidate of a row, whether or not a model of the answer has this effect."""
     effects = with_block_effects(known)
     return Candidate(known_effect(row["effect"], effects, where=f"{saved.file}: {key}"), row["at"])
 

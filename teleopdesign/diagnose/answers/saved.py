@@ -20,9 +20,9 @@ from .schema import read_content
 
 @dataclass(frozen=True)
 class SavedAnswer:
-    """The content of an answer file, whose keys and types are right.
+    """The checked content of an answer file.
 
-    file: its name in messages;  content: as `diagnose.answer.answer` tells it
+    file: its name in messages;  content: as `diagnose.answer.answer` writes it
     """
 
     file: str
@@ -35,10 +35,10 @@ class SavedAnswer:
 
     @property
     def folder(self) -> Path:
-        """The folder of its experiment, as seen from the answer's folder.
+        """The folder of its experiment.
 
-        raises ExperimentError: it says none, as one of an earlier version; or none is there any
-            more
+        raises ExperimentError: an answer of an earlier version names no folder, or the folder is
+            absent
         """
         recorded = self.content.get("experiment", {}).get("folder")
         if recorded is None:
@@ -56,7 +56,7 @@ class SavedAnswer:
 
     @property
     def left(self) -> float:
-        """Error that is left, in noise floors."""
+        """Final error as a multiple of the noise floor."""
         floor, last = self.content["noise_floor"], self.content["ladder"][-1]["check_error"]
         computed = last / floor if floor and last is not None else None
         left = self.content.get("left_over_noise_floors", computed)
@@ -65,12 +65,13 @@ class SavedAnswer:
     def model(
         self, known: Mapping[str, Effect] = EFFECTS, experiment: Experiment | None = None
     ) -> Model:
-        """The model that the diagnosis ended with.
+        """The final model of the diagnosis.
 
-        known: effects by name, the user's too;  experiment: that of the answer. An older
-            answer says neither axes nor what is fixed: they are the experiment's, or without it
-            what the units of the inertias say, and nothing is fixed
-        raises ExperimentError: the answer to another experiment, an effect that is not known
+        known: effects by name, with those of the user
+        experiment: the experiment of the answer. An older answer states neither axes nor fixed
+            parameters. They come from the experiment; without it the units of the inertias give the
+            axes, and only chosen parameters are fixed
+        raises ExperimentError: the answer is to another experiment, or an effect is unknown
         """
         if experiment is not None:
             self.require(experiment)
@@ -87,7 +88,8 @@ class SavedAnswer:
     def of_joint(self, joint: str) -> SavedAnswer:
         """The answer on one joint of an arm.
 
-        raises ExperimentError: no such joint, or one of an earlier version, which has no models
+        raises ExperimentError: there is no such joint, or the answer is of an earlier version,
+            without models
         """
         joints = self.content.get("joints", {})
         if joint not in joints:
@@ -102,9 +104,10 @@ class SavedAnswer:
         return SavedAnswer(self.file, joints[joint])
 
     def require(self, experiment: Experiment) -> None:
-        """Refuse the answer to another experiment; an older answer is compared as far as it goes.
+        """Refuse the answer to another experiment.
 
-        raises ExperimentError: with what differs
+        An older answer is compared as far as possible.
+        raises ExperimentError: with the difference in words
         """
         recorded = self.content.get("experiment")
         if recorded is None:
@@ -118,7 +121,10 @@ class SavedAnswer:
             )
 
     def require_bodies(self, model: Model, experiment: Experiment) -> None:
-        """Refuse a model of other bodies, or on other axes, than were recorded."""
+        """Refuse a model of other bodies, or on other axes, than the experiment's.
+
+        raises ExperimentError: with both in words
+        """
         axes = {name: body.axis for name, body in model.bodies.items()}
         expected = {name: body.axis for name, body in experiment.bodies.items()}
         if axes != expected:
@@ -131,13 +137,16 @@ class SavedAnswer:
 def load_answer(path: str | Path) -> SavedAnswer:
     """Read an answer that `teleopdesign diagnose --json` wrote.
 
-    raises ExperimentError: no such file, or no such answer
+    raises ExperimentError: the file cannot be read, or is no answer
     """
     return SavedAnswer(str(path), read_content(path))
 
 
 def _parameters(saved: SavedAnswer) -> dict[str, Mapping[str, Any]]:
-    """Every parameter of the last model by its full name: the user's, then those of each rung."""
+    """Every parameter of the last model by its full name: of the user's effects, then of each rung.
+
+    raises ExperimentError: an effect of the ladder is not among the candidates
+    """
     content = saved.content
     parameters = dict(content["model_parameters"])
     rows = {(c["effect"], c["at"]): c["parameters"] for c in content["candidates"]}
@@ -156,7 +165,11 @@ def _parameters(saved: SavedAnswer) -> dict[str, Mapping[str, Any]]:
 def _older_bodies(
     saved: SavedAnswer, experiment: Experiment | None, known: Mapping[str, Effect]
 ) -> dict[str, Any]:
-    """Bodies as tables, from the full names of parameters; places in the order of an experiment."""
+    """Bodies as tables, from the full names of parameters in an older answer.
+
+    experiment: gives the axes; None: the units of the inertias do
+    raises ExperimentError: a body has no inertia, or a name belongs to no body
+    """
     parameters = _parameters(saved)
     places = list(dict.fromkeys(name.partition(".")[0] for name in parameters))
     bodies = [place for place in places if place != CONTACT.name]
@@ -194,7 +207,10 @@ def _is_chosen(effect: Effect | None, key: str) -> bool:
 
 
 def _axis_of(saved: SavedAnswer, place: str, unit: str) -> str:
-    """The axis of an older answer, whose inertias are in SI: each axis has a different unit."""
+    """The axis of a body in an older answer, by the unit of its inertia (SI).
+
+    raises ExperimentError: the unit is that of no axis
+    """
     for axis in AXES:
         if unit == unit_of("inertia", axis):
             return axis
@@ -206,7 +222,7 @@ def _axis_of(saved: SavedAnswer, place: str, unit: str) -> str:
 
 
 def _as_stated(model: Model, experiment: Experiment, known: Mapping[str, Effect]) -> Model:
-    """The model with what its experiment holds fixed."""
+    """The model with the parameters fixed that its experiment fixes."""
     stated = Model.from_experiment(experiment, known).parameters
     fixed = {n for n, v in stated.items() if v.fixed}
     values = {n: replace(v, fixed=True) for n, v in model.parameters.items() if n in fixed}

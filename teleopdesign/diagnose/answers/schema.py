@@ -1,8 +1,7 @@
-"""What an answer file must hold: every key, its type and range, reported in one line where it
-fails.
+"""Keys, types and ranges of an answer file, checked with a message in one line.
 
-Keys that are not known here are allowed: a later version may say more. `models`, `experiment`,
-`floor` and `open` came later than the rest: an older answer has none of them.
+Unknown keys are allowed: a later version may write more. `models`, `experiment`, `floor` and `open`
+were added later: an older answer has none of them.
 """
 
 from __future__ import annotations
@@ -25,9 +24,9 @@ WRITER = "`teleopdesign diagnose --json`"
 
 
 def read_content(path: str | Path) -> dict[str, Any]:
-    """The content of an answer file, checked.
+    """The checked content of an answer file.
 
-    raises ExperimentError: cannot be read, is no JSON, or is no answer
+    raises ExperimentError: the file cannot be read, is no JSON, or is no answer
     """
     try:
         content = json.loads(read_whole(path).decode("utf-8-sig"), parse_constant=_constant)
@@ -50,7 +49,10 @@ def read_content(path: str | Path) -> dict[str, Any]:
 
 
 def check_answer(content: object) -> None:
-    """Refuse what is no answer; raises ExperimentError with the key in front."""
+    """Refuse content that is no answer.
+
+    raises ExperimentError: with the wrong key in front
+    """
     if not isinstance(content, dict):
         raise ExperimentError(f"found {_describe_value(content)}, expected an answer of {WRITER}")
     if lacking := [key for key in _REQUIRED if key not in content]:
@@ -135,7 +137,7 @@ def _list_of(inside: Check, *, least: int = 0) -> Check:
 
 
 def _table_of(inside: Check) -> Check:
-    """Any names, each with such a value."""
+    """A check of a table with any names, each with a value that passes the same check."""
 
     def check(value: object, where: str) -> None:
         if not isinstance(value, dict):
@@ -147,7 +149,7 @@ def _table_of(inside: Check) -> Check:
 
 
 def _table(required: Mapping[str, Check], optional: Mapping[str, Check] | None = None) -> Check:
-    """These names, and any others beside them."""
+    """A check of a table with these names; other names are allowed."""
 
     def check(value: object, where: str) -> None:
         if not isinstance(value, dict):
@@ -171,7 +173,7 @@ _PARAMETER = _table(
 
 
 def _bodies(value: object, where: str) -> None:
-    """Bodies of a model, and base parameters of an arm; details are for their reader to say."""
+    """Check bodies of a model, and base parameters of an arm; `model_from` checks the details."""
     _table({}, {"links": _list_of(_number())})(value, where)
     assert isinstance(value, dict)
     _table_of(_table({}))({n: body for n, body in value.items() if n != "links"}, where)

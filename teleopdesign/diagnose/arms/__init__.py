@@ -1,7 +1,7 @@
 """Diagnosis of an arm: several joints that share the inertial parameters of its links.
 
-Each joint is diagnosed as a body by itself, with what the other joints know of the links
-(`shared_links`); the effects named at one joint sharpen what the others know.
+Each joint is diagnosed as a separate body, with the information of the other joints on the links
+(`shared_links`). Effects that are accepted at one joint improve this information.
 """
 
 from .diagnosis import ArmDiagnosis, ArmRung

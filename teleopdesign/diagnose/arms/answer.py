@@ -1,4 +1,4 @@
-"""The answer on an arm: as that on one body, with the errors of each joint in its ladder."""
+"""The answer on an arm: like that on one body, with the errors of each joint in its ladder."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def write_arm_answer(
     *,
     simulation: SimulationComparison | None = None,
 ) -> None:
-    """Write the answer as JSON, with where its experiment is, as seen from the answer.
+    """Write the answer as JSON, with the path of its experiment relative to the answer.
 
     simulation: the final model compared by simulation, to be written too
     """
@@ -130,9 +130,9 @@ def write_arm_answer(
 
 
 def write_arm_predictions(diagnosis: ArmDiagnosis, path: str | Path) -> None:
-    """Write measured and modelled force, a row a sample of every record; .csv or .csv.gz.
+    """Write measured and modelled forces: one row per sample of every record; .csv or .csv.gz.
 
-    As `write_predictions` does for bodies: five columns a joint.
+    Five columns for each joint, as `write_predictions` writes for each body.
     """
     path = Path(path)
     head = ["record", "t"]

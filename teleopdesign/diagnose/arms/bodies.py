@@ -1,9 +1,9 @@
-"""The joints of an arm as bodies: each has the mean inertia of the links beyond it.
+"""The joints of an arm as bodies: each has the mean inertia of the links that it moves.
 
-So structures and checks of plausibility see a body of the size that moves, and a joint can be taken
-out of its arm. What the body has, the force of the links has not: residuals are the same. Links
-that a missing effect had led astray have a wrong inertia first; in the end it is that of the last
-links.
+So structures and checks of plausibility get a body of the inertia that moves, and a joint can be
+separated from its arm. The inertia of the body is subtracted from the force of the links, so
+residuals do not change. Links that were misled by a missing effect have a wrong inertia first; in
+the end the inertia is that of the final links.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ from .prepared import PreparedArm, mean_inertias, with_inertia, with_inertias
 
 
 def as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[str, Model]]:
-    """Records and models in which each joint's body has the mean inertia of its links."""
+    """Records and models in which each joint's body has the mean inertia of its links.
+
+    first: the fit that the base parameters of the links are those of
+    """
     links = mean_inertias(prepared, first.links)
     models = {}
     for j, fit in first.fits.items():
@@ -31,11 +34,11 @@ def as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[s
 
 
 def with_final_bodies(diagnosis: ArmDiagnosis, motors: Mapping[str, float]) -> ArmDiagnosis:
-    """The diagnosis with the mean inertia of its last links at each joint, all residuals the same.
+    """The diagnosis with the mean inertia of its final links at each joint; all residuals are kept.
 
-    motors: joint -> inertia that its motor is stated to have
-    A joint keeps the one that it was searched with where a structure parts it in two: what is left
-    there does depend on it.
+    motors: joint -> stated inertia of its motor
+    Where a structure divides a joint's body, the joint keeps its inertia: there the residual
+    depends on it.
     """
     means = mean_inertias(diagnosis.prepared, diagnosis.after.links)
     links = {j: x for j, x in means.items() if not _is_parted(diagnosis.joints[j])}

@@ -1,7 +1,7 @@
 """An arm compared by simulation: all joints move freely under their recorded commands.
 
-As `compare_by_simulation` does for bodies: each joint starts on the measured motion and is left
-alone for a horizon, all joints together, so that a joint that comes away pulls the others along.
+As in `compare_by_simulation`, each joint starts on the measured motion and moves freely for a
+horizon. All joints move together, so a joint that deviates pulls the others along.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ def compare_arm_by_simulation(
     """Drive the model of an arm by the recorded forces, over horizons of 0.1 s to the whole record.
 
     model: of all joints, with base parameters where they are estimated
-    loop: the controller that held each joint, or joint -> that of this joint; None: nothing does
+    loop: the controller that held each joint, or a mapping joint -> controller; None: no controller
     raises ExperimentError: the experiment lacks what the comparison needs
-    raises ModelError: an effect that has no simulated form, a loop of no joint
+    raises ModelError: an effect has no simulated form, or a loop names no joint
     """
     prepared = experiment if isinstance(experiment, PreparedArm) else prepare_arm(experiment)
     if not model.links:
@@ -78,7 +78,10 @@ def compare_arm_by_simulation(
 def _answers(
     loop: RecordedLoop | Mapping[str, RecordedLoop] | None, joints: Sequence[str]
 ) -> Array:
-    """Stiffness and damping (k, 2) of what holds each joint."""
+    """Stiffness and damping (k, 2) of the controller of each joint.
+
+    raises ModelError: the loop names no joint
+    """
     if not isinstance(loop, Mapping):
         loop = dict.fromkeys(joints, loop or RecordedLoop(0.0))
     for name in loop:
@@ -93,7 +96,7 @@ def _answers(
 
 @dataclass(frozen=True)
 class _Along:
-    """An arm along one stretch, and the rows of it that count."""
+    """An arm along one stretch, with its first row that counts and the row after the last one."""
 
     led: LedArm
     first: int
@@ -108,7 +111,10 @@ class _Along:
 def _errors_of(
     models: Mapping[str, Model], prepared: PreparedArm, use: str, answers: Array
 ) -> list[HorizonError]:
-    """Errors of all joints on the records of one use, the shortest horizon first."""
+    """Errors of all joints on the records of one use, the shortest horizon first.
+
+    answers: (k, 2) stiffness and damping of the joints' controllers
+    """
     along = _follow_stretches(models, prepared, use, answers)
     longest = max((one.length for one in along), default=0.0)
     horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(along)
@@ -125,7 +131,7 @@ def _errors_of(
 def _follow_stretches(
     models: Mapping[str, Model], prepared: PreparedArm, use: str, answers: Array
 ) -> list[_Along]:
-    """The arm along each stretch of one use, each joint as its record has it."""
+    """The arm along each stretch of one use, each joint corrected by its record's offsets."""
     stretches: list[tuple[Stretch, ...]] = [
         remove_links(p.of(use)) for p in prepared.joints.values()
     ]
@@ -146,9 +152,9 @@ def _follow_stretches(
 
 
 def _without_coupling(body: Body) -> tuple[Body, float]:
-    """A body without effects that follow another motion, and their force per its acceleration.
+    """A body without effects of another joint's motion, and their force per its acceleration.
 
-    raises ModelError: one that is no inertia alone has no simulated form
+    raises ModelError: such an effect is no inertia, and has no simulated form
     """
     whole = sp.Float(0.0)
     for effect in body.effects:
@@ -167,9 +173,9 @@ def _links(
     motions: Sequence[Motion],
     coupled: Sequence[float],
 ) -> ArmLinks:
-    """What the links need along the motions of all joints.
+    """The links of the arm for a simulation, along the motions of all joints.
 
-    coupled: of each joint, its force per acceleration of the joint that acts on it
+    coupled: of each joint, the force on it per acceleration of the other joint
     """
     description, joints = prepared.experiment.arm, list(prepared.joints)
     assert description is not None
@@ -187,7 +193,7 @@ def _links(
 
 
 def _deviations(one: _Along, horizons: Sequence[float]) -> list[tuple[Array, Array]]:
-    """Simulated less measured position and velocity (k, rows), for each horizon anew."""
+    """Simulated less measured position and velocity (k, rows), for each horizon (s)."""
     begins: list[int] = []
     ends: list[int] = []
     owner: list[int] = []

@@ -1,9 +1,10 @@
 """Simulated motion of an arm: the motion of its model under the recorded commands of all joints.
 
 The bodies of all joints are one diagram, joined by the inertia matrix of the links. Friction and
-every other effect at a joint are those of its body, in the loop that simulates any diagram. What
-the links need changes slowly beside friction: over a row of the record their inertia matrix and
-their force at given rates are those in the middle of the row, where the last rates lead.
+every other effect at a joint belong to its body, in the loop that simulates any diagram. The force
+of the links changes slowly compared with friction. So over a row of the record, their inertia
+matrix and their force at zero acceleration are those in the middle of the row, at a motion
+extrapolated from the last rates.
 """
 
 from __future__ import annotations
@@ -32,9 +33,11 @@ from .prepared import PreparedArm
 
 @dataclass(frozen=True)
 class ArmLinks:
-    """What the links of an arm need: values of the inertial parameters, and the columns they take.
+    """The links of an arm: values of their inertial parameters, and the columns of these.
 
-    carried: (k, k) inertia that the joints' bodies have of them already, less what gears add
+    values: (b,);  chosen: (b,) columns of the regressor
+    carried: (k, k) inertia of the links that the joints' bodies have already, less the inertia of
+        couplings
     """
 
     prepared: PreparedArm
@@ -43,7 +46,7 @@ class ArmLinks:
     carried: Array
 
     def needed(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Inertia matrix (n, k, k) and force at no acceleration (k, n), beside the bodies'.
+        """Inertia matrix (n, k, k) and force at zero acceleration (k, n), less that of the bodies.
 
         position, velocity: (k, n)
         """
@@ -64,11 +67,11 @@ class ArmLinks:
 class LedArm:
     """The bodies of an arm along one stretch of a record, ready to simulate.
 
-    motions: of the joints, at the same rows;  answers: stiffness and damping (k, 2) of what holds
-    each;  late: (k,) s by which each joint's actuator answers late;  wholes: (k,) inertias
-    least_steps: inner steps a row at least; what oscillates fastest asks for more where friction is
-        ideal
-    beyond: speed over the fastest recorded one beyond which nothing that a model says is looked at
+    motions: of the joints, at the same rows
+    answers: (k, 2) stiffness and damping of the joints' controllers
+    late: (k,) s, dead time of each joint's actuator;  wholes: (k,) inertias of the bodies
+    least_steps: least number of inner steps in a row; fast oscillations need more
+    beyond: speed over the fastest recorded one beyond which a course ends
     """
 
     links: ArmLinks
@@ -96,10 +99,11 @@ def led_arm(
 ) -> LedArm:
     """Wire the joints' bodies.
 
-    bristles: length of the bristle of an ideal friction at each joint (m or rad)
-    answers: (k, 2) stiffness and damping of what holds each joint on its recorded motion
-    What holds a joint answers in continuous time, for a robot's own loop is faster than its log. A
-    dead time of an actuator moves the recorded command; what holds the joint answers at once.
+    bristles: length of the bristle of ideal friction at each joint (m or rad)
+    answers: (k, 2) stiffness and damping of the controller that holds each joint on its recorded
+        motion
+    This controller acts in continuous time, because a robot's loop is faster than its log. A dead
+    time of an actuator delays the recorded command, but not the response of this controller.
     """
     late = [sum(body.parameters[n].value for n in dead_times(body)) for body in bodies]
     present = [
@@ -141,13 +145,15 @@ def _wire_led_arm(bodies: Sequence[Body], answers: Array) -> Diagram:
 
 @dataclass(frozen=True, eq=False)
 class _Loop:
-    """The compiled loop of an arm, and where its arrays hold what.
+    """The compiled loop of an arm, and the indices of its states and parameters.
 
-    timing: of one row of the record;  parameters: all of them, with the entries (k, k) of the links
-    joints, ends: (2, k) states that are position and velocity of the joints; of what the links hang
-        on, which is another body where a structure parts a joint
-    commands: (k, n) held from each row to the next;  followed: (k, n) what would answer to the
-        measured motion, at the rows;  interactions: (k, n) there
+    timing: of one row of the record
+    parameters: of the whole loop;  entries: (k, k) indices of the links' inertia matrix in them
+    joints: (2, k) indices of position and velocity of each joint
+    ends: (2, k) the same of the bodies that carry the links: tips, where a structure divides a
+        joint
+    commands: (k, n) held from each row to the next
+    followed: (k, n) force of the controllers at the measured motion;  interactions: (k, n)
     """
 
     made: Program
@@ -164,11 +170,13 @@ class _Loop:
 def courses(
     led: LedArm, begins: NDArray[np.intp], lengths: NDArray[np.intp]
 ) -> tuple[Array, Array]:
-    """Courses of one arm from several rows of its stretch on, side by side.
+    """Simulated courses of one arm from several rows of its stretch, side by side.
 
-    begins, lengths: (m,) first row of each and how many rows follow; hidden states begin at zero
-    returns: position and velocity of each joint (k, m, rows + 1), NaN after the end of a course
-        and where it has left all bounds or come to a pose where the links have no inertia
+    begins, lengths: (m,) first row of each course, and how many rows follow; hidden states start at
+        zero
+    returns: position and velocity of each joint (k, m, rows + 1); NaN after the end of a course,
+        and after it exceeds `LedArm.beyond` or reaches a pose where the inertia matrix is not
+        positive
     """
     loop = _loop_of(led, int(begins[0]))
     k, m, rows = led.count, len(begins), int(lengths.max())
@@ -229,7 +237,7 @@ def _loop_of(led: LedArm, first: int) -> _Loop:
 
 
 def _rows_of(states: Sequence[str], count: int, *, tips: bool) -> NDArray[np.intp]:
-    """Place of position and velocity (2, k) of each joint, or of its tip where it has one."""
+    """Indices of position and velocity (2, k) of each joint, or of its tip where it has one."""
     motions = [f"X{j + 1}" for j in range(count)]
     if tips:
         motions = [tip(m) if tip(m) in states else m for m in motions]
@@ -237,7 +245,7 @@ def _rows_of(states: Sequence[str], count: int, *, tips: bool) -> NDArray[np.int
 
 
 def _first_states(led: LedArm, loop: _Loop, begins: NDArray[np.intp]) -> Array:
-    """States (m, states): on the measured motion, all hidden ones zero."""
+    """States (m, states): on the measured motion, all hidden states zero."""
     state = np.zeros((len(begins), len(loop.made.layout.states)))
     for j, motion in enumerate(led.motions):
         for at in (loop.joints, loop.ends):
@@ -247,16 +255,17 @@ def _first_states(led: LedArm, loop: _Loop, begins: NDArray[np.intp]) -> Array:
 
 
 def _are_positive(matrices: Array) -> NDArray[np.bool_]:
-    """Whether each of the matrices (n, k, k) is an inertia; what is no number is none."""
+    """Whether each of the matrices (n, k, k) is finite and positive definite."""
     is_number = np.all(np.isfinite(matrices), axis=(1, 2), keepdims=True)
     size = np.where(is_number, matrices, 0.0)
     return np.asarray(np.linalg.eigvalsh(0.5 * (size + np.swapaxes(size, 1, 2)))[:, 0] > 0.0)
 
 
 def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) -> None:
-    """Move a state (states,) on by one row, in place.
+    """Advance a state (states,) by one row, in place.
 
-    inertia: (k, k) beside the bodies', force: (k,) that the links need, over the row
+    inertia: (k, k) of the links beyond the bodies';  force: (k,) of the links; both constant over
+        the row
     """
     made, timing, layout = loop.made, loop.timing, loop.made.layout
     parameters = loop.parameters.copy()
@@ -290,6 +299,6 @@ def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) 
 
 
 def _arrange_signals(names: Sequence[str], signals: Mapping[str, Array]) -> Array:
-    """The signals (k, n) of the joints in the order of the loop's inputs, "F2" that of joint 2."""
+    """The joints' signals (k, n) in the order of the loop's inputs; "F2" is that of joint 2."""
     places = [re.fullmatch(r"(\D+)(\d+)", name) for name in names]
     return np.array([signals[at[1]][int(at[2]) - 1] for at in places if at is not None])

@@ -1,4 +1,4 @@
-"""What a recording says about an arm: a ladder of effects at its joints, and the verdict on it."""
+"""The diagnosis of an arm: a ladder of effects at its joints, and the verdict."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ArmRung(ByValue):
-    """One step of an arm's ladder: what was added at which joint (None: the user's model), the fit.
+    """One step of an arm's ladder: the added effect with its joint, and the fit of the arm.
 
-    instead_of: the effect of the user's model that it takes the place of
-    other: the joint whose motion an effect of another motion follows there
+    added: None: the rung of the user's model
+    instead_of: the effect of the user's model that the added one replaced
+    other: the joint whose motion is the channel `other_position` at the effect's joint
     """
 
     added: Candidate | None
@@ -37,14 +38,14 @@ class ArmRung(ByValue):
 
     @property
     def follows(self) -> str | None:
-        """The joint whose motion the effect follows; None where it follows that of its own."""
+        """The joint whose motion the added effect depends on; None: on no other joint's."""
         if self.added is None or "other_position" not in self.added.effect.channels():
             return None
         return self.other
 
     @property
     def said(self) -> str:
-        """What was added, in words."""
+        """The added effect in words."""
         if self.added is None:
             return ""
         words = named_instead(self.added, self.instead_of)
@@ -56,8 +57,8 @@ class ArmDiagnosis(ByValue):
     """Result of a diagnosis of an arm: the ladder of effects at its joints, and the verdict.
 
     verdict: "effects_missing", "model_adequate" or "undecided"
-    rungs: the user's model re-estimated, then one rung an effect, over all joints
-    joints: joint -> its diagnosis, beside what the others say of the links
+    rungs: the user's model re-estimated, then one rung per effect, over all joints
+    joints: joint -> its diagnosis, with the information of the other joints on the links
     link_errors: (b,) standard errors of the base parameters
     """
 
@@ -70,40 +71,41 @@ class ArmDiagnosis(ByValue):
 
     @property
     def before(self) -> ArmFit:
-        """The user's model, re-estimated."""
+        """The fit of the user's model, re-estimated."""
         return self.rungs[0].fit
 
     @property
     def after(self) -> ArmFit:
-        """The model with every accepted effect."""
+        """The fit of the model with every accepted effect."""
         return self.rungs[-1].fit
 
     def _at_its_joint(self, added: Candidate) -> Rung:
-        """The rung of the joint's own ladder that added the effect."""
+        """The rung that added the effect, in the ladder of its joint."""
         rungs = self.joints[added.at].rungs
         return next(r for r in rungs if r.added is not None and r.added.key == added.key)
 
     @property
     def missing(self) -> tuple[Candidate, ...]:
-        """Effects that can be named, in the order added."""
+        """Effects that are called missing, in the order added."""
         named = {c.key for d in self.joints.values() for c in d.missing}
         return tuple(r.added for r in self.rungs if r.added is not None and r.added.key in named)
 
     @property
     def floor(self) -> float:
-        """Noise floor of the arm: root of the mean square of its joints'."""
+        """Noise floor of the arm: root mean square of the floors of its joints."""
         return error_over_joints({j: d.floor.value for j, d in self.joints.items()})
 
     @property
     def left(self) -> float:
-        """Final error in noise floors, that of the joint with most."""
+        """Final error as a multiple of the noise floor, at the joint where it is largest."""
         return max(d.left for d in self.joints.values())
 
     @property
     def learnable(self) -> Learnable | None:
-        """What could be learned of what all joints leave; None without the extra `learn`.
+        """The part of all joints' residuals that could be learned; None without the extra `learn`.
 
-        Errors over all joints, as those of the ladder; where it lies, each joint says.
+        Errors are over all joints, as in the ladder; each joint's diagnosis says where the learned
+        force lies.
         """
         boxes = {j: d.learnable for j, d in self.joints.items() if d.learnable is not None}
         if len(boxes) < len(self.joints):
@@ -117,12 +119,12 @@ class ArmDiagnosis(ByValue):
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What was not searched at its joints though it usually is, in words."""
+        """Parts of a full search that were left out at its joints, in words."""
         return tuple(dict.fromkeys(words for d in self.joints.values() for words in d.left_out))
 
     @property
     def base_parameters(self) -> dict[str, tuple[float, float, str]]:
-        """Base parameter -> (value, standard error, unit), SI; empty where none are estimated."""
+        """Base parameter -> (value, standard error, unit), SI; empty where none is estimated."""
         base = self.prepared.base
         if base is None:
             return {}
@@ -130,7 +132,7 @@ class ArmDiagnosis(ByValue):
         return dict(zip(base.names, numbers, strict=True))
 
     def plot(self) -> Figure:
-        """The figure: of each joint forces and residual, and the ladder of the arm (a Figure)."""
+        """Figure of force and residual of each joint, and of the ladder of the arm."""
         from ...plot.arm_diagnosis import plot_arm_diagnosis
 
         return plot_arm_diagnosis(self)
@@ -164,7 +166,7 @@ class ArmDiagnosis(ByValue):
         return "\n".join(lines)
 
     def _said_of(self, joint: str, diagnosis: Diagnosis) -> list[str]:
-        """What is said of one joint: its verdict, and what is left there."""
+        """Lines on one joint: its verdict, and its remaining error."""
         lines = [f"{joint}: {sentence(diagnosis)}"]
         shifts = shifts_of(diagnosis.model, diagnosis.prepared.stretches)
         lines += [f"  {shift}" for shift in shifts]

@@ -1,8 +1,8 @@
 """Parameters of an arm: those of every joint, and the base parameters that all joints share.
 
-Each joint is fitted by itself with what the others know of the links; what it then knows itself
-goes to the others. Force is linear in the base parameters and nearly so in those of friction: two
-rounds agree.
+Each joint is fitted with the information of the other joints on the links; then the information of
+this joint goes to the others. Force is linear in the base parameters and nearly linear in those of
+friction, so two rounds are enough.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ ROUNDS = 2
 class ArmFit(ByValue):
     """A fitted arm.
 
-    fits: joint -> its fit, with the base parameters of all in `fit.model.links`
-    prepared: joint -> its records, with what the other joints know of the links
-    links: the base parameters that all joints agree on
-    fit_errors, check_errors: joint -> relative force error at these; NaN without such records
+    fits: joint -> its fit, with the common base parameters in `fit.model.links`
+    prepared: joint -> its records, with the information of the other joints on the links
+    links: (b,) the common base parameters
+    fit_errors, check_errors: joint -> relative force error with these; NaN without such records
     """
 
     fits: Mapping[str, Fit]
@@ -54,7 +54,7 @@ class ArmFit(ByValue):
 
     @property
     def model(self) -> Model:
-        """The model of all joints, with the base parameters that they agree on."""
+        """The model of all joints, with the common base parameters."""
         models = [fit.model for fit in self.fits.values()]
         bodies = {j: body for m in models for j, body in m.bodies.items()}
         shifts = {j: late for m in models for j, late in m.record_shift.items()}
@@ -72,7 +72,7 @@ class ArmFit(ByValue):
 
 
 def error_over_joints(errors: Mapping[str, float]) -> float:
-    """Root of the mean over joints of the squared relative error of each."""
+    """Root mean square of the relative errors of all joints."""
     return float(np.sqrt(np.mean(np.square(list(errors.values())))))
 
 
@@ -86,6 +86,7 @@ def estimate_arm(
     """Estimate all joints' parameters and the base parameters on the fit records.
 
     models: joint -> the model of that joint alone
+    rounds: how often all joints are estimated;  effort: of each estimate
     """
     models, fits, records = dict(models), {}, dict(prepared.joints)
     for k in range(rounds):
@@ -111,10 +112,10 @@ def estimate_arm(
 def _estimate_at_common_links(
     models: Mapping[str, Model], prepared: PreparedArm
 ) -> dict[str, Model]:
-    """Models of all joints estimated at base parameters that these agree on, by what they leave.
+    """Models of all joints, estimated at common base parameters that hold by the present misfits.
 
-    A model that was led astray, or has just got an effect, leaves far more than it will, and by
-    that its joint would say next to nothing of the links.
+    A model that was misled, or has just got an effect, leaves far more than it will after its fit.
+    With such a misfit its joint would have almost no weight in the base parameters.
     """
     sizes = misfits(models, prepared)
     known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in prepared.joints.items()}
@@ -130,7 +131,7 @@ def _estimate_at_common_links(
 def with_common_links(
     fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedArm
 ) -> ArmFit:
-    """Fits of all joints, held against the records at base parameters that all agree on."""
+    """Fits of all joints, evaluated on the records with common base parameters."""
     links: tuple[float, ...] = ()
     if prepared.base is not None:
         sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
@@ -149,7 +150,7 @@ def with_common_links(
 def _evaluate_at(fit: Fit, model: Model, records: Prepared) -> Fit:
     """A fit with the errors of its model at other base parameters.
 
-    Without check records the blocks that were held out keep the links of their fits.
+    Without check records, the errors of held-out blocks are not changed.
     """
     fit = replace(fit, model=model, fit_error=force_error(model, remove_links(records.of("fit"))))
     check = records.of("check")
@@ -160,10 +161,10 @@ def _evaluate_at(fit: Fit, model: Model, records: Prepared) -> Fit:
 
 
 def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, float]:
-    """Joint -> root of the squares that its model leaves: by these, joints count as observations.
+    """Joint -> root of the squares that its model leaves: the scale of its observations.
 
-    So a joint that lacks an effect does not lead the links astray, on which all others depend. As
-    long as an effect still waits for its start, by the measured squares.
+    So a joint that lacks an effect has little weight in the links, which all joints depend on.
+    While an effect has no start value yet, the scale is the root of the measured squares.
     """
     if any(m.absent for m in models.values()):
         return dict(prepared.size)
@@ -176,7 +177,7 @@ def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, flo
 def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
     """Stretches with the force of the links at a joint; at rest, friction balances this force.
 
-    Else a row at rest would say that the links are what the model has already.
+    Otherwise rows at rest would confirm the base parameters of the model.
     """
     made = []
     for s, (body, motion) in zip(stretches, apply_record_offsets(model, stretches), strict=True):
@@ -189,14 +190,14 @@ def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ..
 
 
 def remove_links(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
-    """Stretches as they were measured, with the links' freedom left in."""
+    """Stretches as they were measured, without reduced weight in the directions of the links."""
     return tuple(replace(s, shared=None) for s in stretches)
 
 
 def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:
-    """Information of one joint on the base parameters, with its own parameters free.
+    """Information of one joint on the base parameters, when its other parameters are free.
 
-    size: root of the squares that count as one observation's
+    size: root of the squares that count as one observation
     """
     columns, residual, slopes, _ = _linear(model, stretches)
     basis = _basis(slopes)
@@ -209,7 +210,11 @@ def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Know
 def _linear(
     model: Model, stretches: tuple[Stretch, ...]
 ) -> tuple[Array, Array, Array, tuple[Stretch, ...]]:
-    """Columns of the links, residual, and columns of the joint's parameters, with priors."""
+    """Linear problem of a joint, with the priors of its shifts as additional rows.
+
+    returns: columns of the links (rows, b), residual (rows,), columns of the joint's parameters and
+        shifts, and the stretches
+    """
     plain, free = remove_links(add_links(model, stretches)), _list_inner_parameters(model)
     lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK))
@@ -231,7 +236,7 @@ def _linear(
 
 
 def _list_inner_parameters(model: Model) -> tuple[str, ...]:
-    """Free parameters that are not at the value where their effect is absent."""
+    """Free parameters of present effects, and the strengths of absent effects."""
     absent = {f"{at}.{name}" for name, at in model.absent}
     first = {f"{at}.{n}.{model.body(at).effect(n).strength}" for n, at in model.absent}
     free = free_parameters(model)
@@ -239,7 +244,7 @@ def _list_inner_parameters(model: Model) -> tuple[str, ...]:
 
 
 def _basis(columns: Array) -> Array:
-    """Orthonormal basis of what the columns span."""
+    """Orthonormal basis of the span of the columns."""
     size = np.linalg.norm(columns, axis=0)
     columns = columns[:, size > 0] / size[size > 0]
     basis, s, _ = np.linalg.svd(columns, full_matrices=False)
@@ -261,7 +266,11 @@ def _sum(known: list[Knowledge]) -> Knowledge:
 def with_others(
     prepared: Prepared, known: Mapping[str, Knowledge], size: float, model: Model
 ) -> Prepared:
-    """Records of a joint with what the other joints tell of the links; model: of this joint."""
+    """Records of a joint with the information of the other joints on the links.
+
+    known: joint -> its information;  size: scale of this joint's observations;  model: of this
+        joint
+    """
     (joint,) = model.bodies
     mine = known[joint]
     nothing = Knowledge(np.zeros_like(mine.matrix), np.zeros_like(mine.vector))
@@ -272,7 +281,7 @@ def with_others(
 
 
 def link_errors(arm: ArmFit, prepared: PreparedArm) -> Array:
-    """Standard errors (b,) of the base parameters; NaN where a parameter is not determined."""
+    """Standard errors (b,) of the base parameters; NaN where no residual depends on one."""
     sizes = misfits({j: f.model for j, f in arm.fits.items()}, prepared)
     rows, left, blocks, first = [], [], [], 0
     for j, fit in arm.fits.items():

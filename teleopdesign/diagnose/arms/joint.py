@@ -1,4 +1,4 @@
-"""One joint of an arm during the search, with what the other joints tell about the links."""
+"""One joint of an arm during the search, with the information of the other joints on the links."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .prepared import PreparedArm
 class Joint:
     """State of the search at one joint.
 
-    is_stale: others have changed what the links are
+    is_stale: whether effects of other joints have changed the information on the links
     other: the joint whose motion is its channel `other_position`; None: none was chosen
     """
 
@@ -31,7 +31,7 @@ class Joint:
 
     @property
     def gain(self) -> float:
-        """Part of its measured squares that its best supported effect takes from the arm's."""
+        """Largest decrease of squares by a supported effect, over the joint's measured squares."""
         base = fit_squares(self.state.fit)
         fits = [r.fit for r in self.state.supported]
         whole = sum(s.measured for s in self.search.prepared.of("fit"))
@@ -43,7 +43,7 @@ def begin_joint(
 ) -> Joint:
     """A joint at the start of its search, with the present information on the links.
 
-    records: its own, with that;  prepared: those of the arm
+    records: of the joint, with this information;  prepared: of the arm
     """
     fit = estimate(model, records)
     other = most_coupled(name, records, fit, prepared)

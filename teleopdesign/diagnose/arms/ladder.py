@@ -1,8 +1,8 @@
-"""The ladder of an arm: effects at its joints, added in the order of what they explain of the arm.
+"""The ladder of an arm: effects at its joints, in the order of their gain for the whole arm.
 
 A missing effect at one joint gives wrong parameters of the links, so other joints seem to lack
-effects too. So the joint comes first whose effect removes most of the squares of all joints. The
-other joints are searched again with the new information on the links.
+effects too. So the first joint is the one whose effect removes most of the squares of all joints.
+The other joints are searched again with the new information on the links.
 """
 
 from __future__ import annotations
@@ -42,10 +42,13 @@ def find_missing_in_arm(
 ) -> ArmDiagnosis:
     """Compare an arm with an experiment and add the effects that its check records support.
 
-    model: default: the one that the experiment describes; a body for each joint
-    progress: called with a line of text at each step;  seed: of the draws for the noise floor
-    plan: how much is searched, such as `QUICK`;  among: names of the candidate effects
+    model: with a body for each joint; None: the model that the experiment describes
+    progress: called with a line of text at each step
+    seed: of the random numbers for the noise floor
+    plan: extent of the search, such as `QUICK`
+    among: names of the candidate effects; None: all that the model knows
     raises ExperimentError: the experiment has no arm, or lacks what the comparison needs
+    raises ModelError: `among` holds an unknown name
     """
     said = progress or (lambda _: None)
     stated = model or Model.from_experiment(experiment)
@@ -82,9 +85,10 @@ def find_missing_in_arm(
 
 
 def _select_beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
-    """The effects that base parameters do not take up: that of each motor's inertia is estimated.
+    """The effects that the base parameters cannot describe.
 
-    A force by the acceleration of the joint alone would be told from it by nothing.
+    A force that depends on the joint's acceleration alone is left out: the inertia of each motor is
+    a base parameter already, and the two cannot be distinguished.
     """
     inertia = {SIGNALS["acceleration"]}
     return {
@@ -101,8 +105,9 @@ def _climb(
     prepared: PreparedArm,
     said: Callable[[str], None],
 ) -> tuple[ArmRung, ...]:
-    """Climb the ladder of each joint; joints: replaced by where they end.
+    """Climb the ladder of each joint.
 
+    joints: replaced in place by their final states
     returns: the ladder of the arm, its rungs in the order of the climbs
     """
     waiting: list[str] = list(joints)
@@ -134,11 +139,11 @@ def _climb_joint(
     prepared: PreparedArm,
     said: Callable[[str], None],
 ) -> tuple[Joint, tuple[ArmRung, ...]]:
-    """Climb the ladder of a joint, and hold its effects against the whole arm.
+    """Climb the ladder of a joint, and test its effects on the whole arm.
 
-    Where one is refused there, the ladder goes on without it, and what had followed may come back.
-    It ends where nothing is refused that was not set aside before.
-    returns: the joint where its ladder ends;  the ladder of the arm with its rungs
+    Where an effect is refused on the arm, the ladder continues without it, and later effects may be
+    added again. It ends where no further effect is refused.
+    returns: the joint at the end of its ladder, and the ladder of the arm with its rungs
     """
     while True:
         state, _ = climb(joint.search, joint.state, _as_they_are)
@@ -150,9 +155,9 @@ def _climb_joint(
 
 
 def _astray(joint: Joint) -> Model | None:
-    """The model with the first effect, where that takes most away: the links were led astray.
+    """The model with the joint's first effect, if it removes most squares: the links were misled.
 
-    None: they were not, or the other joints say nothing of them
+    returns: None where it does not, or where no base parameters are estimated
     """
     if len(joint.state.rungs) > 1 or not joint.state.fit.model.links:
         return None
@@ -167,11 +172,11 @@ def _astray(joint: Joint) -> Model | None:
 def _begin_joint_again(
     joints: dict[str, Joint], model: Model, prepared: PreparedArm, joint: str
 ) -> Joint:
-    """A joint whose ladder begins anew, with what the others say of the links beside its effect.
+    """A joint whose ladder starts anew, with the information on the links beside its first effect.
 
-    joints: those that wait get the model that they have beside it;  model: of `_astray`
-    What they said before was said of links that had to stand for that effect; a shift of their
-    records that was held at none then is estimated again.
+    joints: those that wait get their models of these fits, in place;  model: from `_astray`
+    Before, the base parameters had to imitate that effect. Shifts of records that were held at zero
+    then are estimated again.
     """
     models = {n: x.state.fit.model.with_record_shift({}) for n, x in joints.items()}
     beside = with_other_motions(prepared, others_of(joints))
@@ -189,7 +194,7 @@ def _begin_joint_again(
 
 
 def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
-    """The rungs of a joint's ladder: what reading does to estimates is not simulated for an arm."""
+    """The rungs of a joint's ladder; for an arm the errors of readings are not simulated."""
     return state.rungs
 
 

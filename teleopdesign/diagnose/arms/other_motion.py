@@ -1,9 +1,9 @@
 """The motion of another joint that may act on a joint: a channel of its records for `coupling`.
 
-Geared wrists, differentials and cables that pass a joint let one motor push another's joint. Which
-one is not said by the kinematics. So of all other joints that one is a joint's `other_position`
-whose motion promises to take most of what the joint's model leaves, by one linear step. A joint
-whose log states such a channel keeps that.
+By geared wrists, differentials and cables that pass a joint, one motor can push another's joint.
+The kinematics do not say which one. So `other_position` of a joint is the motion of that joint
+whose coupling promises the largest gain by one linear step. A joint whose log has such a channel
+keeps this channel.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ def follows_another(effect: Effect) -> bool:
 
 
 def with_other_motions(prepared: PreparedArm, others: Mapping[str, str]) -> PreparedArm:
-    """The arm's records with the motion of another joint beside that of some joints.
+    """The arm's records, where some joints have the motion of another joint as a channel.
 
-    others: joint -> the other one
+    others: joint -> the other joint
     """
     joints = {
         j: with_other_motion(records, prepared.joints[others[j]]) if j in others else records
@@ -37,7 +37,7 @@ def with_other_motions(prepared: PreparedArm, others: Mapping[str, str]) -> Prep
 
 
 def with_other_motion(records: Prepared, other: Prepared) -> Prepared:
-    """A joint's records with the motion of another joint at the same rows."""
+    """A joint's records with the motion of another joint at the same rows as a channel."""
     stretches = []
     for mine, its in zip(records.stretches, other.stretches, strict=True):
         there = {
@@ -52,8 +52,8 @@ def with_other_motion(records: Prepared, other: Prepared) -> Prepared:
 def most_coupled(joint: str, records: Prepared, fit: Fit, prepared: PreparedArm) -> str | None:
     """The other joint with the largest predicted gain of a coupling at a joint.
 
-    records, fit: of the joint, with what the others say of the links
-    returns: None where its log states another motion, or no effect asks for one
+    records, fit: of the joint, with the information of the other joints on the links
+    returns: None where the log has the motion of another joint, or no effect needs one
     """
     if any("other_position" in s.motion.further for s in prepared.joints[joint].stretches):
         return None

@@ -1,8 +1,8 @@
 """Direction of a coupling between two joints: do the records distinguish it from the reverse one?
 
-What couples two joints both ways alike may be a part of the links' inertia. Then a force at one
-joint by the motion of another leaves the same as the opposite force at that other joint: links take
-up the rest.
+A coupling that acts alike in both directions may be a part of the links' inertia. Then a force at
+one joint by the motion of another leaves the same as the opposite force at that other joint: the
+base parameters of the links describe the rest.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from .prepared import PreparedArm
 def untold_way(
     rung: ArmRung, last: ArmFit, prepared: PreparedArm, *, relevant: float
 ) -> Untold | None:
-    """What cannot be told of an added effect that follows another joint's motion; None: nothing.
+    """A statement where the records do not determine the direction of an added coupling; else None.
 
-    last: the fit with all that was added;  relevant: part of the squares that counts
+    last: the fit with all added effects;  relevant: part of the squares that counts as a difference
     """
     added, other = rung.added, rung.follows
     if added is None or other is None:

@@ -1,4 +1,4 @@
-"""The records of an arm, ready for comparison: each joint's motion with the force of its links."""
+"""The prepared records of an arm: each joint's motion with the force of the links."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ POSES = 50
 
 @dataclass(frozen=True, eq=False)
 class PreparedArm(ByValue):
-    """An experiment on an arm made ready for comparison at one bandwidth (Hz).
+    """An experiment on an arm, prepared for comparison at one bandwidth (Hz).
 
     base: the base parameters that are estimated; None: the links are those of the description
-    joints: joint -> its records, as an experiment on one body
-    size: joint -> root of its measured squares on the fit records
+    joints: joint -> its records, like an experiment on one body
+    size: joint -> root of the measured squares on the fit records
     others: joint -> the joint whose motion is its channel `other_position`
     """
 
@@ -43,28 +43,29 @@ class PreparedArm(ByValue):
 
     @property
     def initial(self) -> tuple[float, ...]:
-        """Base parameters by the values in the arm's description."""
+        """Base parameters (b,) by the arm's description; empty where none is estimated."""
         return () if self.base is None else tuple(float(x) for x in self.base.initial)
 
     def beside(self, joint: str) -> list[tuple[Motion, ...]]:
-        """Of each stretch of a joint, the motions of the other joints at the same rows."""
+        """For each stretch of a joint, the motions of the other joints at the same rows."""
         others = [p.stretches for j, p in self.joints.items() if j != joint]
         count = len(self.joints[joint].stretches)
         return [tuple(stretches[i].motion for stretches in others) for i in range(count)]
 
 
 def isolate_joint(experiment: Experiment, joint: str) -> Experiment:
-    """The experiment as one on this joint by itself."""
+    """The experiment on one joint alone."""
     channels = {n: c for n, c in experiment.channels.items() if c.body in (joint, None)}
     bodies = {joint: experiment.bodies[joint]}
     return replace(experiment, bodies=bodies, channels=channels, arm=None)
 
 
 def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
-    """Smooth, differentiate and cut all joints' records, with the force of the links at each.
+    """Smooth, differentiate and cut all joints' records, with the force of the links at each joint.
 
-    seed: of the readings drawn for the noise floor
-    raises ExperimentError: no arm, or bandwidth too high for the sample rate
+    seed: of the simulated readings for the noise floor
+    raises ExperimentError: there is no arm, the bandwidth is too high for the sample rate, no
+        stretch is long enough, or a force is zero throughout
     """
     if experiment.arm is None:
         raise ExperimentError(f"{experiment.folder.name}/experiment.toml: no [model.arm]")
@@ -98,7 +99,7 @@ def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
 
 
 def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) -> list[LinkForces]:
-    """The force of the links at each joint along motions of all joints at the same times."""
+    """The force of the links at each joint, along motions of all joints at the same times."""
     position, velocity, acceleration = (
         np.array([getattr(m, name) for m in motions])
         for name in ("position", "velocity", "acceleration")
@@ -117,18 +118,19 @@ def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) 
 
 
 def with_inertias(prepared: PreparedArm, inertias: Mapping[str, float]) -> PreparedArm:
-    """The records with a part of each joint's links as the inertia of its body.
+    """The records, with a part of each joint's links as the inertia of its body.
 
-    inertias: joint -> what its body has, in its model too; the force of its links is less by that
+    inertias: joint -> this part (SI); the model's body has it too, and it is subtracted from the
+        force of the links
     """
     joints = {j: with_inertia(one, inertias[j]) for j, one in prepared.joints.items()}
     return replace(prepared, joints=joints)
 
 
 def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
-    """The records with the part of the links that the bodies of a fitted model have already.
+    """The records without that inertia of the links which the bodies of a fitted model have.
 
-    It is what they have beyond the inertia of their motors, which the experiment states.
+    This is the bodies' inertia less the inertia of their motors, which the experiment states.
     """
     # a search among few effects knows no others, not those of the experiment either
     there = {e.name: e for body in model.bodies.values() for e in body.effects}
@@ -143,7 +145,7 @@ def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
 
 
 def with_inertia(records: Prepared, inertia: float) -> Prepared:
-    """A joint's records with so much of its links as the inertia of its body."""
+    """A joint's records, with this part of its links' inertia as that of its body."""
     stretches = []
     for stretch in records.stretches:
         links = stretch.motion.links
@@ -158,9 +160,10 @@ def with_inertia(records: Prepared, inertia: float) -> Prepared:
 
 
 def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, float]:
-    """Joint -> inertia that the links have about it (kg m^2, or kg), over its first record.
+    """Joint -> mean inertia of the links about it (kg m^2, or kg), along its first record.
 
-    links: base parameters;  at least a thousandth of the largest, so that each is a body
+    links: base parameters
+    Each is at least a thousandth of the largest, so that each joint has a positive inertia.
     """
     motions = [p.stretches[0].motion for p in prepared.joints.values()]
     places = np.linspace(0, len(motions[0].time) - 1, POSES).astype(int)
@@ -177,10 +180,10 @@ def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, 
 
 
 def inertias_at(experiment: Experiment, links: tuple[float, ...], position: Array) -> Array:
-    """Inertia (k, n) that the links have about each joint, the others at rest (kg m^2, or kg).
+    """Inertia (k, n) of the links about each joint, the other joints at rest (kg m^2, or kg).
 
     links: base parameters, () where the links are those of the description;  position: (k, n)
-    Base parameters of least squares may be those of no real links, less than nothing too.
+    Least-squares base parameters may belong to no real links, so an inertia may be negative.
     """
     assert experiment.arm is not None
     arm = experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))

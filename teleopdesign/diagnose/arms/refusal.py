@@ -1,7 +1,7 @@
 """Effects of one joint tested on the whole arm: which stay when all joints are estimated together.
 
 The records of one joint may support an effect that imitates a missing effect of another joint, or
-an error of the links' parameters. With all joints estimated together such an effect no longer
+an error of the links' parameters. When all joints are estimated together, such an effect no longer
 lowers the error, and is set aside.
 """
 
@@ -29,12 +29,12 @@ NO_MORE_THAN_NOISE = "it only weakens the noise of the sensors"
 def hold_against_arm(
     joint: Joint, rungs: tuple[ArmRung, ...], prepared: PreparedArm
 ) -> tuple[Joint, tuple[ArmRung, ...]]:
-    """The rungs of a joint's ladder with all joints estimated again; none raises the error.
+    """The rungs of a joint's ladder, each with all joints estimated again.
 
-    rungs: the ladder of the arm before, those of this joint last; what the joint's ladder still
-        begins with is not estimated again
-    returns: the joint, cut where an effect was refused, which is set aside then;  the ladder of the
-        arm with its rungs
+    rungs: the ladder of the arm so far, those of this joint last; rungs that the joint's ladder
+        still starts with are not estimated again
+    returns: the joint, its ladder cut at the first refused effect, which is set aside; and the
+        ladder of the arm with the joint's remaining rungs
     """
     there = [r for r in rungs if r.added is not None and r.added.at == joint.name]
     kept = _count_held(joint, there)
@@ -58,7 +58,7 @@ def hold_against_arm(
 
 
 def _count_held(joint: Joint, there: Sequence[ArmRung]) -> int:
-    """Leading rungs of a joint's ladder that the ladder of the arm has, the user's model too."""
+    """Number of leading rungs that the ladders of joint and arm share; the user's model counts."""
     ours = ((r.added, r.instead_of) for r in joint.state.rungs[1:])
     held = ((r.added, r.instead_of) for r in there)
     pairs = zip(held, ours, strict=False)
@@ -68,8 +68,8 @@ def _count_held(joint: Joint, there: Sequence[ArmRung]) -> int:
 def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
     """Why an effect is removed once all joints are estimated together; "": it stays.
 
-    One that passes on less of what sensors read must explain more than that: the hidden tip of a
-    structure follows the force that was measured, and with it a part of its noise.
+    An effect may transmit less of the sensor noise: the hidden tip of a structure follows the
+    measured force and a part of its noise. Such an effect must lower the error more than the noise.
     """
     if after.check_error > before.check_error:
         return NO_HELP
@@ -86,7 +86,7 @@ def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
 
 
 def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -> Joint:
-    """The joint with the first rungs of its ladder; what was refused is set aside.
+    """The joint with the first `kept` rungs of its ladder; the refused effects are set aside.
 
     refused: with all joints estimated again
     """

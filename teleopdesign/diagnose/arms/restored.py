@@ -25,8 +25,8 @@ def restore_arm_diagnosis(
 ) -> ArmDiagnosis:
     """The diagnosis of an arm in an answer; residuals are computed, nothing is estimated.
 
-    known: effects by name, those of the user among them
-    raises ExperimentError: the answer to another experiment, one of an earlier version
+    known: effects by name, with those of the user
+    raises ExperimentError: the answer is to another experiment, or of an earlier version
     """
     if "models" not in saved.content:
         raise ExperimentError(
@@ -54,7 +54,10 @@ def restore_arm_diagnosis(
 
 
 def _other_joints(saved: SavedAnswer, prepared: PreparedArm) -> dict[str, str]:
-    """Joint -> the joint whose motion is its channel `other_position`."""
+    """Joint -> the joint whose motion is its channel `other_position`.
+
+    raises ExperimentError: one of these is no joint of the arm
+    """
     others: dict[str, str] = saved.content.get("other_motion", {})
     for joint in (*others, *others.values()):
         if joint not in prepared.joints:
@@ -68,7 +71,10 @@ def _other_joints(saved: SavedAnswer, prepared: PreparedArm) -> dict[str, str]:
 def _models(
     saved: SavedAnswer, experiment: Experiment, prepared: PreparedArm, known: Mapping[str, Effect]
 ) -> list[Model]:
-    """The model of all joints on each rung."""
+    """The model of all joints on each rung.
+
+    raises ExperimentError: their number, bodies or base parameters do not fit
+    """
     entries = saved.content["models"]["ladder"]
     if len(entries) != len(saved.content["ladder"]):
         raise ExperimentError(
@@ -88,7 +94,7 @@ def _models(
 
 
 def _rungs_by_addition(joints: Mapping[str, Diagnosis]) -> dict[tuple[str, str], Rung]:
-    """(effect, joint) -> the rung of that joint's ladder that added it."""
+    """(effect, joint) -> the rung of that joint's ladder that added the effect."""
     return {r.added.key: r for d in joints.values() for r in d.rungs if r.added is not None}
 
 
