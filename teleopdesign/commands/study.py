@@ -94,7 +94,7 @@ def _arguments(options: argparse.Namespace) -> dict[str, Any]:
         from ..effects import catalogue
         from ..studies import read_study_file
 
-        return read_study_file(path, effects=catalogue(*options.effect))
+        return read_study_file(path, effects=catalogue(options.effect))
     if path.suffix != ".py":
         raise ExperimentError(f"{path}: found {path.suffix!r}, expected .toml or .py")
     return _run_file(path)

@@ -23,6 +23,7 @@ import numpy as np
 from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
+from ..realise.simulated import UNDAMPED
 from .effort import EFFORTS
 from .fit import Fit, estimate
 from .noise_floor import read_again
@@ -36,9 +37,9 @@ from .threads import map_in_threads
 #: read such a length, so each pair is simulated. With the longest bristle, reversals look like
 #: friction with memory; with the shortest one the contact breaks away at once; damping resists
 #: every change of the contact. A ratio of 0 is Dahl friction; the authors of LuGre chose 0.5:
-#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. 1e-9 stands for 0: it moves a position by
-#: less than 1e-10 of its travel, and both ratios then share one loop, which takes 2.5 s to compile
-BRISTLE_STEPS, DAMPED = (0.3, 0.1, 0.03), (1e-9, 0.5)
+#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. `UNDAMPED` stands for 0: then both ratios
+#: share one loop, which takes 2.5 s to compile
+BRISTLE_STEPS, DAMPED = (0.3, 0.1, 0.03), (UNDAMPED, 0.5)
 #: relative shift of an estimate (for logarithmic parameters and angles: absolute) from which the
 #: estimate is not corrected: a shift this large is not known well enough
 LARGEST = 0.5

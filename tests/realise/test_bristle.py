@@ -46,3 +46,30 @@ def test_a_gear_holds_a_load_by_the_friction_that_the_load_makes(torque, holds):
     run = {"duration": 0.3, "initial": {"L": 0.1}, "jit": False, "step": 2e-4}
     moved = np.abs(simulate(device, inputs={"R_D": torque}, **run)["L"].values - 0.1).max()
     assert moved < 2e-3 if holds else moved > 0.02
+
+
+@pytest.mark.parametrize("deflection", [0.3e-3, 0.1e-3, 0.03e-3])
+def test_a_motor_drives_a_load_through_such_a_gear_whatever_the_bristle(deflection):
+    """The load goes through zero twice a cycle; ideal friction in sliding, by small steps."""
+    made = pendulum(1.0).with_effect(EFFECTS["viscous"], {"damping": 1.0})
+    stuck = with_bristle(made, deflection, damping_ratio=0.5)
+
+    def push(t):
+        return 3.0 * np.sin(2 * np.pi * 0.8 * t)
+
+    moved = simulate(
+        haptic_interface(stuck), duration=1.0, inputs={"R_D": push}, jit=False, step=2e-4,
+        computer="continuous",
+    )  # fmt: skip
+    x = v = 0.0
+    step = 1e-5
+    for k in range(100_000):
+        arriving, load = push(k * step) - v, 2.0 * np.sin(x)
+        # what accelerates, if the load is a part L of what arrives: L (1 + 0.3 sgn(L v)) = arriving
+        carried = arriving / (1.0 + 0.3 * np.sign(arriving * v))
+        if v == 0.0:
+            carried = load if abs(arriving - load) < 0.3 * abs(load) else arriving
+        before, v = v, v + step * (carried - load) / 0.05
+        v = 0.0 if before * v < 0.0 else v
+        x += step * v
+    assert moved["L"].values[-1] == pytest.approx(x, abs=0.02)

@@ -73,6 +73,35 @@ def test_a_toml_study_is_the_study_of_its_diagram(folder, capsys):
     assert (folder / "s.png").stat().st_size > 10_000
 
 
+USERS = '''"""A spring of the user's.
+
+    F = K x
+
+It holds the device at zero.
+"""
+
+from teleopdesign.effects import Effect, Parameter
+
+EFFECT = Effect(
+    role="force",
+    law=lambda now, p: p.stiffness * now.position,
+    parameters={"stiffness": Parameter("stiffness", "K: stiffness")},
+    absent={"stiffness": 0.0},
+    linear=True,
+    source="a test",
+)
+'''
+
+
+def test_a_study_takes_the_effects_of_a_users_file(folder, capsys):
+    (folder / "rubber.py").write_text(USERS)
+    (folder / "interface.toml").write_text(
+        DIAGRAM.replace("[blocks.C]", "effects.rubber.stiffness = 10.0\n[blocks.C]")
+    )
+    assert main(["study", "s.toml", "--workers", "1", "--effect", "rubber.py"]) == 0
+    assert "6 of 6 points" in capsys.readouterr().err
+
+
 def test_samples_computer_inputs_and_states_come_from_the_file_too(folder):
     text = STUDY.replace('"computer.delay" = [0, 1e-3]', '"Z_M.inertia" = 0.2')
     text = text.replace("motion.L = { amplitude = 0.01, frequency = 5.0 }", "")
