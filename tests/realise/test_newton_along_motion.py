@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
+from teleopdesign.realise.traced import Probe
 
 INSIDE = slice(150, -150)
 
@@ -132,3 +133,35 @@ def test_what_a_late_log_of_the_command_changes_is_the_slope_of_the_force_in_tim
     expected = np.gradient(along.acting.value, motion.sample_time)
     assert np.abs(found - expected)[INSIDE].max() < 0.02 * np.abs(expected).max()
     np.testing.assert_allclose(along.residual.tangent[1], -motion.velocity, atol=1e-9)
+
+
+@pytest.mark.parametrize("difference", [0.2, -0.2, 0.6])
+def test_friction_of_each_side_is_its_level_and_none_where_that_is_below_zero(difference):
+    motion = recorded()
+    named = {"coulomb.level": 0.5, "coulomb_asymmetry.half_difference": difference}
+    body = body_of("coulomb", "coulomb_asymmetry", values=named)
+    found = residual_along(body, motion, ["coulomb.level", "coulomb_asymmetry.half_difference"])
+    ahead, back = motion.direction > 0, motion.direction < 0
+    most, least = 0.5 + difference, max(0.5 - difference, 0.0)
+    np.testing.assert_allclose(found.friction.value[ahead], most, rtol=1e-12)
+    np.testing.assert_allclose(found.friction.value[back], -least, atol=1e-12)
+    by_level, by_difference = found.friction.tangent
+    assert np.all(by_level[ahead] == 1.0) and np.all(by_difference[ahead] == 1.0)
+    assert np.all(by_level[back] == (-1.0 if least else 0.0))
+    assert np.all(by_difference[back] == (1.0 if least else 0.0))
+
+
+def test_the_slope_by_the_strength_of_what_is_absent_holds_at_the_probes_other_values():
+    """Cogging of no amplitude, asked at a period of 4 mm: what one newton of it would take."""
+    motion = recorded()
+    named = {"cogging.amplitude": 0.0, "cogging.period": 0.01, "cogging.phase": 0.3}
+    body = body_of("cogging", "viscous", values=named)
+    symbols = body.symbols()
+    at = {symbols["cogging.period"]: 0.004, symbols["cogging.phase"]: 1.1}
+    probe = Probe("device", symbols["cogging.amplitude"], at)
+    found = residual_along(body, motion, ["viscous.damping", probe]).residual.tangent
+    there = {"cogging.amplitude": 1.0, "cogging.period": 0.004, "cogging.phase": 1.1}
+    sides = [residual_along(b, motion).residual.value for b in (body.with_values(there), body)]
+    np.testing.assert_allclose(found[1], sides[0] - sides[1], atol=1e-9)
+    np.testing.assert_allclose(found[0], -motion.velocity, atol=1e-9)
+    assert np.ptp(found[1]) > 1.5
