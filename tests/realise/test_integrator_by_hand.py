@@ -1,4 +1,4 @@
-"""Parts of the hand-written loop in plain Python, against polynomials, filters and other solvers."""
+"""Parts of the hand-written loop in plain Python: polynomials, filters, another solver."""
 
 import numpy as np
 import pytest
