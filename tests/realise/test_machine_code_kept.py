@@ -1,4 +1,4 @@
-"""Generated code that is kept: what runs is the source that was asked for, whatever a file holds."""
+"""Machine code that is kept: what runs is the source that was asked for, whatever a file holds."""
 
 import pytest
 
