@@ -1,18 +1,22 @@
-"""Claims over boxes of devices whose answer is known in closed form: status, margin, worst point."""
+"""Claims over boxes of devices whose answer is known in closed form; the search for the worst."""
 
 import math
+from types import SimpleNamespace
 
 import control as ct
 import numpy as np
 import pytest
+import sympy as sp
 from devices import body
 
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface, teleoperator
 from teleopdesign.passivity import claim_over_intervals
-from teleopdesign.passivity.intervals.box import box_of
+from teleopdesign.passivity.intervals.box import ValueBox, box_of
 from teleopdesign.passivity.intervals.family import family_of
 from teleopdesign.passivity.intervals.linear import margin_over
+from teleopdesign.passivity.intervals.worst import port_margin, search_worst
+from teleopdesign.realise.lti import S
 
 
 def held(inertia=0.2, damping=2.0, stiffness=100.0, extra=0.0):
@@ -148,3 +152,48 @@ def test_a_controller_that_grows_behind_a_port_leaves_no_margin_at_all():
     assert claim.status == "refuted" and claim.margin == -np.inf
     claim = claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)}, claim="stable", points=4)
     assert claim.status == "refuted" and claim.margin < -10.0
+
+
+def box_of_values(low, high):
+    return ValueBox(tuple(f"v{i}" for i in range(len(low))), tuple(low), tuple(high))
+
+
+@pytest.mark.parametrize("least", [(1.23, -0.4), (2.0, 0.77), (0.0, -1.0), (1.5, 5.0)])
+def test_the_search_for_the_worst_goes_down_inside_and_along_the_sides(least):
+    """A bowl whose bottom lies inside, on a side, in a corner, or beyond: the nearest point."""
+    box = box_of_values((0.0, -1.0), (2.0, 1.0))
+
+    def bowl(point):
+        return float(3.0 + (point[0] - least[0]) ** 2 + 2 * (point[1] - least[1]) ** 2)
+
+    nearest = np.clip(least, box.low, box.high)
+    found = search_worst(bowl, box, points=16, seed=0)
+    np.testing.assert_allclose(found.point, nearest, atol=2e-3)
+    assert found.margin == bowl(found.point) <= bowl(nearest) + 1e-5
+    assert np.all(found.point >= box.low) and np.all(found.point <= box.high)
+    looked = []
+    alone = search_worst(lambda p: looked.append(tuple(p)) or bowl(p), box, points=16, seed=0,
+                         downhill=False)  # fmt: skip
+    assert alone.points == len(looked) == len({*looked}) == 4 + 1 + 16 < found.points
+    assert {(0.0, -1.0), (2.0, -1.0), (0.0, 1.0), (2.0, 1.0), (1.0, 0.0)} <= {*looked}
+    assert alone.margin == min(map(bowl, looked)) and found.margin <= alone.margin
+
+
+def test_where_the_claim_fails_by_more_than_a_number_says_the_search_ends_there():
+    box = box_of_values((0.0,), (1.0,))
+    found = search_worst(lambda p: -np.inf if p[0] == 1.0 else 1.0, box, points=4, seed=0)
+    assert found.margin == -np.inf and found.point == [1.0] and found.points == 2 + 1 + 4
+
+
+@pytest.mark.parametrize("damping", [1e-4, 1e-3, 0.03])
+def test_the_least_margin_beside_a_sharp_resonance_is_found_between_grid_points(damping):
+    """Z = 5 - 1/(s + d + 1/s): a narrow dip of depth 1/d about 1 rad/s, whatever its width."""
+    d = sp.Symbol("d")
+    z = 5 * damping - damping**2 / (S + d + 1 / S)
+    family = SimpleNamespace(symbols={"v0": d})
+    margin = port_margin(
+        family, sp.Matrix([[z]]), stable=False, poles=[sp.Poly(S**2 + d * S + 1, S, d)],
+        box=box_of_values((damping,), (1.0,)),
+    )  # fmt: skip
+    assert margin(np.array([damping])) == pytest.approx(4 * damping, rel=0.02)
+    assert margin(np.array([-damping])) == -np.inf

@@ -1,4 +1,4 @@
-"""Machine code that is kept: what runs is the source that was asked for, whatever a file holds."""
+"""Kept machine code: what runs is the source that was asked for, whatever a file holds."""
 
 import pytest
 
