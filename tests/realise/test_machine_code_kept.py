@@ -69,3 +69,20 @@ def test_a_folder_that_others_write_to_or_that_is_a_link_is_not_used(tmp_path, m
     kept.rename(place / "elsewhere")
     kept.symlink_to(place / "elsewhere")
     assert compiled.cache_folder() != kept
+
+
+def test_code_counts_as_another_where_what_it_imports_has_changed(folder, monkeypatch):
+    """The name of its file goes by the content of the modules of this package that it takes."""
+    named = []
+
+    def contents(paths):
+        named.extend(paths)
+        return str(len(named))
+
+    monkeypatch.setattr(compiled, "hash_files", contents)
+    source = "from teleopdesign.realise.lane_exp import exp\n" + SOURCE.format(1)
+    for _ in range(2):
+        compiled.compiled_module.cache_clear()
+        compiled.compiled_module(source, "answer")
+    assert len(files(folder)) == 2
+    assert [p.name for p in named] == ["lane_exp.py"] * 2 and all(p.is_file() for p in named)
