@@ -135,6 +135,5 @@ def test_a_proof_ends_when_its_effort_is_spent_and_counts_what_it_looked_at():
     for left, shown in ((size, True), (size - 1, False)):
         effort = ProofEffort(left=int(left))
         assert is_non_negative_over(p, UNIT, Fraction(1), effort) is shown
-        signs = 1 if shown else 2  # where it is not shown of p, the same is asked of -p
-        assert effort.cells == effort.polynomials == signs
-        assert effort.left == left - signs * size
+        # the same is asked of -p, for a product may have its sign by two factors
+        assert effort.cells == effort.polynomials == 2 and effort.left == left - 2 * size
