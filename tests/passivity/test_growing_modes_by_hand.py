@@ -1,4 +1,4 @@
-"""Growing modes of two-ports between passive terminations: motions of the closed loop, as they say."""
+"""Growing modes of two-ports between passive terminations: motions of the closed loop."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -84,7 +84,8 @@ def test_the_energy_of_a_mode_is_that_of_force_and_velocity_over_time(frequency)
 
     def power(t):
         wave = np.exp(mode.s * t)
-        return sum((h.at(mode.s) * x * wave).real * (x * wave).real for h, x in zip(held, v))
+        moved = [(h.at(mode.s) * x * wave, x * wave) for h, x in zip(held, v, strict=True)]
+        return sum(f.real * u.real for f, u in moved)
 
     expected, _ = quad(power, -60.0, 0.0, limit=400)
     assert mode.energy == pytest.approx(expected, rel=1e-9)
