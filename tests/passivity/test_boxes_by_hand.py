@@ -197,3 +197,37 @@ def test_the_least_margin_beside_a_sharp_resonance_is_found_between_grid_points(
     )  # fmt: skip
     assert margin(np.array([damping])) == pytest.approx(4 * damping, rel=0.02)
     assert margin(np.array([-damping])) == -np.inf
+
+
+def test_a_negative_spring_leaves_no_margin_though_its_real_part_is_that_of_the_damper():
+    """Z = m s + d - k/s: Re Z = d at every frequency, and the device falls over."""
+    box = {"P.spring_damper.stiffness": (-80.0, -20.0), "M.inertia": (0.1, 0.2)}
+    claim = claim_over_intervals(held(stiffness=-50.0), box, points=4)
+    assert claim.status == "refuted" and claim.margin == -np.inf and claim.unit == "N s/m"
+    assert math.isnan(claim.proved_margin) and claim.at_worst.holds is False
+    assert str(claim.at_worst.verdict) == claim.how
+    box["P.spring_damper.stiffness"] = (-80.0, 20.0)  # a spring at one end alone
+    assert claim_over_intervals(held(), box, points=4).status == "refuted"
+
+
+def test_what_is_known_of_a_filtered_damper_is_said_of_each_point_by_itself():
+    """Its damper reads the velocity, its spring a filtered position: no family of one form."""
+    law = controller("spring_damper", {"stiffness": 0.0, "damping": 1.0})
+    low_pass = controller("low_pass", {"bandwidth": 5.0})
+    diagram = Diagram(
+        "filtered",
+        (
+            Moving("M", body(0.15, viscous__damping=2.0), "x", "u", {"f": 1}, "f"),
+            Control("Q", low_pass, "x", "y"),
+            Control("C", law, "y", "F", "x"),
+        ),
+        (Junction("u", {"F": -1}),),
+        {"f": "force"},
+        (),
+    )
+    box = {"C.spring_damper.damping": (0.5, 5.0)}
+    claim = claim_over_intervals(diagram, box, points=2)
+    assert claim.status == "evidence" and "by itself" in claim.how and claim.unit == "N s/m"
+    assert math.isnan(claim.proved_margin) and claim.at_worst.holds and not claim.certificates
+    assert claim.margin == pytest.approx(2.5, rel=1e-3)
+    assert claim.worst["C.spring_damper.damping"] == 0.5 and claim.time == "continuous"
