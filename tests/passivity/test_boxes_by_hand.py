@@ -100,28 +100,28 @@ def test_the_pole_margin_of_a_held_mass_is_that_of_its_quadratic(damping):
         assert math.isnan(claim.proved_margin) and not claim.certificates
 
 
-@pytest.mark.parametrize(("low", "status"), [(-0.45, "proved"), (-0.55, "refuted")])
-def test_two_joined_masses_are_passive_and_stable_at_any_hands_down_to_the_same_damper(low, status):
+@pytest.mark.parametrize(
+    ("name", "low", "status"),
+    [("passive", -0.45, "proved"), ("absolutely stable", -0.45, "proved"),
+     ("absolutely stable", -0.55, "refuted")],
+)  # fmt: skip
+def test_two_joined_masses_are_passive_and_stable_at_any_hands_down_to_the_same_damper(
+    name, low, status
+):
     """D + c [1 -1; -1 1] has the determinant d1 d2 + c (d1 + d2): c may be -1/2 for 1 and 1."""
-    box = {
-        "Z_m.viscous.damping": (1.0, 2.0),
-        "Z_s.viscous.damping": (1.0, 1.5),
-        "P.spring_damper.damping": (low, 2.0),
-    }
-    for name in ("passive", "absolutely stable"):
-        claim = claim_over_intervals(joined(), box, claim=name, points=2)
-        assert claim.status == status, name
-        assert claim.unit == {"passive": "N s/m"}.get(name, "1")
-        d, e, c = (claim.worst[n] for n in box)
-        matrix = np.diag([d, e]) + c * np.array([[1, -1], [-1, 1]])
-        if status == "refuted":
-            assert d * e + c * (d + e) < 0 and claim.at_worst.holds is False
-        elif name == "passive":
-            assert claim.margin == pytest.approx(np.linalg.eigvalsh(matrix)[0], rel=1e-5)
-            assert claim.margin == pytest.approx(min(1.0 + 2 * low, 1.0), rel=1e-4)
-            assert 0.4 * claim.margin < claim.proved_margin <= claim.margin
-        else:
-            assert claim.proved_margin == 0.0 and claim.margin > 0
+    box = {"Z_m.viscous.damping": (1.0, 2.0), "P.spring_damper.damping": (low, 2.0)}
+    claim = claim_over_intervals(joined(), box, claim=name, points=2)
+    assert claim.status == status and claim.unit == {"passive": "N s/m"}.get(name, "1")
+    d, c = (claim.worst[n] for n in box)
+    matrix = np.diag([d, 1.0]) + c * np.array([[1, -1], [-1, 1]])
+    if status == "refuted":
+        assert d + c * (d + 1.0) < 0 and claim.at_worst.holds is False
+    elif name == "passive":
+        assert claim.margin == pytest.approx(np.linalg.eigvalsh(matrix)[0], rel=1e-5)
+        assert claim.margin == pytest.approx(min(1.0 + 2 * low, 1.0), rel=1e-4)
+        assert 0.4 * claim.margin < claim.proved_margin <= claim.margin
+    else:
+        assert claim.proved_margin == 0.0 and claim.margin > 0
 
 
 def test_the_margin_over_a_box_is_a_function_of_its_values():

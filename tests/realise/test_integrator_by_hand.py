@@ -127,10 +127,10 @@ def bristle(step):
         lambda t: 0.9 * np.cos(90 * t),
     )
     diagram = haptic_interface(body(0.2, coulomb__level=0.5, presliding__stiffness=2e3))
-    found = simulate(diagram, duration=0.02, motion={"L": moved}, step=step, jit=False)
+    found = simulate(diagram, duration=0.012, motion={"L": moved}, step=step, jit=False)
     known = solve_ivp(
         lambda t, z: moved.velocity(t) * (1.0 - 2e3 / 0.5 * z),
-        (0, 0.02), [0.0], t_eval=1e-3 * np.arange(21), rtol=1e-11, atol=1e-15,
+        (0, 0.012), [0.0], t_eval=1e-3 * np.arange(13), rtol=1e-11, atol=1e-15,
     ).y[0]  # fmt: skip
     return found["Z_M_presliding_bristle"].values, known
 
