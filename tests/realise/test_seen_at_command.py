@@ -151,17 +151,22 @@ def led_back(body, motion, residual):
 
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize(("level", "weak"), [(1.8, False), (2.2, True)])
-def test_an_actuator_that_is_strongest_for_a_small_command_is_judged_there(side, level, weak):
-    """Of u its force is 40 u / (1 + 100 u^2), to a limit: 2 N for 0.1 N, 0.13 N for 3 N."""
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
+def test_an_actuator_that_is_strongest_for_a_small_command_is_judged_there(side, level, weak, unit):
+    """Of u its force is 40 u / (1 + 100 u^2), to a limit: 2 N for 0.1 N, 0.13 N for 3 N.
+
+    unit: N, of all forces: the answer is the same for a hair and for a crane
+    """
     effects = {
-        CHEATS["fades_when_large"]: {"part": 1 / 16},
+        CHEATS["fades_when_large"]: {"part": 1 / 16 / unit**2},
         EFFECTS["actuator_gain"]: {"gain": 40.0},
-        EFFECTS["actuator_saturation"]: {"limit": 30.0},
+        EFFECTS["actuator_saturation"]: {"limit": 30.0 * unit},
     }
     values = {f"{e.name}.{n}": Value(v) for e, of in effects.items() for n, v in of.items()}
-    values |= {"inertia": Value(0.2), "coulomb.level": Value(level)}
+    values |= {"inertia": Value(0.2 * unit), "coulomb.level": Value(level * unit)}
     body = Body("prismatic", values, (EFFECTS["coulomb"], *effects))
-    seen = seen_at_command(body, one_way(side))
+    motion = one_way(side)
+    seen = seen_at_command(body, replace(motion, command=unit * motion.command))
     assert seen.blind.any() and seen.weak == weak
 
 
