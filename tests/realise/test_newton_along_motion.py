@@ -61,6 +61,20 @@ def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
     np.testing.assert_allclose(lost[moves], expected[moves], atol=1e-9)
 
 
+@pytest.mark.parametrize("parameter", ["coulomb.level", "load_dependent_friction.coefficient"])
+def test_what_moves_the_body_has_its_slopes_too(parameter):
+    motion = recorded()
+    body = body_of("coulomb", "load_dependent_friction")
+    value = body.parameters[parameter].value
+    sides = [
+        residual_along(body.with_values({parameter: value * (1 + e)}), motion).moving.value
+        for e in (1e-6, -1e-6)
+    ]
+    slope = (sides[0] - sides[1]) / (2e-6 * value)
+    found = residual_along(body, motion, [parameter]).moving.tangent[0]
+    np.testing.assert_allclose(found, slope, atol=1e-5 * (1 + np.abs(slope).max()))
+
+
 @pytest.fixture(scope="module")
 def two_masses():
     """A motor of 0.1 kg and a tip of 0.05 kg on 400 N/m, pushed at the motor and at the tip."""

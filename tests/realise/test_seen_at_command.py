@@ -303,3 +303,23 @@ def test_a_command_within_a_dead_zone_is_blind_and_a_larger_one_is_judged(side, 
         seen = seen_at_command(Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion)
         # a limit in front of the zone never leaves it
         assert seen.blind.all() and seen.weak == (weak or order[0] is not zone)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_samples_in_which_friction_takes_up_the_whole_force_are_blind_then_and_not_earlier(side):
+    """A user's brake that holds all of the acting force along a part of the stroke."""
+    brake = Effect(
+        role="friction_level",
+        law=lambda now, p: sp.Piecewise(
+            (p.part * sp.Abs(now.acting_force), sp.Abs(now.position) > 1.5), (0, True)
+        ),
+        parameters={"part": Parameter("dimensionless", "share")},
+        absent={"part": 0.0},
+    ).named("brake", "")
+    motion = one_way(side)
+    held = np.abs(motion.position) > 1.5
+    assert 0.2 < held.mean() < 0.8
+    seen = seen_at_command(body_with(brake, {"part": 1.0}), motion)
+    moves = motion.direction != 0  # all samples but the last
+    np.testing.assert_array_equal(seen.blind[moves], held[moves])
+    assert not seen_at_command(body_with(brake, {"part": 0.5}), motion).blind.any()
