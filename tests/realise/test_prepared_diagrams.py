@@ -65,3 +65,10 @@ def test_friction_below_zero_at_rest_alone_is_refused_with_its_direction(dip, wa
     if way:
         (other,) = set(levels) - {refused}
         assert levels[other] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("difference", [0.2, -0.3])
+def test_levels_of_both_directions_are_the_mean_and_half_of_the_difference(difference):
+    made = body(0.1, coulomb__level=0.5, coulomb_asymmetry__half_difference=difference)
+    levels = least_levels(made, made.numbers().get)
+    assert levels == {"forward": 0.5 + difference, "backward": 0.5 - difference}
