@@ -9,9 +9,12 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.errors import ModelError
 from teleopdesign.passivity import sampled_coupling, wave_channel
+from teleopdesign.passivity.checker import absolute_stability
 from teleopdesign.passivity.linear.positive_real import damping_excess, mobility_excess
 from teleopdesign.passivity.theorems import sampled_data
+from teleopdesign.passivity.theorems.bounded_compensation import positive_numbers
 from teleopdesign.passivity.two_port import termination, waves
 from teleopdesign.passivity.two_port.termination import Termination
 from teleopdesign.realise.lti import S
@@ -188,3 +191,30 @@ def test_of_all_mixtures_of_two_travels_the_one_that_releases_most_is_taken(seed
     mixed = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * other
     best = sampled_data._released_energy(mixed, *system).max()
     assert energy == pytest.approx(best, rel=1e-4)
+
+
+@pytest.mark.parametrize("wrong", [0, -1, sp.Rational(-1, 10**9), 0.0])
+def test_a_value_that_has_to_be_positive_is_refused_by_name_at_zero_too(wrong):
+    with pytest.raises(ModelError, match="stiffness: expected a number > 0, found"):
+        positive_numbers(level=1, stiffness=wrong)
+    assert positive_numbers(level=0.1, stiffness=sp.Rational(1, 10**9)) == [
+        sp.Rational(1, 10),
+        sp.Rational(1, 10**9),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("p", "q", "words"),
+    [
+        ([1, 1], [1], ""),
+        ([1], [-1, 1], "open right half plane"),
+        ([-1, 1], [1], "real part is negative"),
+        ([-1], [0, 1], "no residue > 0"),
+    ],
+)
+def test_why_a_port_is_not_positive_real_is_said(p, q, words):
+    """Coefficients from the lowest power: s + 1, 1/(s - 1), s - 1 and -1/s."""
+    ratio = tuple([Fraction(c) for c in one] for one in (p, q))
+    condition = absolute_stability._positive_real("Z", ratio)
+    assert condition.holds is (not words) and condition.name == "Z is positive real"
+    assert words in condition.where if words else condition.where == ""
