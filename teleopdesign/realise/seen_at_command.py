@@ -32,7 +32,7 @@ from ..measurement.motion import Motion
 from .along_motion import Residual, measured_along, residual_along
 from .friction_along import level_along
 from .stages_along import ActuationStage, stages_along
-from .traced import Along, slope
+from .traced import Along, for_numpy, slope
 
 #: part of the gain that a law has where it has most, below which a sample is blind. A command ten
 #: times as uncertain as elsewhere is not reported; of a larger part a ripple or a soft limit would
@@ -129,7 +129,7 @@ def _slopes(
 @lru_cache(maxsize=1024)
 def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
     symbols = tuple(sorted(expression.free_symbols, key=str))
-    return symbols, sp.lambdify(symbols, expression, "numpy", cse=True)
+    return symbols, sp.lambdify(symbols, for_numpy(expression), "numpy", cse=True)
 
 
 def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:

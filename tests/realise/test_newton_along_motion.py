@@ -4,10 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy as sp
 from effects.along import body_of, motion_along, signals, unled
 from scipy.integrate import solve_ivp
 
+from teleopdesign.blocks import Body, Value
+from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.realise.along_motion import residual_along
+from teleopdesign.realise.simulated import least_levels
 from teleopdesign.realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
 from teleopdesign.realise.traced import Probe
 
@@ -179,3 +183,57 @@ def test_the_slope_by_the_strength_of_what_is_absent_holds_at_the_probes_other_v
     np.testing.assert_allclose(found[1], sides[0] - sides[1], atol=1e-9)
     np.testing.assert_allclose(found[0], -motion.velocity, atol=1e-9)
     assert np.ptp(found[1]) > 1.5
+
+
+#: a user's damping k that is there under some condition on the motion and on k: law, and where
+JOINED = {
+    "both": (lambda v, k: sp.And(v > 0, k > 1), lambda v: v > 0),
+    "either": (lambda v, k: sp.Or(v > 0, k > 9), lambda v: v > 0),
+    "not both": (lambda v, k: sp.Not(sp.And(v > 0, k > 1)), lambda v: v <= 0),
+    "one by the other": (
+        lambda v, k: sp.Piecewise((k, v > 0), (v, True)) > 1, lambda v: np.where(v > 0, 2.0, v) > 1,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", JOINED)
+def test_a_users_law_may_join_conditions_on_the_motion_and_on_its_parameters(name):
+    """It ended in a traceback of numpy, for some are as long as the record and some are numbers."""
+    condition, where = JOINED[name]
+    effect = Effect(
+        role="force",
+        law=lambda now, p: sp.Piecewise(
+            (p.k * now.velocity, condition(now.velocity, p.k)), (0, True)
+        ),
+        parameters={"k": Parameter("damping", "k")},
+        absent={"k": 0.0},
+    ).named("mine", "")
+    motion = recorded()
+    body = Body("prismatic", {"inertia": Value(0.2), "mine.k": Value(2.0)}, (effect,))
+    found = residual_along(body, motion, ["mine.k"])
+    bare = residual_along(Body("prismatic", {"inertia": Value(0.2)}), motion).residual.value
+    there = where(motion.velocity)
+    assert 0.1 < there.mean() < 0.9
+    expected = np.where(there, 2.0 * motion.velocity, 0.0)
+    np.testing.assert_allclose(bare - found.residual.value, expected, atol=1e-9)
+    slope = np.where(there, -motion.velocity, 0.0)
+    np.testing.assert_allclose(found.residual.tangent[0], slope, atol=1e-9)
+    probe = Probe("device", body.symbols()["mine.k"], {})
+    asked = residual_along(body, motion, [probe]).residual.tangent[0]
+    np.testing.assert_allclose(asked, slope, atol=1e-9)
+
+
+def test_levels_of_many_cases_may_join_conditions_on_what_differs_and_what_does_not():
+    effect = Effect(
+        role="friction_level",
+        law=lambda now, p: sp.Piecewise((-p.a, sp.And(p.a > 1, p.b > 1)), (0, True)),
+        parameters={"a": Parameter("force", "a"), "b": Parameter("dimensionless", "b")},
+        absent={"a": 0.0},
+    ).named("mine", "")
+    values = {"inertia": 0.2, "coulomb.level": 3.0, "mine.a": 2.0, "mine.b": 2.0}
+    body = Body("prismatic", {n: Value(v) for n, v in values.items()}, (EFFECTS["coulomb"], effect))
+    numbers = body.numbers()
+    cases = {**numbers, body.symbols()["mine.a"]: np.array([0.5, 2.0, 4.0])}
+    levels = least_levels(body, cases.get)
+    np.testing.assert_allclose(levels["forward"], [3.0, 1.0, -1.0])
+    assert least_levels(body, numbers.get)["backward"] == 1.0
