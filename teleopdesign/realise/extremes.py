@@ -44,8 +44,12 @@ class Least:
 
 @dataclass(order=True, frozen=True)
 class _Box:
+    """Of equal bounds the newest box is looked at first; those without end after all others, the
+    oldest first: neither side of a line is followed outwards for ever.
+    """
+
     bound: float
-    newest_first: int
+    turn: tuple[bool, int]
     ranges: tuple[tuple[float, float], ...] = field(compare=False)
 
 
@@ -58,7 +62,7 @@ class _Search:
         self.value = enclosure_of(law, self.symbols)
         self.slopes = [_slope(law, s, self.symbols) for s in self.symbols]
         self.met, self.point = math.inf, tuple(_middle(r) for r in self.start)
-        self.serial = count(0, -1)
+        self.serial = count()
 
     def over(self, ranges: Sequence[tuple[float, float]]) -> tuple[float, float]:
         return ends(self.value([interval(*r) for r in ranges]))
@@ -85,7 +89,9 @@ class _Search:
                 narrow[i] = high, high
         for at in (_middle, _first, _last):
             self.meet([at(r) for r in narrow])
-        return _Box(self.over(narrow)[0], next(self.serial), tuple(narrow))
+        is_open, number = any(math.isinf(x) for r in narrow for x in r), next(self.serial)
+        turn = is_open, number if is_open else -number
+        return _Box(self.over(narrow)[0], turn, tuple(narrow))
 
     def split(self, box: _Box) -> list[_Box]:
         """Two halves along the range that widens the enclosure most; none where all are points."""
@@ -103,8 +109,7 @@ class _Search:
             return []
         low, high = box.ranges[best]
         middle = _middle((low, high))
-        # of equal bounds the newest box is looked at first: not the one that has no end
-        halves = sorted([(low, middle), (middle, high)], key=lambda r: r[0] - r[1])
+        halves = (low, middle), (middle, high)
         return [self.box((*box.ranges[:best], h, *box.ranges[best + 1 :])) for h in halves]
 
 

@@ -83,7 +83,11 @@ def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> 
     """The part of the friction that the acting force itself causes."""
     if not level.has(_ACTING):
         return constant(np.zeros_like(friction.value), len(friction.tangent))
-    rest = level.subs(_ACTING, 0)
-    share = along.evaluate(sp.Piecewise((1 - rest / level, level > 0), (0, True)))
-    tangent = friction.tangent * share.value + friction.value * share.tangent
-    return Traced(friction.value * share.value, tangent)
+    # by values: as one law, a level of pieces would be a condition of pieces, which numpy refuses
+    whole, rest = along.evaluate(level), along.evaluate(level.subs(_ACTING, 0))
+    is_there = whole.value > 0
+    size = np.where(is_there, whole.value, 1.0)
+    share = np.where(is_there, 1.0 - rest.value / size, 0.0)
+    slope = np.where(is_there, (rest.value / size * whole.tangent - rest.tangent) / size, 0.0)
+    tangent = friction.tangent * share + friction.value * slope
+    return Traced(friction.value * share, tangent)

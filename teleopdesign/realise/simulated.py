@@ -17,6 +17,7 @@ from ..diagrams import Attached, Block, Control, Diagram, Moving, with_shared_st
 from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
+from .traced import for_numpy
 
 #: m/s or rad/s: a speed above which no friction level changes
 _FAST = 1e6
@@ -155,8 +156,9 @@ def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any
         now = {SIGNALS["direction"]: direction}
         at = [equation.level.subs(at_rest | now | {SIGNALS["velocity"]: v}) for v in speeds]
         symbols = sorted(set().union(*(x.free_symbols for x in at)), key=str)
-        call = sp.lambdify(symbols, at, "numpy")
-        levels[way] = np.minimum(*call(*map(value, symbols)))
+        call = sp.lambdify(symbols, [for_numpy(x) for x in at], "numpy")
+        # numpy joins conditions of a law only where all of them are as long
+        levels[way] = np.minimum(*call(*np.broadcast_arrays(*map(value, symbols))))
     return levels
 
 

@@ -161,19 +161,23 @@ class Along:
 
 @dataclass(frozen=True)
 class NumericLaw:
-    """A sympy expression as a numpy function of signals and parameters, with derivatives."""
+    """A sympy expression as a numpy function of signals and parameters, with derivatives.
+
+    joins: the expression joins conditions, which numpy does only where both are as long
+    """
 
     expression: sp.Expr
     signals: tuple[sp.Symbol, ...]
     parameters: tuple[sp.Symbol, ...]
     call: Callable[..., Any]
+    joins: bool = False
 
     def __call__(self, along: Along) -> Traced:
         signals, values, columns = along.signals, along.values, along.columns
         arrays = [signals[s].value for s in self.signals]
         n = len(next(iter(signals.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
-            out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
+            out = self.call(*arrays, *self._numbers(values, n))
         value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,)).copy()
         places = {column: j for j, column in enumerate(columns)}
         symbols = [getattr(column, "symbol", column) for column in columns]  # a probe: its strength
@@ -194,11 +198,17 @@ class NumericLaw:
         rows = tuple(j for j, s in enumerate(symbols) if s in self.parameters)
         return Traced(value, tangent, None if moved else rows)
 
+    def _numbers(self, values: Mapping[sp.Symbol, float], n: int) -> list[Any]:
+        """Values of the parameters, as the function takes them beside n samples."""
+        numbers = [np.float64(values[p]) for p in self.parameters]
+        return [np.full(n, x) for x in numbers] if self.joins else numbers
+
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
     ) -> Any:
         """Derivative by the probe's strength, at the probe's values of the other parameters."""
-        numbers = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
+        at = {p: probe.values.get(p, values[p]) for p in self.parameters}
+        numbers = self._numbers(at, len(arrays[0]) if arrays else 1)
         call = _slope_call(self.expression, self.signals, self.parameters, probe.symbol)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             return call(*arrays, *numbers)
@@ -218,6 +228,13 @@ TRACED = frozenset(
 def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
     """Derivative almost everywhere; at a jump, such as of sgn, the derivative beside it."""
     return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
+
+
+def for_numpy(expression: sp.Expr) -> sp.Expr:
+    """The same, with no condition that chooses between conditions: printed, it is no condition."""
+    return expression.replace(
+        sp.ITE, lambda c, yes, no: sp.Or(sp.And(c, yes), sp.And(sp.Not(c), no))
+    )
 
 
 @lru_cache(maxsize=512)
@@ -240,8 +257,10 @@ def law_of(
     parameters = tuple(sorted(expression.free_symbols - set(signals), key=str))
     gradients = [slope(expression, s) if s in traced else sp.S(0) for s in used]
     gradients += [slope(expression, p) for p in parameters]
-    call = sp.lambdify([*used, *parameters], [expression, *gradients], "numpy", cse=True)
-    return NumericLaw(expression, used, parameters, call)
+    printed = [for_numpy(e) for e in (expression, *gradients)]
+    call = sp.lambdify([*used, *parameters], printed, "numpy", cse=True)
+    joins = any(e.has(sp.And, sp.Or) for e in printed)
+    return NumericLaw(expression, used, parameters, call, joins)
 
 
 @lru_cache(maxsize=512)
@@ -253,5 +272,6 @@ def _slope_call(
 ) -> Callable[..., Any]:
     """One derivative of a law as a numpy function of its signals and parameters."""
     arguments = [*signals, *parameters]
-    call: Callable[..., Any] = sp.lambdify(arguments, slope(expression, symbol), "numpy", cse=True)
+    printed = for_numpy(slope(expression, symbol))
+    call: Callable[..., Any] = sp.lambdify(arguments, printed, "numpy", cse=True)
     return call

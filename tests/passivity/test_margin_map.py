@@ -7,7 +7,7 @@ import pytest
 from devices import body
 
 from teleopdesign.controllers import controller
-from teleopdesign.diagrams import four_channel, haptic_interface
+from teleopdesign.diagrams import four_channel, haptic_interface, teleoperator
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import diagram_claims, margin_map, sweep_margins, two_port
 from teleopdesign.passivity.ports import impedance_matrix, ports
@@ -99,3 +99,25 @@ def test_the_page_is_as_short_as_it_says():
         if line.strip() and not line.startswith(":")
     ]
     assert 30 < len(lines) < 40
+
+
+def test_a_map_of_two_masses_joined_by_a_damper_has_its_closed_form_and_counts_what_is_stable():
+    """D + c [1 -1; -1 1]: stable where d1 d2 + c (d1 + d2) >= 0; passive by an eigenvalue."""
+    link = controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
+    diagram = teleoperator(
+        body(0.2, viscous__damping=1.0), body(0.3, viscous__damping=1.0), coupling=link
+    )
+    dampings, links = [0.5, 1.0, 3.0], [-0.6, -0.4, -0.2, 2.0]
+    found = margin_map(
+        diagram, {"Z_m.viscous.damping": dampings, "P.spring_damper.damping": links}, frequency=F
+    )
+    stable = [[d + c * (d + 1.0) >= 0 for c in links] for d in dampings]
+    np.testing.assert_array_equal(found.data["llewellyn"].values >= 0, stable)
+    least = [
+        [np.linalg.eigvalsh(np.diag([d, 1.0]) + c * np.array([[1, -1], [-1, 1]]))[0] for c in links]
+        for d in dampings
+    ]
+    np.testing.assert_allclose(found.data["passive"].values, least, rtol=1e-6)
+    assert f"not below 0 at {np.sum(stable)} of 12 points" in repr(found)
+    assert "left out" not in repr(found)
+    assert 0 < np.sum(stable) < 12 and set(np.unique(found.data["frequency"])) <= set(F)

@@ -10,8 +10,8 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.controllers import from_control
-from teleopdesign.diagrams import haptic_interface
+from teleopdesign.controllers import controller, from_control
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
 from teleopdesign.frequency import transfer_function
 from teleopdesign.passivity import (
     Claim,
@@ -111,3 +111,18 @@ def test_a_sampled_law_that_leaves_double_precision_is_refuted_by_a_shorter_moti
     law = (15000 * z - 30003) / (100 * z - 200)
     claim = sampled_passivity(law, damping=0.0075, sample_time=0.0001)
     assert claim.status == "refuted" and claim.record.replay() > 0
+
+
+@pytest.mark.parametrize(
+    ("damping", "status"),
+    [(-0.31, "refuted"), (-(0.1 + 0.2), "unknown"), (-0.3, "proved"), (-0.29, "proved")],
+)
+def test_a_damper_that_another_outdoes_by_rounding_alone_is_not_refuted(damping, status):
+    """0.3 N s/m less 0.1 + 0.2 of floats is -4e-17 N s/m: values nearby are passive."""
+    law = controller("spring_damper", {"stiffness": 100.0, "damping": damping})
+    device = Moving("M", body(MASS, viscous__damping=0.3), "x", "u", {"f": 1}, "f")
+    minus = Junction("u", {"F": -1})
+    control_block = Control("P", law, "x", "F", "x", analog=True)
+    diagram = Diagram("held", (device, control_block), (minus,), {"f": "force"}, ("x",))
+    found = [claim.status for claim in claims(diagram)]
+    assert found[0] == status and ("refuted" in found) is (status == "refuted")

@@ -247,3 +247,21 @@ def test_an_exponential_stays_on_its_side_of_one_and_of_zero(x):
     assert 0 <= low <= high and (high <= 1 if x <= 0 else low >= 1)
     width = enclosure_of(sp.exp(X), [X])([interval(-inf, x)])
     assert ends(width)[0] == 0.0 and ends(width)[1] >= high * (1 - 1e-14)
+
+
+@pytest.mark.parametrize("range_", [(0.0, inf), (0.5, inf), (-2.0, inf), (-inf, inf), (1.0, 9.0)])
+@pytest.mark.parametrize("place", [3.0, 7e3])
+def test_a_least_value_is_as_well_found_to_the_left_as_to_the_right(range_, place):
+    """A valley at some place of a line that has no end: the same with the axis turned round."""
+    x = sp.Symbol("x")
+    low, high = range_
+    law = (x - place) ** 2 / (1 + (x - place) ** 2)
+    there = least_value(law, {x: (low, high)})
+    back = least_value(law.subs(x, -x), {x: (-high, -low)})
+    for found, at in ((there, place), (back, -place)):
+        if low <= place <= high:
+            assert -0.01 < found.bound <= found.met < 0.01
+            assert found.point[x] == pytest.approx(at, abs=0.1)
+        else:
+            assert found.bound == pytest.approx(1 - 1 / (1 + (high - place) ** 2), rel=1e-3)
+            assert abs(found.point[x]) == high

@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 from devices import body
 
-from teleopdesign.blocks import matrix_impedance
+from teleopdesign.blocks import Body, Value, matrix_impedance
 from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import Linked, parallel_rods
-from teleopdesign.realise.simulated import without_no_delay
+from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.simulated import check_levels, least_levels, without_no_delay
 from teleopdesign.realise.tips import with_tips
 
 COMPLIANT = {
@@ -35,3 +38,37 @@ def test_delays_of_no_time_are_left_out_and_others_stay(times):
     assert made.dead_time is None or made.dead_time > 0
     left = [s.value_of("dead_time") for s in made.stages]
     assert left == [*(t for t in times if t), None]
+
+
+@pytest.mark.parametrize(
+    ("dip", "way", "refused"),
+    [(0.4, 0.0, None), (0.6, 0.0, "forward"), (0.6, 1.0, "forward"), (0.6, -1.0, "backward")],
+)
+def test_friction_below_zero_at_rest_alone_is_refused_with_its_direction(dip, way, refused):
+    """A user's level that dips at rest, in one direction or in both, and is whole in sliding."""
+    side = sp.Piecewise((1, way * SIGNALS["direction"] >= 0), (0, True))
+    effect = Effect(
+        role="friction_level",
+        law=lambda now, p: -p.dip * side * sp.exp(-((now.velocity / sp.Float(0.01)) ** 2)),
+        parameters={"dip": Parameter("force", "depth")},
+        absent={"dip": 0.0},
+    ).named("dip", "")
+    values = {"inertia": Value(0.1), "coulomb.level": Value(0.5), "dip.dip": Value(dip)}
+    made = Body("prismatic", values, (EFFECTS["coulomb"], effect))
+    if refused is None:
+        check_levels(made, "device")
+        return
+    with pytest.raises(ModelError, match=f"device: friction of -0.1 N {refused} .coulomb, dip."):
+        check_levels(made, "device")
+    levels = least_levels(made, made.numbers().get)
+    assert levels[refused] == pytest.approx(-0.1) and set(levels) == {"forward", "backward"}
+    if way:
+        (other,) = set(levels) - {refused}
+        assert levels[other] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("difference", [0.2, -0.3])
+def test_levels_of_both_directions_are_the_mean_and_half_of_the_difference(difference):
+    made = body(0.1, coulomb__level=0.5, coulomb_asymmetry__half_difference=difference)
+    levels = least_levels(made, made.numbers().get)
+    assert levels == {"forward": 0.5 + difference, "backward": 0.5 - difference}

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from effects.along import body_of, motion_along
 
+from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.stages_along import _delay_samples
 
 
@@ -11,3 +13,50 @@ def test_a_signal_some_steps_delay_samples_is_held_before_it_begins(steps):
     y = np.random.default_rng(1).normal(size=(2, 40))
     expected = y[:, np.clip(np.arange(40) - steps, 0, None)]
     assert (_delay_samples(y, steps) == expected).all()
+
+
+def acting(names, values, command):
+    motion = motion_along(0.01 * np.sin(np.arange(len(command)) / 30.0), command, bandwidth=200.0)
+    body = body_of(*names, values=values)
+    return motion, residual_along(body, motion, list(values)).acting
+
+
+@pytest.mark.parametrize("delay", [0.0, 2e-3, 2.3e-3, 7.15e-3])
+def test_a_late_command_is_the_earlier_one_averaged_over_each_hold(delay):
+    """By a fine staircase, shifted; before the record the command is the first one."""
+    whole = delay in (0.0, 2e-3)
+    command = 1.0 + (
+        np.random.default_rng(3).normal(size=120) if whole else np.sin(np.arange(120) / 9.0)
+    )
+    motion, found = acting(("actuation_delay",), {"actuation_delay.delay": delay}, command)
+    fine = 400
+    shift = round(delay / 1e-3 * fine)
+    held = np.concatenate([np.full(shift, command[0]), np.repeat(command, fine)])[: 120 * fine]
+    expected = motion.at_rows(held.reshape(-1, fine).mean(axis=1))
+    # within a row a delay is told to a quarter of it: edges of the staircase fall there
+    np.testing.assert_allclose(found.value, expected, atol=1e-9 if whole else 0.01)
+
+
+def test_the_slope_by_a_delay_is_that_of_the_command_in_time():
+    t = np.arange(300) * 1e-3
+    motion, found = acting(
+        ("actuator_gain", "actuation_delay"),
+        {"actuation_delay.delay": 4.6e-3, "actuator_gain.gain": 0.4},
+        2.0 + np.sin(50 * t),
+    )
+    # at a row the command is half that of the hold before it and half that of the one behind it
+    late = t[20:-20] - 4.6e-3 - 0.5e-3
+    np.testing.assert_allclose(found.tangent[0, 20:-20], -0.4 * 50 * np.cos(50 * late), atol=0.1)
+    np.testing.assert_allclose(found.tangent[1, 20:-20], 2.0 + np.sin(50 * late), atol=0.005)
+    np.testing.assert_allclose(found.value, 0.4 * found.tangent[1], atol=1e-9)
+
+
+def test_a_limit_acts_on_what_the_gain_makes_of_the_command():
+    """3 N by a gain of one half are 1.5 N, beyond a limit of 1.2 N; 2 N are within it."""
+    for size, expected in ((3.0, 1.2), (2.0, 1.0), (-3.0, -1.2)):
+        _, found = acting(
+            ("actuator_gain", "actuator_saturation"),
+            {"actuator_gain.gain": 0.5, "actuator_saturation.limit": 1.2},
+            np.full(50, size),
+        )
+        np.testing.assert_allclose(found.value, expected, rtol=1e-12)

@@ -4,14 +4,16 @@
 
 FOLDER: folders and files, joined by ":". FILE gets, as JSON, a list of tests: name, seconds, and
 by file of the package the lines. What only an import runs, or compiled code, or another process, is
-in no list.
+in no list. The loop of a simulation in plain Python counts as the file that it is written in.
 """
 
+import ast
 import json
 import os
 import sys
 import threading
 import time
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -21,17 +23,36 @@ _tests: list[dict[str, object]] = []
 _now: dict[str, set[int]] = {}
 
 
+@cache
+def _loop_file():
+    """The file whose text ends each generated module, and at which line its functions begin."""
+    file = Path(sys.modules["teleopdesign.realise._loop"].__file__).with_name("integrator.py")
+    functions = (f for f in ast.parse(file.read_bytes()).body if isinstance(f, ast.FunctionDef))
+    return str(file), {f.name: f.decorator_list[0].lineno for f in functions}
+
+
+def _place(frame):
+    """File and line that a frame is at, as they were written."""
+    code = frame.f_code
+    if code.co_filename == "<generated>":
+        file, begins = _loop_file()
+        if code.co_name in begins:
+            return file, begins[code.co_name] + frame.f_lineno - code.co_firstlineno
+    return code.co_filename, frame.f_lineno
+
+
 def _within(frame, event, _):
     if event == "line":
-        _now[frame.f_code.co_filename].add(frame.f_lineno)
+        file, line = _place(frame)
+        _now[file].add(line)
     return _within
 
 
 def _at_call(frame, event, _):
-    file = frame.f_code.co_filename
+    file, line = _place(frame)
     if not file.startswith(_WATCHED):
         return None
-    _now.setdefault(file, set()).add(frame.f_lineno)
+    _now.setdefault(file, set()).add(line)
     return _within
 
 

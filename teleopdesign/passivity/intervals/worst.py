@@ -113,7 +113,8 @@ def port_margin(
             if (roots.real > 1e-7 * np.abs(roots)).any():
                 return -np.inf
             w = np.append(w, np.abs(roots[roots != 0]))
-        grid = np.geomspace(w.min() / 1000, w.max() * 1000, _FREQUENCIES)
+        # a resonance may be narrower than the distance of two frequencies: each has its own
+        grid = np.union1d(np.geomspace(w.min() / 1000, w.max() * 1000, _FREQUENCIES), w)
         values = over(grid, point)
         k = int(np.argmin(values))
         beside = np.geomspace(grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)], 41)

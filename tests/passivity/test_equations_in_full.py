@@ -1,0 +1,72 @@
+"""The equations in full of a linear diagram have the poles that python-control finds of it."""
+
+import control as ct
+import numpy as np
+import pytest
+import sympy as sp
+from devices import body
+from sympy.polys.matrices import DomainMatrix
+
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
+from teleopdesign.passivity.linear.in_full import equations_in_full
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.lti import S
+
+LAG = controller("low_pass", {"bandwidth": 20.0})
+LEAD = controller("lead", {"gain": 60.0, "zero": 3.0, "pole": 90.0})
+SPRING = controller("spring_damper", {"stiffness": 150.0, "damping": 2.0})
+HALF = controller("gain", {"gain": 0.5})
+
+
+def looped(law, analog=True):
+    """A damped mass that a controller holds."""
+    return Diagram(
+        "looped",
+        (
+            Moving("M", body(0.2, viscous__damping=1.0), "x", "u", {"f": 1}, "f"),
+            Control("P", law, "x", "F", "x", analog=analog),
+        ),
+        (Junction("u", {"F": -1}),),
+        {"f": "force"},
+        measured=("x",),
+    )
+
+
+DIAGRAMS = {
+    "a spring": looped(SPRING),
+    "a lead": looped(LEAD),
+    "a lead behind a lag": looped(LAG.then(LEAD)),
+    "half a lead behind a lag": looped(HALF.then(LAG).then(LEAD)),
+    "a lag behind a spring": looped(SPRING.then(LAG)),
+    "two devices": teleoperator(
+        body(0.2, viscous__damping=1.0), body(0.3, viscous__damping=2.0), coupling=LAG.then(SPRING)
+    ),
+    "a delay of no time": looped(controller("delay", {"time": 0.0}).then(SPRING)),
+}
+
+
+def determinant(diagram):
+    equations = equations_in_full(diagram)
+    names = list(dict.fromkeys(n for row in equations for n in row))
+    assert len(names) == len(equations)
+    ring = sp.QQ[S]
+    entries = [
+        [ring.from_sympy(row[n].as_expr()) if n in row else ring.zero for n in names]
+        for row in equations
+    ]
+    matrix = DomainMatrix(entries, (len(names), len(names)), ring)
+    return sp.Poly(ring.to_sympy(matrix.charpoly()[-1]), S)
+
+
+@pytest.mark.parametrize("name", DIAGRAMS)
+def test_the_determinant_has_the_poles_of_the_closed_loop_and_no_others(name):
+    diagram = DIAGRAMS[name]
+    found = np.roots([float(c) for c in determinant(diagram).all_coeffs()])
+    system = to_iosystem(diagram)
+    linear = ct.linearize(system, np.zeros(system.nstates), np.zeros(system.ninputs))
+    expected = list(np.linalg.eigvals(linear.A))
+    assert len(found) == len(expected)
+    for pole in found:
+        k = int(np.argmin(np.abs(np.array(expected) - pole)))
+        assert abs(expected.pop(k) - pole) < 1e-4 * (1 + abs(pole))

@@ -1,0 +1,206 @@
+"""The hand-written loop in plain Python, for several simulations side by side.
+
+Each of them has the numbers that it has alone: no place in memory is shared or swapped. What a
+simulation has alone is held against mathematics in the tests of the integrator and of the kernel.
+"""
+
+import numpy as np
+import pytest
+from devices import DAHL, LINK, body
+
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
+from teleopdesign.realise import side_by_side
+from teleopdesign.realise._loop import module_source
+from teleopdesign.realise.kernel import execute, fastest_rate, slopes_at_rest
+from teleopdesign.realise.program import CompiledLoop
+from teleopdesign.realise.side_by_side import (
+    GridRun,
+    Reduction,
+    execute_many,
+    rates_of_cases,
+)
+from teleopdesign.simulate import Sampling, prepare
+
+RUBBING = {"coulomb__level": 0.5, "presliding__stiffness": 2e4, "viscous__damping": 0.4}
+
+
+def plain_loop(laws, lanes):
+    module = {"__name__": "plain"}
+    exec(compile(module_source(laws, jit=False, lanes=lanes), "<generated>", "exec"), module)
+    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
+
+
+@pytest.fixture(autouse=True)
+def three_lanes_of_plain_python(monkeypatch):
+    monkeypatch.setattr(side_by_side, "LANES", 3)
+    monkeypatch.setattr(side_by_side, "loop_of", plain_loop)
+    monkeypatch.setattr(side_by_side, "workers", lambda: 1)
+
+
+def push(t):
+    return 3.0 * np.sin(300.0 * t + 0.3)
+
+
+def with_a_computer(**sampling):
+    """Two devices with friction, actuators that are late, and a controller that delays."""
+    bodies = [body(m, **RUBBING, actuation_delay__delay=2e-4) for m in (0.15, 0.2)]
+    coupling = controller("delay", {"time": 2.4e-3}).then(LINK)
+    diagram = teleoperator(
+        *bodies, coupling=coupling, hand=body(0.1, viscous__damping=2.0), master_cancellation=DAHL
+    )
+    setting = Sampling(encoder_step=1e-5, delay=3e-4, **sampling)
+    return prepare(diagram, duration=8e-3, inputs={"F_u": push}, computer=setting, jit=False)
+
+
+def in_continuous_time():
+    """Two bodies with friction, joined by a spring that feels one of them late."""
+    bodies = (
+        Moving("M", body(0.1, **RUBBING), "x", "u", {"f": 1}, "f"),
+        Moving("N", body(0.3, **RUBBING), "y", "w", {"g": 1}, "g"),
+    )
+    diagram = Diagram(
+        "late",
+        (
+            *bodies,
+            Control("T", controller("delay", {"time": 1.234e-3}), "x", "x_late", analog=True),
+            Control("S", controller("delay", {"time": 0.77e-3}), "y", "y_late", analog=True),
+            Control("P", LINK, "d", "u", "x", analog=True),
+            Control("Q", LINK, "y_late", "v", "y", analog=True),
+        ),
+        (Junction("d", {"x_late": -1, "y": 1}), Junction("w", {"u": -1, "v": -1})),
+        {"f": "force", "g": "force"},
+        measured=("x", "y"),
+    )
+    inputs = {"f": push, "g": lambda t: 2.0 - 500.0 * t}
+    return prepare(diagram, duration=8e-3, inputs=inputs, computer="continuous", jit=False)
+
+
+SETUPS = {
+    "filtered": lambda: with_a_computer(velocity_bandwidth=60.0),
+    "observer of order 2": lambda: with_a_computer(
+        velocity="observer", velocity_bandwidth=60.0, observer_order=2
+    ),
+    "observer of order 3": lambda: with_a_computer(velocity="observer", velocity_bandwidth=60.0),
+    "continuous": in_continuous_time,
+}
+
+
+def four_cases(setup):
+    """Parameters of four cases that differ in each; one has a bristle of many steps a step."""
+    values, names = setup.diagram.values, setup.program.layout.parameters
+    one = np.array([values[n] for n in names])
+    cases = one * (1.0 + 0.1 * np.sin(np.arange(4)[:, None] + 3 * np.arange(len(one))))
+    late = [i for i, n in enumerate(names) if n.endswith((".delay", ".time"))]
+    cases[:, late] = one[late]
+    stiff = [i for i, n in enumerate(names) if n.endswith("presliding.stiffness")]
+    cases[1, stiff] *= 300.0
+    return cases
+
+
+def alone(setup, timing, row, start=None, **more):
+    values = dict(zip(setup.program.layout.parameters, row, strict=True))
+    arguments = {**setup.arguments(timing), "every_step": False, **more}
+    return execute(setup.program, values, timing, **arguments | {"start": start or {}})
+
+
+def together(setup, timing, cases, *, reductions=(), begin=0, start=None, **more):
+    given = setup.arguments(timing)
+    run = GridRun(cases, timing, given["inputs"], given["sampled"], **more)
+    kept = range(len(setup.program.layout.columns))
+    asked = {"kept": kept, "reductions": reductions, "begin": begin, "start": start or {}}
+    return execute_many(setup.program, [run], **asked)[0]
+
+
+@pytest.mark.parametrize("name", SETUPS)
+def test_a_simulation_has_the_same_numbers_beside_others(name):
+    setup = SETUPS[name]()
+    timing, cases = setup.timing(setup.inner()), four_cases(setup)
+    start = dict.fromkeys(setup.program.layout.states[:3], 1e-4)
+    many = together(setup, timing, cases, start=start)
+    assert many.is_finite.all() and np.ptp(many.kept, axis=0).any()
+    for case, row in enumerate(cases):
+        rows, worst = alone(setup, timing, row, start)
+        size = np.abs(rows).max(axis=0)
+        assert np.all(np.abs(many.kept[case] - rows) <= 1e-9 * size)
+        assert many.worst[case] == pytest.approx(worst, rel=1e-9)
+
+
+def test_numbers_over_time_are_those_of_the_rows_of_each_case():
+    setup = SETUPS["filtered"]()
+    timing, cases, begin = setup.timing(10), four_cases(setup), 3
+    first, other = map(setup.program.layout.columns.index, ("F_H", "X_m_velocity"))
+    kinds = {"final": 0, "maximum": 0, "minimum": 0, "peak": 0, "mean": 0, "rms": first}
+    reductions = [Reduction(k, first, n) for k, n in (kinds | {"energy": other}).items()]
+    many = together(setup, timing, cases, reductions=reductions, begin=begin)
+    for case in range(len(cases)):
+        y, v = many.kept[case, begin:, first], many.kept[case, begin:, other]
+        area = timing.period * np.trapezoid(y * v)
+        expected = [
+            y[-1],
+            y.max(),
+            y.min(),
+            np.abs(y).max(),
+            y.mean(),
+            np.sqrt(np.mean(y**2)),
+            area,
+        ]
+        np.testing.assert_allclose(many.reduced[case], expected, rtol=1e-10)
+        assert len(set(expected)) >= len(reductions) - 1
+
+
+def test_a_case_beyond_all_numbers_is_said_and_spoils_no_other():
+    setup = SETUPS["continuous"]()
+    timing, cases = setup.timing(setup.inner()), four_cases(setup)
+    cases[2, setup.program.layout.parameters.index("M.inertia")] = 1e-300
+    with np.errstate(all="ignore"):
+        many = together(setup, timing, cases)
+    assert many.is_finite.tolist() == [True, True, False, True]
+    for case in (0, 1, 3):
+        rows, _ = alone(setup, timing, cases[case])
+        assert np.all(np.abs(many.kept[case] - rows) <= 1e-9 * np.abs(rows).max(axis=0))
+
+
+def test_a_block_ends_early_only_where_every_case_in_it_is_badly_resolved():
+    setup = SETUPS["continuous"]()
+    timing, cases = setup.timing(setup.inner()), four_cases(setup)[[0, 2, 3]]
+    whole = together(setup, timing, cases)
+    low, high = whole.worst.min(), whole.worst.max()
+    assert 0 < low < high
+    kept = together(setup, timing, cases, limit=float(low)).kept
+    np.testing.assert_array_equal(kept, whole.kept)
+    early = together(setup, timing, cases, limit=0.5 * float(low))
+    assert (early.worst < whole.worst).any() and (early.worst > 0.5 * low).all()
+
+
+def test_the_fastest_rate_at_rest_is_that_of_each_case():
+    setup = SETUPS["continuous"]()
+    cases, layout = four_cases(setup), setup.program.layout
+    rates, states = rates_of_cases(setup.program, cases)
+    for case, row in enumerate(cases):
+        rate, state = fastest_rate(setup.program, dict(zip(layout.parameters, row, strict=True)))
+        assert rates[case] == pytest.approx(rate, rel=1e-9)
+        assert layout.states[states[case]] == state
+
+
+def test_slopes_at_rest_are_those_of_the_equations_of_motion():
+    """Of each body: what its bristle, its damping, and its springs do to it."""
+    setup = SETUPS["continuous"]()
+    names, cases = setup.program.layout.parameters, four_cases(setup)[:3]
+    found = slopes_at_rest(setup.program, plain_loop(setup.program.laws, 3),
+                           np.ascontiguousarray(cases.T).reshape(-1))  # fmt: skip
+    state = setup.program.layout.states.index
+    for case, row in enumerate(cases):
+        value = dict(zip(names, row, strict=True))
+        m, n = value["M.inertia"], value["N.inertia"]
+        expected = {
+            ("x", "x_velocity"): 1.0,
+            ("x", "y"): 0.0,
+            ("x_velocity", "M_presliding_bristle"): -value["M.presliding.stiffness"] / m,
+            ("x_velocity", "y"): value["P.spring_damper.stiffness"] / m,
+            ("y_velocity", "y"): -value["P.spring_damper.stiffness"] / n,
+            ("N_presliding_bristle", "y_velocity"): 1.0,
+            ("N_presliding_bristle", "N_presliding_bristle"): 0.0,
+        }
+        for (of, by), slope in expected.items():
+            assert found[case, state(of), state(by)] == pytest.approx(slope, rel=1e-6), (of, by)

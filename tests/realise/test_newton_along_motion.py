@@ -1,0 +1,239 @@
+"""The residual along a measured motion is what Newton's law leaves, by force, side and delay."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+from effects.along import body_of, motion_along, signals, unled
+from scipy.integrate import solve_ivp
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.effects import EFFECTS, Effect, Parameter
+from teleopdesign.realise.along_motion import residual_along
+from teleopdesign.realise.simulated import least_levels
+from teleopdesign.realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
+from teleopdesign.realise.traced import Probe
+
+INSIDE = slice(150, -150)
+
+
+def recorded(seed=4, samples=700):
+    return motion_along(*signals(seed, samples), resolution=1e-6)
+
+
+def test_the_residual_is_what_forces_leave_of_the_acceleration():
+    motion = recorded()
+    values = {"viscous.damping": 3.0, "spring.stiffness": 40.0, "bias.force": 0.2,
+              "coulomb.level": 0.5}  # fmt: skip
+    found = residual_along(body_of("coulomb", "viscous", "spring", "bias", values=values), motion)
+    taken = 0.15 * motion.acceleration + 3.0 * motion.velocity + 40.0 * motion.position + 0.2
+    given = motion.at_rows(motion.command) + motion.interaction
+    np.testing.assert_allclose(
+        found.residual.value, given - taken - found.friction.value, atol=1e-9
+    )
+    np.testing.assert_allclose(found.acting.value, motion.at_rows(motion.command), atol=1e-12)
+    moves = motion.direction != 0
+    np.testing.assert_allclose(
+        found.friction.value[moves], 0.5 * motion.direction[moves], atol=1e-12
+    )
+    assert moves.mean() > 0.9 and np.ptp(motion.direction) == 2
+
+
+def test_what_is_touched_takes_its_force_only_where_it_is_touched():
+    motion = recorded()
+    named = {"environment.stiffness": 500.0, "environment.damping": 0.0,
+             "environment.contact_position": 2e-3}  # fmt: skip
+    body = body_of("viscous", "environment", values=named)
+    free = residual_along(body_of("viscous"), motion).residual.value
+    taken = free - residual_along(body, motion).residual.value
+    beyond = motion.position > 2e-3
+    assert 0.1 < beyond.mean() < 0.9
+    expected = np.where(beyond, 500.0 * (motion.position - 2e-3), 0.0)
+    np.testing.assert_allclose(taken, expected, atol=1e-9)
+
+
+def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
+    """Of an acting force u, mu abs(u) against the motion goes: u - mu abs(u) sgn(v) moves it."""
+    motion = recorded()
+    named = {"load_dependent_friction.coefficient": 0.2}
+    named |= {f"load_dependent_friction.{n}": 0.0 for n in ("driving_difference", "extra_at_rest")}
+    found = residual_along(body_of("coulomb", "load_dependent_friction", values=named), motion)
+    moves = motion.direction != 0
+    lost = found.acting.value - found.moving.value
+    expected = 0.2 * np.abs(found.acting.value) * motion.direction
+    np.testing.assert_allclose(lost[moves], expected[moves], atol=1e-9)
+
+
+@pytest.mark.parametrize("parameter", ["coulomb.level", "load_dependent_friction.coefficient"])
+def test_what_moves_the_body_has_its_slopes_too(parameter):
+    motion = recorded()
+    body = body_of("coulomb", "load_dependent_friction")
+    value = body.parameters[parameter].value
+    sides = [
+        residual_along(body.with_values({parameter: value * (1 + e)}), motion).moving.value
+        for e in (1e-6, -1e-6)
+    ]
+    slope = (sides[0] - sides[1]) / (2e-6 * value)
+    found = residual_along(body, motion, [parameter]).moving.tangent[0]
+    np.testing.assert_allclose(found, slope, atol=1e-5 * (1 + np.abs(slope).max()))
+
+
+@pytest.fixture(scope="module")
+def two_masses():
+    """A motor of 0.1 kg and a tip of 0.05 kg on 400 N/m, pushed at the motor and at the tip."""
+    m, tip, k, c, d = 0.1, 0.05, 400.0, 1.5, 2.0
+
+    def push(t):
+        return 1.5 * np.sin(30 * t) + 0.8 * np.sin(71 * t + 1)
+
+    def hand(t):
+        return 0.6 * np.sin(47 * t + 0.5)
+
+    def rates(t, y):
+        between = k * (y[0] - y[2]) + c * (y[1] - y[3])
+        return y[1], (push(t) - d * y[1] - between) / m, y[3], (between + hand(t)) / tip
+
+    t = np.arange(1200) * 1e-3
+    x = solve_ivp(rates, (0, t[-1]), np.zeros(4), t_eval=t, rtol=1e-9, atol=1e-12).y[0]
+    # a command is held over its row: its value in the middle of the hold
+    return motion_along(x, push(t + 0.5e-3), hand(t), resolution=1e-9, bandwidth=60.0)
+
+
+def device():
+    """The inertia of a body is that of both sides of its spring."""
+    named = {"tip_inertia": 0.05, "stiffness": 400.0, "damping": 1.5}
+    values = {f"transmission_compliance.{n}": v for n, v in named.items()}
+    values |= {"inertia": 0.15, "viscous.damping": 2.0}
+    return body_of("viscous", "transmission_compliance", values=values)
+
+
+@pytest.mark.parametrize("led", [True, False])
+def test_a_tip_behind_a_spring_leaves_nothing_where_it_is_there(two_masses, led):
+    body = device() if led else unled(device())
+    force = two_masses.lowpassed(two_masses.at_rows(two_masses.command))[INSIDE]
+
+    def left(body):
+        residual = residual_along(body, two_masses).residual.value
+        return np.linalg.norm(two_masses.lowpassed(residual)[INSIDE]) / np.linalg.norm(force)
+
+    assert left(body) < 5e-3
+    for wrong in ({"stiffness": 800.0}, {"tip_inertia": 0.1}, {"damping": 15.0}):
+        named = {f"transmission_compliance.{n}": v for n, v in wrong.items()}
+        assert left(body.with_values(named)) > 5 * left(body), wrong
+
+
+@pytest.mark.parametrize("names", [("coulomb", "viscous"), ("viscous", "transmission_compliance")])
+@pytest.mark.parametrize("late", [0.0, 2e-3])
+def test_what_a_slower_sensor_of_the_hand_changes_is_a_slope_of_the_residual(names, late):
+    """The hand's force is that of the log and T times its rate: by T, through hidden states too."""
+    motion = replace(recorded(), interaction_late=late)
+    body, h = unled(body_of(*names)), 1e-6
+    found = residual_along(body, motion, ["viscous.damping", INTERACTION_SHIFT]).residual.tangent
+    s = motion.spectrum.derivative(1)
+    logged = motion.spectrum.multiply(motion.interaction, s / (1.0 + late * s))
+    sides = [
+        residual_along(body, replace(motion, interaction=motion.interaction + e * logged))
+        for e in (h, -h)
+    ]
+    slope = (sides[0].residual.value - sides[1].residual.value) / (2 * h)
+    assert np.linalg.norm(slope) > 0
+    assert np.linalg.norm(found[1] - slope) < 5e-3 * np.linalg.norm(slope)
+    assert np.abs(found[0]).max() > 0
+
+
+@pytest.mark.parametrize("names", [("viscous",), ("viscous", "actuator_lag", "actuator_gain")])
+def test_what_a_late_log_of_the_command_changes_is_the_slope_of_the_force_in_time(names):
+    motion = recorded()
+    body = body_of(*names)
+    along = residual_along(body, motion, [RECORD_SHIFT, "viscous.damping"])
+    found = along.residual.tangent[0]
+    expected = np.gradient(along.acting.value, motion.sample_time)
+    assert np.abs(found - expected)[INSIDE].max() < 0.02 * np.abs(expected).max()
+    np.testing.assert_allclose(along.residual.tangent[1], -motion.velocity, atol=1e-9)
+
+
+@pytest.mark.parametrize("difference", [0.2, -0.2, 0.6])
+def test_friction_of_each_side_is_its_level_and_none_where_that_is_below_zero(difference):
+    motion = recorded()
+    named = {"coulomb.level": 0.5, "coulomb_asymmetry.half_difference": difference}
+    body = body_of("coulomb", "coulomb_asymmetry", values=named)
+    found = residual_along(body, motion, ["coulomb.level", "coulomb_asymmetry.half_difference"])
+    ahead, back = motion.direction > 0, motion.direction < 0
+    most, least = 0.5 + difference, max(0.5 - difference, 0.0)
+    np.testing.assert_allclose(found.friction.value[ahead], most, rtol=1e-12)
+    np.testing.assert_allclose(found.friction.value[back], -least, atol=1e-12)
+    by_level, by_difference = found.friction.tangent
+    assert np.all(by_level[ahead] == 1.0) and np.all(by_difference[ahead] == 1.0)
+    assert np.all(by_level[back] == (-1.0 if least else 0.0))
+    assert np.all(by_difference[back] == (1.0 if least else 0.0))
+
+
+def test_the_slope_by_the_strength_of_what_is_absent_holds_at_the_probes_other_values():
+    """Cogging of no amplitude, asked at a period of 4 mm: what one newton of it would take."""
+    motion = recorded()
+    named = {"cogging.amplitude": 0.0, "cogging.period": 0.01, "cogging.phase": 0.3}
+    body = body_of("cogging", "viscous", values=named)
+    symbols = body.symbols()
+    at = {symbols["cogging.period"]: 0.004, symbols["cogging.phase"]: 1.1}
+    probe = Probe("device", symbols["cogging.amplitude"], at)
+    found = residual_along(body, motion, ["viscous.damping", probe]).residual.tangent
+    there = {"cogging.amplitude": 1.0, "cogging.period": 0.004, "cogging.phase": 1.1}
+    sides = [residual_along(b, motion).residual.value for b in (body.with_values(there), body)]
+    np.testing.assert_allclose(found[1], sides[0] - sides[1], atol=1e-9)
+    np.testing.assert_allclose(found[0], -motion.velocity, atol=1e-9)
+    assert np.ptp(found[1]) > 1.5
+
+
+#: a user's damping k that is there under some condition on the motion and on k: law, and where
+JOINED = {
+    "both": (lambda v, k: sp.And(v > 0, k > 1), lambda v: v > 0),
+    "either": (lambda v, k: sp.Or(v > 0, k > 9), lambda v: v > 0),
+    "not both": (lambda v, k: sp.Not(sp.And(v > 0, k > 1)), lambda v: v <= 0),
+    "one by the other": (
+        lambda v, k: sp.Piecewise((k, v > 0), (v, True)) > 1, lambda v: np.where(v > 0, 2.0, v) > 1,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", JOINED)
+def test_a_users_law_may_join_conditions_on_the_motion_and_on_its_parameters(name):
+    """It ended in a traceback of numpy, for some are as long as the record and some are numbers."""
+    condition, where = JOINED[name]
+    effect = Effect(
+        role="force",
+        law=lambda now, p: sp.Piecewise(
+            (p.k * now.velocity, condition(now.velocity, p.k)), (0, True)
+        ),
+        parameters={"k": Parameter("damping", "k")},
+        absent={"k": 0.0},
+    ).named("mine", "")
+    motion = recorded()
+    body = Body("prismatic", {"inertia": Value(0.2), "mine.k": Value(2.0)}, (effect,))
+    found = residual_along(body, motion, ["mine.k"])
+    bare = residual_along(Body("prismatic", {"inertia": Value(0.2)}), motion).residual.value
+    there = where(motion.velocity)
+    assert 0.1 < there.mean() < 0.9
+    expected = np.where(there, 2.0 * motion.velocity, 0.0)
+    np.testing.assert_allclose(bare - found.residual.value, expected, atol=1e-9)
+    slope = np.where(there, -motion.velocity, 0.0)
+    np.testing.assert_allclose(found.residual.tangent[0], slope, atol=1e-9)
+    probe = Probe("device", body.symbols()["mine.k"], {})
+    asked = residual_along(body, motion, [probe]).residual.tangent[0]
+    np.testing.assert_allclose(asked, slope, atol=1e-9)
+
+
+def test_levels_of_many_cases_may_join_conditions_on_what_differs_and_what_does_not():
+    effect = Effect(
+        role="friction_level",
+        law=lambda now, p: sp.Piecewise((-p.a, sp.And(p.a > 1, p.b > 1)), (0, True)),
+        parameters={"a": Parameter("force", "a"), "b": Parameter("dimensionless", "b")},
+        absent={"a": 0.0},
+    ).named("mine", "")
+    values = {"inertia": 0.2, "coulomb.level": 3.0, "mine.a": 2.0, "mine.b": 2.0}
+    body = Body("prismatic", {n: Value(v) for n, v in values.items()}, (EFFECTS["coulomb"], effect))
+    numbers = body.numbers()
+    cases = {**numbers, body.symbols()["mine.a"]: np.array([0.5, 2.0, 4.0])}
+    levels = least_levels(body, cases.get)
+    np.testing.assert_allclose(levels["forward"], [3.0, 1.0, -1.0])
+    assert least_levels(body, numbers.get)["backward"] == 1.0

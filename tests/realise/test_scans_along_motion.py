@@ -1,0 +1,169 @@
+"""Hidden states along a measured motion: against solutions by other means, and by their slopes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+from effects.along import body_of, motion_along, signals, unled
+from scipy.integrate import solve_ivp
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
+from teleopdesign.effects._effect import State
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.along_motion import residual_along
+from teleopdesign.realise.ode_scan import ode_scan
+from teleopdesign.realise.traced import Along, Traced
+
+RATE = 1000.0
+
+
+def recorded(seed=4, samples=700, **more):
+    return motion_along(*signals(seed, samples), resolution=1e-6, **more)
+
+
+def tip_of(body, x, v, a, rate):
+    """Position of the tip behind a body that moves so, led by nothing."""
+    (effect,) = unled(body).effects
+    none = np.zeros((0, len(x)))
+    given = zip(("position", "velocity", "acceleration"), (x, v, a), strict=True)
+    known = {SIGNALS[n]: Traced(y, none) for n, y in given}
+    known[SIGNALS["interaction_force"]] = Traced(np.zeros(len(x)), none)
+    hidden = ode_scan(effect, Along(known, body.numbers(), (), 1 / rate))
+    return hidden[effect.state_symbols()["tip_position"]].value
+
+
+@pytest.mark.parametrize(("offset", "rate"), [(0.0, 500.0), (0.3, 500.0), (0.3, 2000.0)])
+def test_a_tip_starts_where_the_body_is_and_swings_as_another_solver_says(offset, rate):
+    """A body that is away from zero, and moves, when the record begins."""
+    values = {"tip_inertia": 0.05, "stiffness": 400.0, "damping": 1.5}
+    body = body_of(
+        "transmission_compliance",
+        values={f"transmission_compliance.{n}": v for n, v in values.items()},
+    )
+
+    def x(t):
+        return offset + 0.01 * np.sin(40 * t + 0.4), 0.4 * np.cos(40 * t + 0.4)
+
+    def rates(t, y):
+        here, fast = x(t)
+        return y[1], (400.0 * (here - y[0]) + 1.5 * (fast - y[1])) / 0.05
+
+    t = np.arange(int(0.4 * rate)) / rate
+    here, fast = x(t)
+    known = solve_ivp(rates, (0, t[-1]), [here[0], fast[0]], t_eval=t, rtol=1e-9, atol=1e-12).y[0]
+    tip = tip_of(body, here, fast, -1600.0 * (here - offset), rate)
+    # the body's course between rows is a parabola through what is known at both ends
+    assert np.abs(tip - known).max() < 2e-4 * 0.01
+    assert np.abs(tip - here).max() > 0.1 * 0.01
+
+
+@pytest.mark.parametrize(("stiffness", "known"), [(2.4e3, True), (1e6, True), (1e9, False)])
+def test_a_tip_too_fast_for_the_rows_has_no_numbers_at_all(stiffness, known):
+    """Resonances at 35 Hz, 0.7 kHz and 22 kHz, at rows of 1 kHz; sixteen steps a row at most."""
+    values = {"tip_inertia": 0.05, "stiffness": stiffness, "damping": 1.0}
+    named = {f"transmission_compliance.{n}": v for n, v in values.items()}
+    body = body_of("transmission_compliance", values=named)
+    t = np.arange(300) / RATE
+    x = 0.01 * np.sin(20 * t)
+    tip = tip_of(body, x, 0.2 * np.cos(20 * t), -4.0 * np.sin(20 * t), RATE)
+    if known:
+        assert np.abs(tip - x).max() < 2e-3 * (2.4e3 / stiffness) ** 0.5
+    else:
+        assert np.isnan(tip).all()
+
+
+COMBINED = {
+    "bristle, damping and a tip": ("coulomb", "presliding", "viscous", "transmission_compliance"),
+    "slipping elements behind a lag": ("coulomb", "maxwell_slip", "actuator_lag"),
+    "a gap and a hand": ("coulomb", "backlash", "bias"),
+    "film and a late command": ("coulomb", "stribeck", "friction_memory", "actuation_delay"),
+    "load and asymmetry": ("coulomb", "coulomb_asymmetry", "load_dependent_friction", "stribeck"),
+    "a tip that rubs": ("coulomb", "transmission_compliance", "tip_friction", "spring"),
+}
+VALUES = {"spring.stiffness": 200.0, "backlash.tip_inertia": 0.03}
+
+
+@pytest.mark.parametrize("name", COMBINED)
+def test_tangents_are_slopes_for_all_parameters_of_a_body_together(name):
+    """Those of each parameter are in its row, whatever else is asked for and in any order."""
+    motion, names = recorded(), COMBINED[name]
+    body = body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
+    inside = slice(100, None)
+    asked = [n for n, _ in body.declared() if body.parameters[n].value != 0.0][::-1]
+    found = residual_along(body, motion, asked).residual.tangent[:, inside]
+    for full, tangent in zip(asked, found, strict=True):
+        value = body.parameters[full].value
+        sides = [
+            residual_along(body.with_values({full: value * (1 + e)}), motion).residual.value[inside]
+            for e in (1e-6, -1e-6)
+        ]
+        slope = (sides[0] - sides[1]) / (2e-6 * value)
+        assert np.linalg.norm(slope) > 0
+        assert np.linalg.norm(tangent - slope) < 2e-3 * np.linalg.norm(slope), full
+        alone = residual_along(body, motion, [full]).residual.tangent[0, inside]
+        np.testing.assert_allclose(alone, tangent, rtol=0, atol=1e-9 * np.abs(tangent).max())
+
+
+def test_elements_that_slip_in_turn_are_those_of_a_loop_by_hand():
+    """Each follows the travel up to its level and stays there; the first has what is left."""
+    level, stiffness, part = 0.5, (3e3, 800.0, 200.0, 60.0), (0.12, 0.08, 0.05)
+    names = ("stiffness_1", "stiffness_2", "stiffness_3", "stiffness_4")
+    values = {f"maxwell_slip.{n}": k for n, k in zip(names, stiffness, strict=True)}
+    values |= {f"maxwell_slip.level_{i + 2}": p for i, p in enumerate(part)}
+    motion = recorded()
+    body = body_of("coulomb", "maxwell_slip", values=values | {"coulomb.level": level})
+    found = residual_along(body, motion).friction.value
+    most = np.array([level - sum(part), *part])
+    force, forces = np.zeros(4), []
+    for step in np.diff(motion.position, prepend=motion.position[0]):
+        force = np.clip(force + np.array(stiffness) * step, -most, most)
+        forces.append(force.sum())
+    told = motion.direction != 0
+    np.testing.assert_allclose(found[told], np.array(forces)[told], atol=1e-9)
+    assert np.ptp(found) > 1.5 * level and told.mean() > 0.9
+
+
+def test_where_a_reading_tells_no_motion_friction_is_what_balances_within_a_step():
+    """A bristle of k N/m is open by k times half a step of the encoder, and by no more."""
+    step, stiffness, n = 1e-4, 1e3, 600
+    x = np.repeat(np.arange(6), 100) * step
+    for size in (0.01, 0.3):
+        command = size * np.sin(np.arange(n) / 40.0)
+        motion = motion_along(x, command, resolution=step, bandwidth=100.0)
+        body = body_of("coulomb", "presliding", values={"presliding.stiffness": stiffness})
+        along = residual_along(body, motion)
+        still = motion.direction == 0
+        assert still.sum() > 100
+        # what the bristle has by its travel, and how far the needed force is from it
+        sure = body_of("coulomb", "presliding", values={"presliding.stiffness": stiffness})
+        middle = residual_along(sure, replace(motion, direction=np.ones(n))).friction.value
+        assert np.abs(along.friction.value - middle)[still].max() <= stiffness * step / 2 + 1e-9
+
+
+@pytest.mark.parametrize("case", ["needs another", "goes by another", "has no stop"])
+def test_elements_that_do_not_each_follow_the_motion_up_to_a_stop_are_refused(case):
+    """The scan moves each by the motion alone: it would be wrong in silence."""
+
+    def rate(now, p):
+        return p.k * now.velocity * (now.a / now.level if case == "goes by another" else 1)
+
+    def stop(now, p):
+        return now.level - (sp.Abs(now.a) if case == "needs another" else 0)
+
+    second = State("force", rate, **({} if case == "has no stop" else {"stop": stop}))
+    effect = Effect(
+        role="friction_shape",
+        law=lambda now, p: (now.a + now.b) / 2,
+        parameters={"k": Parameter("stiffness", "k")},
+        states={
+            "a": State("force", lambda now, p: p.k * now.velocity, stop=lambda now, p: now.level),
+            "b": second,
+        },
+        absent={"k": float("inf")},
+    ).named("elements", "")
+    values = {"inertia": 0.2, "coulomb.level": 0.5, "elements.k": 1e3}
+    body = Body("prismatic", {n: Value(v) for n, v in values.items()}, (EFFECTS["coulomb"], effect))
+    with pytest.raises(ModelError, match="elements: states with a stop beside others"):
+        residual_along(body, recorded())

@@ -1,0 +1,325 @@
+"""A residual force as an error of the recorded command, led back through the actuation."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import sympy as sp
+from diagnose.unexplained_texture import BANDWIDTH, CHEATS, RATE, smooth_noise
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.effects import EFFECTS, Effect, Parameter
+from teleopdesign.measurement.motion import motion_of
+from teleopdesign.realise.along_motion import residual_along
+from teleopdesign.realise.seen_at_command import (
+    _transmit,
+    _Way,
+    blind_share,
+    is_between,
+    seen_at_command,
+)
+from teleopdesign.realise.traced import Traced
+
+#: values at which each law passes some of the command everywhere along `one_way`
+PASSING = {
+    "actuator_gain": {"gain": 0.3},
+    "actuator_lag": {"time_constant": 0.08},
+    "actuation_delay": {"delay": 0.05},
+    "position_dependent_gain": {"fall": 0.2, "centre": 0.3},
+    "torque_ripple": {"amplitude": 0.5, "period": 0.7, "phase": 0.3},
+    "actuator_saturation": {"limit": 3.2},
+    "load_dependent_friction": {"coefficient": 0.4},
+    "fades_when_large": {"part": 0.03},
+    "next_to_nothing": {"part": 0.9},
+    "soft_limit": {"limit": 3.0},
+    "very_slow": {"time_constant": 2.0},
+    "forgets_what_lasts": {"part": 0.7, "time_constant": 0.5},
+    "takes_up_what_acts": {"part": 0.6},
+    "feeds_back": {"part": 0.8},
+    "feeds_back_late": {"part": 0.6, "time_constant": 0.3},
+}
+
+
+def one_way(side=1):
+    """A slide in one direction, its command between 2 and 4 N."""
+    rng, n = np.random.default_rng(3), int(12 * RATE)
+    speed = 0.3 * (1 + 0.2 * smooth_noise(rng, n, 1.0))
+    return motion_of(
+        body="device",
+        file="made",
+        time=np.arange(n) / RATE,
+        position=side * np.cumsum(np.maximum(speed, 0.05)) / RATE,
+        command=side * np.clip(3.0 + 0.4 * smooth_noise(rng, n, 2.0), 2.0, 4.0),
+        interaction=None,
+        sample_time=1 / RATE,
+        rows=slice(0, n),
+        bandwidth=BANDWIDTH,
+        resolution=1e-6,
+    )
+
+
+def body_with(effect, values):
+    parameters = {f"{effect.name}.{n}": Value(v) for n, v in values.items()}
+    return Body(
+        axis="prismatic",
+        parameters={"inertia": Value(0.2), "coulomb.level": Value(1.0), **parameters},
+        effects=(EFFECTS["coulomb"], effect),
+    )
+
+
+@pytest.mark.parametrize("name", PASSING)
+def test_an_error_of_the_command_is_seen_as_what_it_was(name):
+    """r(u + d) - r(u) mapped back is d, by every law that could stand between, a user's own too."""
+    effect = {**EFFECTS, **CHEATS}[name]
+    motion, body = one_way(), body_with(effect, PASSING[name])
+    error = 1e-4 * smooth_noise(np.random.default_rng(5), len(motion.time), 2.0)
+    before = residual_along(body, motion)
+    after = residual_along(body, replace(motion, command=motion.command + error))
+    made = after.residual.value - before.residual.value
+    along = replace(before, residual=Traced(made, before.residual.tangent))
+    seen = seen_at_command(body, motion, along)
+    # a slow memory begins with the record, and is forgotten after some seconds
+    inside = slice(4 * int(RATE), -int(RATE))
+    told = ~seen.blind[inside]
+    left = motion.lowpassed(seen.residual - motion.at_rows(error))[inside][told]
+    assert np.mean(told) > 0.6
+    if name == "actuator_saturation":
+        # the low-pass smears what is blind into what is not, a fifth of a second to either side
+        near = np.convolve(seen.blind, np.ones(int(0.4 * RATE)), "same")[inside][told] > 0
+        left = left[~near]
+    # coefficients of what has a memory are taken at their mean: 6 % where a gain varies by 20 %
+    assert np.sqrt(np.mean(left**2)) < 0.06 * np.std(error)
+
+
+def test_actuation_is_led_back_as_the_format_says():
+    """Gain g: r / g.  Lag: (1 + tau s) r.  Delay: earlier by it."""
+    motion = one_way()
+    t, omega = motion.time, 2 * np.pi * 1.5
+    wave = np.sin(omega * t)
+    expected = {
+        "actuator_gain": wave / 0.3,
+        "actuator_lag": wave + 0.08 * omega * np.cos(omega * t),
+        "actuation_delay": np.sin(omega * (t + 0.05)),
+    }
+    inside = slice(int(RATE), -int(RATE))
+    for name, known in expected.items():
+        body = body_with(EFFECTS[name], PASSING[name])
+        along = residual_along(body, motion)
+        along = replace(along, residual=Traced(wave, along.residual.tangent))
+        found = seen_at_command(body, motion, along)
+        assert not found.blind.any()
+        # the lag is simulated on quarters of a sample, exactly: what differs is the ends' echo
+        np.testing.assert_allclose(found.residual[inside], known[inside], atol=0.01)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_samples_beyond_a_limit_are_blind(side):
+    motion = one_way(side)
+    seen = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
+    np.testing.assert_array_equal(seen.blind, side * motion.command > 3.0)
+    assert not seen.weak
+    # beside friction of 1 N
+    for limit, is_weak in ((0.5, True), (0.9, True), (1.1, False)):
+        held = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": limit}), motion)
+        assert held.blind.all() and held.weak == is_weak
+
+
+@pytest.mark.parametrize("gain", [1.0, 0.4, -0.4, 3.0, 0.0])
+@pytest.mark.parametrize("varies", [False, True])
+def test_of_a_hands_force_the_part_that_a_way_transmits_reaches_the_body(gain, varies):
+    """No more than its usual part, and at most all: a resonance brings no force of its own."""
+    motion = one_way()
+    n = len(motion.time)
+    force = smooth_noise(np.random.default_rng(2), n, 2.0)
+    over = gain * (np.linspace(0.5, 1.5, n) if varies else np.ones(n))
+    way = _Way(over, np.full(len(motion.spectrum.frequency), complex(gain)), 0.0)
+    passed = _transmit(force, way, motion)
+    inside = slice(int(RATE), -int(RATE))
+    shape = np.minimum(over / gain, 1.0) if gain else np.ones(n)
+    # what amplifies is held at one, and its gain as well
+    expected = force if gain > 1.0 else force * gain * shape
+    np.testing.assert_allclose(passed[inside], expected[inside], atol=1e-6)
+
+
+def led_back(body, motion, residual):
+    along = residual_along(body, motion)
+    return seen_at_command(
+        body, motion, replace(along, residual=Traced(residual, along.residual.tangent))
+    )
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("level", "weak"), [(1.8, False), (2.2, True)])
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
+def test_an_actuator_that_is_strongest_for_a_small_command_is_judged_there(side, level, weak, unit):
+    """Of u its force is 40 u / (1 + 100 u^2), to a limit: 2 N for 0.1 N, 0.13 N for 3 N.
+
+    unit: N, of all forces: the answer is the same for a hair and for a crane
+    """
+    effects = {
+        CHEATS["fades_when_large"]: {"part": 1 / 16 / unit**2},
+        EFFECTS["actuator_gain"]: {"gain": 40.0},
+        EFFECTS["actuator_saturation"]: {"limit": 30.0 * unit},
+    }
+    values = {f"{e.name}.{n}": Value(v) for e, of in effects.items() for n, v in of.items()}
+    values |= {"inertia": Value(0.2 * unit), "coulomb.level": Value(level * unit)}
+    body = Body("prismatic", values, (EFFECTS["coulomb"], *effects))
+    motion = one_way(side)
+    seen = seen_at_command(body, replace(motion, command=unit * motion.command))
+    assert seen.blind.any() and seen.weak == weak
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("level", "weak"), [(0.9, False), (1.1, True)])
+def test_what_else_acts_counts_when_it_is_asked_whether_an_actuator_can_slide_the_body(
+    side, level, weak
+):
+    """A limit of 2 N against 1 N of a constant force and friction that makes a little more or less.
+
+    A force that helps makes the same actuator strong enough.
+    """
+    motion = one_way(side)
+    for against in (1.0, -1.0):
+        body = Body(
+            "prismatic",
+            {
+                "inertia": Value(0.2),
+                "coulomb.level": Value(level),
+                "bias.force": Value(side * against),
+                "actuator_saturation.limit": Value(2.0),
+            },
+            (EFFECTS["coulomb"], EFFECTS["bias"], EFFECTS["actuator_saturation"]),
+        )
+        seen = seen_at_command(body, motion)
+        assert seen.blind.all() and seen.weak == (weak and against > 0)
+
+
+def test_stages_in_series_are_led_back_one_by_one():
+    """r behind a gain of 1/2 and a delay is 2 r, earlier by the delay."""
+    motion = one_way()
+    omega = 2 * np.pi * 1.2
+    body = Body(
+        "prismatic",
+        {
+            "inertia": Value(0.2),
+            "actuation_delay.delay": Value(0.04),
+            "actuator_gain.gain": Value(0.5),
+        },
+        (EFFECTS["actuator_gain"], EFFECTS["actuation_delay"]),
+    )
+    found = led_back(body, motion, np.sin(omega * motion.time))
+    inside = slice(int(RATE), -int(RATE))
+    expected = 2.0 * np.sin(omega * (motion.time + 0.04))
+    np.testing.assert_allclose(found.residual[inside], expected[inside], atol=0.02)
+    assert not found.blind.any() and not found.weak
+
+
+def test_a_delay_behind_a_limit_moves_no_blind_sample():
+    """A limit, then a delay of 0.2 s: blind is the command that was beyond the limit."""
+    motion = one_way()
+    body = Body(
+        "prismatic",
+        {
+            "inertia": Value(0.2),
+            "coulomb.level": Value(1.0),
+            "actuator_saturation.limit": Value(3.0),
+            "actuation_delay.delay": Value(0.2),
+        },
+        (EFFECTS["coulomb"], EFFECTS["actuator_saturation"], EFFECTS["actuation_delay"]),
+    )
+    seen = seen_at_command(body, motion)
+    alone = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
+    assert 0.2 < alone.blind.mean() < 0.8
+    np.testing.assert_array_equal(seen.blind, alone.blind)
+
+
+def test_without_a_law_between_nothing_is_changed():
+    motion = one_way()
+    body = Body("prismatic", {"inertia": Value(0.2), "coulomb.level": Value(1.0)},
+                (EFFECTS["coulomb"],))  # fmt: skip
+    before = residual_along(body, motion)
+    seen = seen_at_command(body, motion)
+    assert not is_between(body) and not seen.blind.any() and not seen.weak
+    np.testing.assert_array_equal(seen.residual, before.residual.value)
+    for name in PASSING:
+        effect = {**EFFECTS, **CHEATS}[name]
+        assert is_between(body_with(effect, PASSING[name])), name
+
+
+def test_friction_that_grows_with_the_acting_force_takes_its_part_of_each_error():
+    """Behind friction of mu times the force, 1 N of the residual is 1 / (1 - mu) N of command."""
+    motion = one_way()
+    for side in (1, -1):
+        motion = one_way(side)
+        body = body_with(EFFECTS["load_dependent_friction"], {"coefficient": 0.25})
+        wave = np.sin(2 * np.pi * motion.time)
+        found = led_back(body, motion, wave)
+        inside = slice(int(RATE), -int(RATE))
+        np.testing.assert_allclose(found.residual[inside], wave[inside] / 0.75, atol=0.01)
+
+
+def test_a_way_that_is_open_somewhere_passes_a_hands_force_whole_there():
+    motion = one_way()
+    n = len(motion.time)
+    force = smooth_noise(np.random.default_rng(2), n, 2.0)
+    gain = np.where(np.arange(n) < n // 2, 0.5, np.nan)
+    way = _Way(gain, np.ones(len(motion.spectrum.frequency), dtype=complex), 0.0)
+    passed = np.where(np.isnan(gain), 1.0, 0.5) * force
+    np.testing.assert_allclose(_transmit(force, way, motion), passed)
+
+
+def test_the_blind_share_counts_samples_that_slide_and_all_where_none_does():
+    def stretch(blind, direction):
+        return (
+            SimpleNamespace(blind=np.array(blind, dtype=bool)),
+            SimpleNamespace(direction=np.array(direction)),
+        )
+
+    first, second = stretch([1, 1, 0, 0], [1, 0, -1, 1]), stretch([1, 0], [0, 1])
+    seen, motions = zip(first, second, strict=True)
+    assert blind_share(seen, motions) == pytest.approx(1 / 4)
+    seen, motions = zip(stretch([1, 0, 0], [0, 0, 0]), strict=True)
+    assert blind_share(seen, motions) == pytest.approx(1 / 3)
+    seen, motions = zip(stretch([], []), strict=True)
+    assert blind_share(seen, motions) == 0.0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("most", "weak"), [(0.8, True), (1.2, False)])
+def test_a_command_within_a_dead_zone_is_blind_and_a_larger_one_is_judged(side, most, weak):
+    """Nothing up to 50 N, then N for N up to a limit: friction of 1 N needs commands of 51 N."""
+    zone = Effect(
+        role="actuation",
+        law=lambda now, p: sp.Max(now.command - p.zone, 0) + sp.Min(now.command + p.zone, 0),
+        parameters={"zone": Parameter("force", "d")},
+        absent={"zone": 0.0},
+    ).named("dead_zone", "")
+    effects = {CHEATS["soft_limit"]: {"limit": most}, zone: {"zone": 50.0}}
+    values = {f"{e.name}.{n}": Value(v) for e, of in effects.items() for n, v in of.items()}
+    values |= {"inertia": Value(0.2), "coulomb.level": Value(1.0)}
+    motion = one_way(side)
+    for order in ((zone, CHEATS["soft_limit"]), (CHEATS["soft_limit"], zone)):
+        seen = seen_at_command(Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion)
+        # a limit in front of the zone never leaves it
+        assert seen.blind.all() and seen.weak == (weak or order[0] is not zone)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_samples_in_which_friction_takes_up_the_whole_force_are_blind_then_and_not_earlier(side):
+    """A user's brake that holds all of the acting force along a part of the stroke."""
+    brake = Effect(
+        role="friction_level",
+        law=lambda now, p: sp.Piecewise(
+            (p.part * sp.Abs(now.acting_force), sp.Abs(now.position) > 1.5), (0, True)
+        ),
+        parameters={"part": Parameter("dimensionless", "share")},
+        absent={"part": 0.0},
+    ).named("brake", "")
+    motion = one_way(side)
+    held = np.abs(motion.position) > 1.5
+    assert 0.2 < held.mean() < 0.8
+    seen = seen_at_command(body_with(brake, {"part": 1.0}), motion)
+    moves = motion.direction != 0  # all samples but the last
+    np.testing.assert_array_equal(seen.blind[moves], held[moves])
+    assert not seen_at_command(body_with(brake, {"part": 0.5}), motion).blind.any()
