@@ -1,4 +1,4 @@
-"""Prescribed motions: position with the velocity and acceleration that belong to it."""
+"""Prescribed motions: a position with its velocity and acceleration."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TimeFunction = Callable[[np.ndarray], np.ndarray]
 class Trajectory:
     """A motion as functions of time (s): position (m or rad) and its two derivatives.
 
-    Each function takes and returns arrays (n,). `sine` and `sampled_motion` make one.
+    Each function takes and returns arrays (n,). `sine` and `sampled_motion` return a Trajectory.
     """
 
     position: TimeFunction

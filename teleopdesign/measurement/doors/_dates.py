@@ -92,8 +92,7 @@ def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:
 
 
 def _numbers_of(day: str) -> tuple[int, int, int, bool] | None:
-    """Year, the two other numbers, and whether slashes separate them, so that either is the month.
-    """
+    """Year, two other numbers, and whether slashes separate them: then either is the month."""
     if (match := _YEAR_FIRST.match(day)) is not None:
         return int(match[1]), int(match[3]), int(match[2]), False
     if (match := _MONTH_NAMED.match(day)) is not None:
