@@ -1,8 +1,8 @@
 """From measurement to design: compensation for a device that a diagnosis identified.
 
-    from teleopdesign.design import design
+from teleopdesign.design import design
 
-    design(find_missing(experiment))  # C, H, what they do, whether that is passive
+design(find_missing(experiment))     # C, H, what they do, whether that is passive
 """
 
 from ..arguments import check_arguments
