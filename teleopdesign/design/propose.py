@@ -75,8 +75,9 @@ def design(
     """Propose cancellation C and force feedback H for an identified body; predict their effect.
 
     diagnosis: a diagnosis, or the content of an answer, from `read_answer`
-    place: which body; may be omitted if there is only one Of the laws for C that are certain to be
-        passive, the design has the one with the smaller force error.
+    place: which body; may be omitted if there is only one
+    Of the laws for C that are certain to be passive, the design has the one with the smaller force
+    error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
     if isinstance(diagnosis, Diagnosis):

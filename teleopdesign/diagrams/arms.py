@@ -89,9 +89,10 @@ def teleoperator_of_arms(
 
     stiffness, damping: P and D (n, n), from the difference of the tips to forces on the slave's
         tip; passive only if P is symmetric and positive semidefinite
-    hand, environment: Z_H, Z_E (n, n) at the tips Names of signals end with side and number: q_m1
-        joints, X_m1 tips, F_u1 and F_d1 forces from outside at the tips, F_m1 and F_s1 total forces
-        there, F_P1 the coupling, U_m1 commanded torques.
+    hand, environment: Z_H, Z_E (n, n) at the tips
+    Names of signals end with side and number: q_m1 joints, X_m1 tips, F_u1 and F_d1 forces from
+    outside at the tips, F_m1 and F_s1 total forces there, F_P1 the coupling, U_m1 commanded
+    torques.
     raises ModelError: sizes differ
     """
     size = len(master.coordinates)

@@ -44,8 +44,8 @@ def coupled_plant_parts(
         the numbers are exact. In discrete time: a plant of 2 n states behind a zero-order hold,
         whose matrices in continuous time follow from a logarithm. A nonlinear system
         (`control.nlsys`) in continuous time is code, for simulations only, see `plant_parts`
-    commands, drivers: signals of each axis, as in `Moving` Bodies have the names "name_1", "name_2"
-        ..., the impedance "name_link", blocks "name_rest_1_2".
+    commands, drivers: signals of each axis, as in `Moving`
+    Bodies have the names "name_1", "name_2" ..., the impedance "name_link", blocks "name_rest_1_2".
     raises ModelError: numbers of signals do not fit, no regular matrix, a mass that is not positive
         definite, zeros of the plant that do not decay, because their states would be doubled
     """

@@ -32,9 +32,9 @@ def disturbance_observer(
     """The diagram with a disturbance observer around a body, such as "Z_s".
 
     inertia, damping: M_n and B_n of the nominal body, kg and N s/m (kg m^2 and N m s/rad)
-    bandwidth: cut-off g/(2 pi) of Q, Hz Blocks are "N_" and "Q_" with the body's name: nominal
-        force and low-passed command. Signals are "F_N_", "F_Q_" and "d_": the estimate, positive
-        along the motion, subtracted from the command.
+    bandwidth: cut-off g/(2 pi) of Q, Hz
+    Blocks are "N_" and "Q_" with the body's name: nominal force and low-passed command. Signals are
+    "F_N_", "F_Q_" and "d_": the estimate, positive along the motion, subtracted from the command.
     raises ModelError: no body of that name that forces move, or it has such an observer already
     """
     moving = diagram.block(body)

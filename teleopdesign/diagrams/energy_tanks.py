@@ -51,8 +51,8 @@ def energy_tanks(
     reserve: E_0, J, in each tank at the start;  travel: d, m or rad, largest travel of any sample
     ends: names of the bodies
     to_first, to_second: channels of the counts, such as a "delay" then a "lossy_hold": only delays,
-        holds and losses; None: no delay Signals are "wanted_", "given_", "taken_", "arrived_",
-        "tank_" and "limit_" with a body's name.
+        holds and losses; None: no delay
+    Signals are "wanted_", "given_", "taken_", "arrived_", "tank_" and "limit_" with a body's name.
     raises ModelError: no such body that forces move, or it has a tank already
     """
     blocks, sums = list(diagram.blocks), list(diagram.junctions)

@@ -55,8 +55,8 @@ def haptic_interface(
         its input (`lead`, `proportional_derivative`), because the velocity of the device has the
         other sign
     passivity: P, from R_M to a force, such as `passivity_controller`
-    analog: controllers among "C", "H", "K" that no computer samples ANY stands for a block of which
-        only the place is known.
+    analog: controllers among "C", "H", "K" that no computer samples
+    ANY stands for a block of which only the place is known.
     raises ModelError: `analog` names no controller, or the position loop uses a velocity
     """
     for name in analog:

@@ -45,8 +45,8 @@ def parallel_rods(
     hand: Z_H (n, n) in the hand's coordinates
     mechanism: impedance that couples the rods besides the hand, added to Z_M (n, n)
     cancellation: C;  force_feedback: H
-    analog: "C", "H" if no computer samples them Signals carry their number: R_D1, R_A1, R_M1, L1,
-        ... of the rods; X1, F_H1, F_V1 of the hand.
+    analog: "C", "H" if no computer samples them
+    Signals carry their number: R_D1, R_A1, R_M1, L1, ... of the rods; X1, F_H1, F_V1 of the hand.
     raises ModelError: G is no regular n x n matrix, or another block has another size
     """
     size = len(rods)

@@ -53,8 +53,8 @@ def teleoperator(
         ...)`
     hand: Z_H, passive impedance of the user's arm
     environment: Z_E, such as a body without inertia with the contact `CONTACT`
-    master_cancellation, slave_cancellation: C_m and C_s, each on the motion of its side ANY stands
-        for a block of which only the place is known.
+    master_cancellation, slave_cancellation: C_m and C_s, each on the motion of its side
+    ANY stands for a block of which only the place is known.
     """
     blocks: list[Block] = [
         Moving("Z_m", master, "X_m", "U_m", {"F_m": 1}, "F_u"),

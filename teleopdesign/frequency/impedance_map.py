@@ -23,10 +23,11 @@ class ImpedanceMap(ByValue):
     """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
 
     data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg
-        The coordinate `amplitude` (of the drive) depends on `frequency` if it follows a profile. A
-        measured map also has `distortion` of the force: rms of its higher harmonics over that of
-        the first `unsettled`: relative difference of the first harmonics of successive cycles
-        `motion_amplitude` (m or rad) of the motion itself
+
+    The coordinate `amplitude` (of the drive) depends on `frequency` if it follows a profile. A
+    measured map also has `distortion` of the force, the rms of its higher harmonics over that of
+    the first; `unsettled`, the relative difference of the first harmonics of successive cycles; and
+    `motion_amplitude` (m or rad) of the motion itself.
     """
 
     data: xarray.Dataset

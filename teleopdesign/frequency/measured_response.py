@@ -67,9 +67,9 @@ def simulated_response(
 ) -> FrequencyResponse:
     """First harmonic of `output` over that of `input`, from a simulation with a sinusoid.
 
-    amplitude: of `input`, in its unit; the response of a nonlinear system depends on it If all
-        effects have a linear form, `bode` gives the same. Other arguments are those of
-        `measured_impedance`.
+    amplitude: of `input`, in its unit; the response of a nonlinear system depends on it
+    If all effects have a linear form, `bode` gives the same. Other arguments are those of
+    `measured_impedance`.
     """
     cases = cases_of(diagrams)
     f = np.asarray(frequency, dtype=float)

@@ -136,8 +136,8 @@ def build_experiment(
 ) -> Experiment:
     """An experiment from the tables of a file and one open log.
 
-    spans: (use, (begin, end) in s) of each record, or (use, None) for all rows A body without
-        inertia gets first values from the fit records.
+    spans: (use, (begin, end) in s) of each record, or (use, None) for all rows
+    A body without inertia gets first values from the fit records.
     """
     _refuse_overlap(spans)
     table = Table(content, _WHERE)

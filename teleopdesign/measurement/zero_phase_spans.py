@@ -67,7 +67,7 @@ def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[in
     """Windows (from, to) of n samples outside of which these rows have no influence on each other.
 
     rows: in order;  m: samples by which the record is continued at each end;  reach: see `reach`
-        One window covers all samples if little would be left out.
+    One window covers all samples if little would be left out.
     """
     apart = np.flatnonzero(np.diff(rows) > 2 * reach)
     begins = np.maximum(rows[np.append(0, apart + 1)] - reach, 0)

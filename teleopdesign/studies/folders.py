@@ -79,8 +79,8 @@ def diagnose_folders(
     """Diagnose the experiment of every folder; each answer is written to the output folder.
 
     workers: processes; None: as many as the machine has cores, if that is faster
-    progress: called with the progress of the work Finished folders are kept in the output folder:
-        the same call continues from there.
+    progress: called with the progress of the work
+    Finished folders are kept in the output folder: the same call continues from there.
     raises ExperimentError: the same folder twice, an output that cannot be written
     """
     chosen = FolderSearch() if search is None else search

@@ -57,8 +57,8 @@ def study(
         the measures accept
     axes: parameter -> values (several parameters: their product) or one value; points drawn
         together (`latin_hypercube`, `sobol`, ...); or a sequence of such, whose product is taken
-    measures: names of `MEASURES`, `measure(...)`, functions; several in a list, or by name duration
-        ... every_step: settings of `simulate` for a diagram; no duration: no simulation
+    measures: names of `MEASURES`, `measure(...)`, functions; several in a list, or by name
+    duration ... every_step: settings of `simulate` for a diagram; no duration: no simulation
     units: of a function's parameters and of measures, by name;  labels: names in figures
     seed: of measures that need randomness
     workers: processes of this machine; None: as many as it has cores, or none if that is as fast
@@ -67,8 +67,9 @@ def study(
     progress: called with a `Progress` from time to time; `print` shows it as a line
     raises ModelError: an unknown parameter or measure, a model that cannot be sent
     raises ExperimentError: a file that cannot be written or is of another study, a cluster that
-        cannot be reached A point that fails is NaN, and `failure` says why. The data do not depend
-        on where the points were computed.
+        cannot be reached
+    A point that fails is NaN, and `failure` says why. The data do not depend on where the points
+    were computed.
     """
     settings: dict[str, Any] = {
         "duration": duration,

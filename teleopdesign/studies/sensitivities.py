@@ -39,7 +39,7 @@ def sensitivities(
     parameters: names of `SimulatedCase`: values of the diagram, initial states, inputs that are
         numbers, sines;  signals: of the simulation, also hidden states
     scales: parameter -> a change that matters (SI); default: its value; required if that is 0
-        duration ... step: settings of the simulation, see `study`
+    duration ... step: settings of the simulation, see `study`
     returns: each signal over `parameter` and `time`, in its unit per SI unit of the parameter, from
         central differences of five sizes. SIGNAL_apart over `parameter`: difference of the slopes
         of the two sizes that agree best, over the slope; far below 1 the derivative is right, near

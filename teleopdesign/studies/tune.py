@@ -122,8 +122,8 @@ def tune(
 
     parameters: names of `SimulatedCase` -> (low, high); in logarithms if high is 10 low or more
     objective: a measure, as in `study`: a name, `measure(...)`, or a function of the result
-    subject_to: `limit(...)`, or names of claims ("passive", "absolutely stable", "stable") duration
-        ... step: settings of the simulation, see `study`
+    subject_to: `limit(...)`, or names of claims ("passive", "absolutely stable", "stable")
+    duration ... step: settings of the simulation, see `study`
     evaluations: points that are evaluated in one round; another round follows if a limit over
         intervals fails at a point of these intervals that the search had not evaluated
     seed: the same seed gives the same answer, for any number of `workers` (processes)
