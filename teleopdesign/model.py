@@ -1,6 +1,6 @@
-"""The model that a user holds against a recording: bodies with their effects at places.
+"""The model that a user compares with a recording: bodies, each with its effects, by place.
 
-Frozen: `model.with_effect("stribeck", at="device")` returns a new one.
+A model is frozen: `model.with_effect("stribeck", at="device")` returns a new model.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ from .standard_error import with_standard_error
 class Model:
     """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI).
 
+    known: effect name -> effect, the effects that the model can have
     record_shift: body -> s by which the log of its command is late, "BODY.interaction_force" -> s,
-        time constant of the hand's sensor: no physics, but what a logger or a sensor did to the
-        records that the model was estimated on; none where that is unknown
+        time constant of the hand's sensor: no physics, but the influence of a logger or a sensor on
+        the records from which the model was estimated; none where it is unknown
     links: base parameters (SI) of the arm whose joints the bodies are; (): none are estimated
     """
 
@@ -56,8 +57,9 @@ class Model:
     ) -> Model:
         """The model that an experiment.toml describes, its values converted to SI.
 
-        known: the effects by name, for those who add effects
-        raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
+        known: effect name -> effect, for users who add effects
+        raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds, or an
+            effect that needs a channel which the experiment lacks
         """
         described = experiment.bodies
         if experiment.arm is not None:
@@ -79,9 +81,9 @@ class Model:
 
     @check_types
     def body(self, at: str) -> Body:
-        """The body at that place; ModelError with the nearest place where there is none.
+        """The body at a place; raises ModelError, with the nearest place, if there is none.
 
-        The environment's is the body that touches it.
+        For "environment" it is the body that touches the environment.
         """
         return self.bodies[self.holder(at)]
 
@@ -95,9 +97,9 @@ class Model:
     ) -> Model:
         """The model with one effect more.
 
-        at: place; may be left out where there is one body only
-        values: parameter -> value (SI); by default the effect starts as absent and a fit
-        finds its starting values
+        at: place; may be left out if there is only one body, or for an effect of the environment
+        values: parameter -> value (SI); by default the effect starts as absent, and a fit finds its
+            starting values
         raises ModelError: no such effect, place or parameter, or the effect is already there
         """
         added = (
@@ -116,7 +118,7 @@ class Model:
 
     @check_types
     def without_effect(self, effect: str, *, at: str | None = None) -> Model:
-        """The model without that effect."""
+        """The model without that effect; at: as in `with_effect`."""
         removed = self.known.get(effect)
         place = self._place(at, removed.role if removed else "")
         return self._with_body(place, self.body(place).without_effect(effect))
@@ -140,12 +142,12 @@ class Model:
         return model
 
     def log_late(self, log: str) -> float:
-        """Seconds by which a log is late: of a command "device", "device.interaction_force"."""
+        """Seconds by which a log is late; log: "device" (a command), "device.interaction_force"."""
         shift = self.record_shift.get(log)
         return 0.0 if shift is None else shift.value
 
     def with_record_shift(self, shifts: Mapping[str, Value]) -> Model:
-        """The model with other shifts of the records, by what was logged; {}: with none."""
+        """The model with other shifts of its records, log -> shift (s); {}: without any."""
         instance(shifts, Mapping, "with_record_shift", expected='such as {"device": Value(0.001)}')
         return replace(self, record_shift=Frozen(shifts))
 
@@ -166,7 +168,7 @@ class Model:
         return named
 
     def locate(self, name: str) -> tuple[str, str]:
-        """Body, and name within it, of the parameter of that full name.
+        """The body and the local name of the parameter with that full name.
 
         Parameters of the environment belong to the body that touches it.
         """
@@ -182,13 +184,13 @@ class Model:
 
     @check_types
     def declared(self, name: str) -> Parameter:
-        """Declaration of the parameter of that full name."""
+        """The declaration of the parameter with that full name."""
         place, local_name = self.locate(name)
         return self.body(place).parameter(local_name)
 
     @check_types
     def unit(self, name: str) -> str:
-        """Unit of the parameter of that full name."""
+        """The unit of the parameter with that full name."""
         place, local_name = self.locate(name)
         return self.body(place).unit(local_name)
 
@@ -216,7 +218,7 @@ class Model:
         return self.with_values(values)
 
     def in_order(self) -> Model:
-        """The same model with parts of effects that may change places in order (`Effect.order`)."""
+        """The same model, exchangeable parts of its effects in fixed order (`Effect.order`)."""
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             numbers = {n: v.value for n, v in body.parameters.items()}
@@ -233,7 +235,7 @@ class Model:
 
     @property
     def absent(self) -> tuple[tuple[str, str], ...]:
-        """(effect, place) of the effects whose values say that they are not there."""
+        """(effect, place) of the effects whose parameter values make them absent."""
         return tuple(
             (effect.name, CONTACT.name if effect.role in CONTACT_ROLES else place)
             for place, body in self.bodies.items()
@@ -252,12 +254,12 @@ class Model:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """Where effects may be: the bodies, and "environment" where one is modelled."""
+        """The places that effects can have: the bodies, and "environment" if it is modelled."""
         touched = any(b.has(CONTACT.name) for b in self.bodies.values())
         return (*self.bodies, CONTACT.name) if touched else tuple(self.bodies)
 
     def holder(self, at: str) -> str:
-        """The body at a place; for the environment, the body that touches it."""
+        """The body at a place ("environment": the body that touches it); ModelError if none."""
         if at not in self.places:
             raise ModelError(
                 f'model: no body "{at}", has {", ".join(self.places)}'
@@ -268,7 +270,7 @@ class Model:
         return next(p for p, b in self.bodies.items() if b.has(CONTACT.name))
 
     def _place_of(self, holder: str, local_name: str) -> str:
-        """Prefix, with its dot, of a body's parameter in its full name."""
+        """Prefix, with its dot, of a body's parameter in the parameter's full name."""
         effect, _, parameter = local_name.partition(".")
         if effect == CONTACT.name:
             return ""
