@@ -1,6 +1,6 @@
 """The model that a user compares with a recording: bodies, each with its effects, by place.
 
-A model is frozen: `model.with_effect("stribeck", at="device")` returns a new model.
+A model is frozen; `model.with_effect("stribeck", at="device")` returns a new model.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Python files of the user: effects and control laws.
 
-The bytes that were read are the code that runs: the digest that identifies a file in answers and
+The bytes that were read are the code that runs; the digest that identifies a file in answers and
 pickles is the digest of these bytes. Nothing is written beside the file.
 """
 

@@ -52,6 +52,7 @@ def residual_chart(data: Dataset, body: str, use: str) -> Chart:
     """Measured and modelled force over time; the residual over time, velocity and position.
 
     A span that the user draws in one panel is marked in the others.
+
     data: as `Comparison.data`;  use: "fit" or "check"
     """
     unit = {n: data[n].attrs["units"] for n in ("time", "position", "velocity", "residual")}

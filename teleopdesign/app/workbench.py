@@ -1,6 +1,6 @@
 """A diagnosis in single steps: rank the candidates, add one, look again, take it back.
 
-A workbench is frozen: each step gives a new one, and the old one is the way back.
+A workbench is frozen; each step gives a new one, and the old one is the way back.
 """
 
 from __future__ import annotations

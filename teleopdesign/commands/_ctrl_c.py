@@ -1,6 +1,6 @@
 """Ctrl-C at any moment of a command: handled once, never lost, and reported in one line.
 
-Only the standard library is imported here: Ctrl-C is not handled before this module is imported.
+Only the standard library is imported here; Ctrl-C is not handled before this module is imported.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def hear_ctrl_c(request: threading.Event) -> bool:
     """Let Ctrl-C raise KeyboardInterrupt at any moment; returns whether Ctrl-C is handled here.
 
-    Python only prints an exception that nothing can catch: in a `__del__`, in a call from C. Such
+    Python only prints an exception that nothing can catch (in a `__del__`, in a call from C). Such
     an interrupt is raised again. Code in C may ignore an exception, or abort, while its module is
     imported: Ctrl-C waits until the import is complete.
 

@@ -51,7 +51,7 @@ class ControllerEquation:
 class Controller:
     """One or more control laws in series; the first one receives the input.
 
-    A law that occurs twice is numbered: "low_pass.bandwidth" and "low_pass_2.bandwidth".
+    A law that occurs twice is numbered, as in "low_pass.bandwidth" and "low_pass_2.bandwidth".
     """
 
     stages: tuple[Stage, ...]
@@ -102,8 +102,8 @@ class Controller:
     def sampled(self, period: float) -> Controller:
         """The controller as a computer with this period (s) realises it.
 
-        Only laws that declare a sampled form change: `virtual_admittance`, and continuous systems
-        of python-control. The simulation steps all others, with their inputs held over a period.
+        Laws that declare a sampled form change: `virtual_admittance`, and continuous systems of
+        python-control. The simulation steps all other laws with their inputs held over a period.
         """
         stages = (
             g if g.law.sampled is None else replace(g.law.sampled(g.values, period), name=g.name)
@@ -169,8 +169,9 @@ class Controller:
         """Transfer function at constant speed; None if a law declares no linear form.
 
         The velocity is that of the input; for the velocity of another motion, see `linear_parts`.
-        held: also for measured responses, and for laws in discrete time as H(e^(s T)) (1 - e^(-s
-            T))/(s T): from the samples to the mean of the held output, without copies at other
+
+        held: also for measured responses, and for laws in discrete time, from the samples to the
+            mean of the held output, as H(e^(s T)) (1 - e^(-s T))/(s T), without copies at other
             multiples of the sampling rate
         """
         parts = self.linear_parts(prefix, s, speed, held=held)

@@ -1,6 +1,6 @@
 """Check of the declarations of a control law, on which claims and linear forms depend.
 
-The check is symbolic: whether a law is linear, only a dead time, a smoothed level, a bristle or a
+The check is symbolic; whether a law is linear, only a dead time, a smoothed level, a bristle or a
 low-pass. The largest force of a law (`bound`) is a matter of intervals and is not checked here.
 """
 

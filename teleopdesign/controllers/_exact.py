@@ -1,6 +1,6 @@
 """Exact numbers for floats as they were written, and exact transfer functions from matrices.
 
-A float stands for the shortest decimal number that prints like it: 0.1 is 1/10. Poles and zeros
+A float stands for the shortest decimal number that prints like it; 0.1 is 1/10. Poles and zeros
 that cancel on paper then cancel, and a pole at zero stays there.
 """
 

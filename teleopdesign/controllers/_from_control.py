@@ -107,6 +107,7 @@ def invert_plant(system: control.LTI, *, bandwidth: float, name: str = "inverse"
     If T = R_M / R_D is that of a compensated haptic interface, and the inverse is wired ahead of
     R_D, the hand feels w times the wanted force. With several axes, the same w on each makes all
     directions equal.
+
     bandwidth: f_c in Hz
     raises ModelError: T is zero or has a zero that is not in the left half-plane, discrete time
     """

@@ -18,8 +18,9 @@ _LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary
 def load_controller(path: str | Path) -> ControlLaw:
     """Read a file with a control law; the name of the file becomes the name of the law.
 
-    Use the law like one of the catalogue: `controller(load_controller("my_law.py"), values)`. An
+    Use the law like one of the catalogue, `controller(load_controller("my_law.py"), values)`. An
     unchanged file returns the same law again.
+
     raises ModelError: the file cannot be read or run, defines no CONTROLLER, or one whose
         declarations are wrong
     """

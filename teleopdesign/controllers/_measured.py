@@ -34,6 +34,7 @@ def measured_plant(name: str, system: control.FrequencyResponseData) -> tuple[fl
 
     1/P = m s^2 + R: m is the median over the highest tenth of the frequencies; R is exact at each
     frequency for any m.
+
     raises ModelError: no motion, or no mass at the highest frequencies
     """
     w, values = _points(name, system)

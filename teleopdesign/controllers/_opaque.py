@@ -57,6 +57,7 @@ def opaque_laws(
     """A system of several inputs as controllers: one for each state, one for each output.
 
     Each reads the first input, and as `others` the rest of the inputs, then all states.
+
     is_plant: inputs are forces and outputs positions, which no force moves at once: outputs are
         computed with zero force
     raises ModelError: as `wrap_code`; the system has no input; the output of a plant follows a

@@ -168,6 +168,7 @@ def insert_matrices(
 
     Floating-point numbers in the expression are converted to exact fractions, so that a zero stays
     zero. A dead time becomes a number: the first entry of the matrix of its symbol, plus 15.
+
     size: rows of each matrix; default: those of the first block
     raises ModelError: there is no block, and no size
     """

@@ -121,6 +121,7 @@ def return_difference(diagram: Diagram, name: str) -> sp.Expr:
     """Return difference 1 - loop gain at the output of controller `name`.
 
     Closed-loop poles are its zeros; every other loop stays closed. Blocks keep their order.
+
     raises ModelError: `name` is no controller
     """
     block = diagram.block(name)

@@ -28,6 +28,7 @@ def with_values(
     """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
     For one degree of freedom.
+
     given: prescribed motions
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, see `linear_blocks`
@@ -64,6 +65,7 @@ def transfer_function(
 
     Its input and output have the names of the signals, so that `control.interconnect` can connect
     it. Other arguments are those of `with_values`.
+
     delay_order: of the Pade approximation of dead times
     """
     expression, linear = with_values(diagram, output=output, input=input, given=given, speed=speed)

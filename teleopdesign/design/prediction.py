@@ -35,6 +35,7 @@ class CasePrediction(ByValue):
     """Predictions for one case of compensation.
 
     Forces are in N or N m: rms about their mean over a cycle of the motion.
+
     linear, quasi_static, simulated: the force error by three methods
     at_peak_speed: mean absolute force error at the peak speed, simulated
     mean: of the simulated force error, which linear theory does not contain (gravity, offsets)

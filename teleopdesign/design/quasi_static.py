@@ -71,7 +71,7 @@ def _force_along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Ar
 def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
     """Steady output of a controller at an input and a velocity, (n,) each.
 
-    States have their steady value at that velocity: a low-pass passes, a bristle slides.
+    States have their steady value at that velocity; a low-pass passes, a bristle slides.
     """
     signals = {n: CONTROL_SIGNALS[n] for n in CONTROL_SIGNALS}
     equation = controller.equation("slow", signals)

@@ -1,6 +1,6 @@
 """Systems of python-control with several inputs and outputs, and plants, as parts of a diagram.
 
-All uses follow from these parts: derivation, Bode plots, claims, simulation, python-control.
+Derivation, Bode plots, claims, simulation and python-control all use these parts.
 """
 
 from __future__ import annotations
@@ -139,6 +139,7 @@ def plant_parts(
     within its frequencies, but no proof. A nonlinear system (`control.nlsys`) is code, and no body:
     its motion is a signal that simulations compute and sensors read. No hand can hold it, and no
     law can use its velocity.
+
     driver: outside force on the body, as in `Moving`;  loads: other forces on it, signal -> sign
     raises ModelError: discrete time, several axes, not two more poles than zeros, m <= 0 or b < 0
     """

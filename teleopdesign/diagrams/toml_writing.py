@@ -29,6 +29,7 @@ def write_diagram(
     """Write a diagram as a TOML file, in SI units.
 
     If the package knows the wiring, the file states only the blocks.
+
     effects: effects that the reader of the file will know, as in `read_diagram`
     raises ModelError: an effect of a body differs from the known one of that name, a law is not
         from the package, an expression has functions that a file must not have

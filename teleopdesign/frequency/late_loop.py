@@ -103,6 +103,7 @@ def count_growing(terms: Terms) -> int:
     Zeros on the axis within rounding count as well. A delayed term that is as strong as the first
     one at high frequency counts too: at a very small change of dead times there are infinitely many
     zeros.
+
     raises ModelError: the dead times turn the phase more often than can be followed
     """
     if not terms:

@@ -83,6 +83,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
 
     All other blocks at work, linear forms with smoothed friction and schedules frozen at `speed`.
     A controller in discrete time counts as it samples and holds.
+
     raises ModelError: no such controller, or one without linear form
     """
     part = next((c for c in diagram.controls if c.name == controller), None)
@@ -121,6 +122,7 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     grow, the faster the shorter. A loop with a measured response is judged between its frequencies,
     see `measured_crossings`. A controller that alone samples is in it as it is, in discrete time;
     where others sample too, by their response over frequency (`LoopGain.sampled`).
+
     raises ModelError: the loop is unstable without any delay (`UnstableLoop`); a controller was
         left out of it; its gain is above 1 where its samples no longer tell a frequency from
         others, or at the highest frequency that was measured

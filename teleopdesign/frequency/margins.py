@@ -39,6 +39,7 @@ def gain_margin(loop: LoopGain) -> float:
 
     The smallest of the gain and its reciprocal where the phase is -180 degrees. A loop with a dead
     time has infinitely many such frequencies; those with larger factors are skipped.
+
     raises ModelError: as `delay_margin`; a measured response is part of the loop
     """
     from scipy.optimize import brentq

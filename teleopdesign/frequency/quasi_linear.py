@@ -44,6 +44,7 @@ def quasi_linear_impedance(
 
     Arguments are those of `measured_impedance`, with a prescribed motion; controllers are
     continuous.
+
     raises ModelError: a block without laws or without describing function
     """
     cases = cases_of(diagrams)

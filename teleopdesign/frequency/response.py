@@ -111,6 +111,7 @@ def bode(
     """Frequency response from one signal to another, for one diagram or several cases.
 
     A controller in discrete time is sampled and held, up to half its sampling rate.
+
     given: prescribed motions; output "E", input and given "L" give the apparent mechanism impedance
         Zhat_M. For a body with a compliant transmission, the motion of the tip is prescribed
     frequency: Hz, default 0.1 to 1000

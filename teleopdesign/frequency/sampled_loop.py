@@ -2,15 +2,15 @@
 
     x' = A x + sum_k B_k u(t - T_k),   y = C x + sum_k D_k u(t - T_k),   u held over each sample h
 
-A dead time T = m h + d, 0 <= d < h, takes the held value of m + 1 samples before for its first part
-d of each sample, and that of m before for the rest (Astrom and Wittenmark, Computer-Controlled
-Systems, 3.2). A sample is read just before the output that it gives: what passes straight through
-is that of the sample before. So y = P(z) u with
+With a dead time T = m h + d, 0 <= d < h, the input is the value held m + 1 samples before in the
+first part d of each sample, and the value held m samples before in the rest (Astrom and Wittenmark,
+Computer-Controlled Systems, 3.2). A sample is read just before the output changes, so that the part
+D of the response is delayed by one sample. So y = P(z) u with
 
     P(z) = sum_k z^-m_k (C (z I - e^(A h))^-1 (B0_k + B1_k/z) + D_k/z)
 
-Whether the closed loop grows is decided by its characteristic polynomial, in fifty digits. Values
-on the unit circle are computed in floats about z = 1, where slow poles crowd.
+The characteristic polynomial decides, in fifty digits, whether the closed loop grows. Values on the
+unit circle are computed in floats as functions of z - 1, since slow poles lie close to z = 1.
 """
 
 from __future__ import annotations
@@ -133,10 +133,11 @@ class SampledLoop:
 
 
 def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> SampledLoop | None:
-    """The loop opened at a controller that samples and holds, everything else linear.
+    """The loop opened at a controller that samples and holds, with everything else linear.
 
-    None where it is no such system: another controller samples too, laws in continuous time stand
-    beside the discrete one in the controller, or a dead time lies within another loop
+    None if the loop has another form: another controller samples too, laws in continuous time stand
+    beside the discrete one in the controller, or a dead time lies within another loop.
+
     diagram: bodies with a structure apart;  linear: its blocks
     """
     law = part.controller

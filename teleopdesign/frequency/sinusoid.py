@@ -51,6 +51,7 @@ def steady_harmonics(
 
     Runs four cycles, then twice as many, up to 128, until the last cycles agree. `unsettled` of a
     harmonic shows the remaining difference.
+
     raises ModelError: drive is neither a motion nor from outside, or an unknown signal
     """
     for name in signals:

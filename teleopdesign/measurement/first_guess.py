@@ -102,9 +102,8 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     the force decides, if its sign is certain. In slow motions the force of inertia is too small to
     be distinguished from delays. A motion in one direction does not distinguish friction from a
     constant force. A pendulum that swings below its natural frequency has a force like that of a
-    negative
-    inertia: a force proportional to position is added where it explains most of the remaining
-        force.
+    negative mass; a force proportional to position is added where it explains most of the remaining
+    force.
     """
     stretch = _stretch((force, position), position, sample_time)
     if stretch is None:
@@ -140,6 +139,7 @@ def balance_factor(
         force + factor other = m a + c sgn(v) + b v + k
 
     Rows at and near rest are left out: friction takes any force there, up to its level.
+
     returns: factor and standard error; (0, inf) where less than a second is in motion
     """
     stretch = _stretch((force, other), position, sample_time)

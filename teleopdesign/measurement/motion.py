@@ -98,6 +98,7 @@ class Motion(ByValue):
         """A held signal, constant from row to row, as a smooth signal at the rows, (..., n).
 
         The signal is advanced by `command_late`, the delay of its log.
+
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
@@ -120,6 +121,7 @@ def direction_of(position: Array, change: float, step: float, patience: int) -> 
     A motion shows in changes of the reading in the same direction, no more than `patience` samples
     apart, over at least `TRAVEL` steps; a shorter one may be the deflection of a contact that
     holds. Between motions the body may rest, creep or turn: the direction is 0.
+
     change: smallest change of a reading that counts;  step: uncertainty of one reading
     """
     direction = np.zeros(len(position), dtype=np.int8)

@@ -40,6 +40,7 @@ def make_folder(
 
     One log is cut into a fit and a check record, at `spans` (s from its first row) if given. Of
     several logs, the last is the check record.
+
     overwrite: replace an existing experiment.toml
     raises ExperimentError: the folder holds an experiment already, or cannot be written; spans that
         overlap, lie outside of the log or belong to several logs

@@ -103,6 +103,7 @@ def rows_between_readings(
     One row of each reading is not marked. Such a source changes all channels in the same rows, a
     fixed period apart, and positions change by several steps at once; the steps of a slow encoder
     come one by one. Where all channels rest, one row in each period is not marked.
+
     channels, positions: (n,) each, as in `repeated_rows`;  stamps: (n,) s
     returns: all False where the log has no such source
     """
@@ -197,7 +198,7 @@ def _chance_of_repeats(
 ) -> Array:
     """Probability of each run: that all readings repeat at once, from their repeats beside the run.
 
-    Commands are not counted: where a position repeats, a command that follows it repeats as well.
+    Commands are not counted; where a position repeats, a command that follows it repeats as well.
     """
     low, high = np.maximum(first - BESIDE, 0), np.minimum(past + BESIDE, len(same))
 

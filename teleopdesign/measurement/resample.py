@@ -1,6 +1,6 @@
 """Signals of a log on the even grid of a record, each by the rule for its quantity.
 
-A command holds until the next row: the value of a sample is the mean of the command over the
+A command holds until the next row; the value of a sample is the mean of the command over the
 sample. A position is interpolated where it moves fast. Where it moves by few encoder steps, the
 line between readings is rounded to such steps. Other measured signals follow the straight line.
 """
@@ -75,6 +75,7 @@ def command_phase(values: Array, clock: RecordClock) -> float | None:
     A log may read the command of a controller at other instants. Then two rows between the same two
     changes have the same value, and some commands are in no row. The phase is the one for which
     rows are equal exactly where they lie between the same two changes.
+
     values: (m,) of the clock's rows, whose stamps are true
     """
     at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time

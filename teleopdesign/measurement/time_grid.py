@@ -57,6 +57,7 @@ def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[flo
 
     The deviation of a reading from its neighbours is regressed on the speed times the deviation of
     the stamp from the even clock. Both are second differences, which suppress a smooth motion.
+
     positions: (m,) each, of the clock's rows
     returns: the coefficient and its standard error; (1, inf) if the positions do not decide
     """

@@ -33,6 +33,7 @@ def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
     """Stamps without the wraps of their counter or clock, and a note on each kind of wrap.
 
     A step back is a wrap if adding its period leaves a step like the others.
+
     stamps: (n,) in any unit, NaN where there is none
     """
     rows = np.flatnonzero(np.isfinite(stamps))

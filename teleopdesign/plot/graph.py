@@ -41,7 +41,7 @@ def draw_graph(
     most: limit on the points of one series; a longer series keeps its extremes (see `thin_series`)
     colours: name of a series -> its colour, if it differs from the colour of its kind
 
-    Texts are drawn without formulas: a name from a file may contain a dollar sign.
+    Texts are drawn without formulas; a name from a file may contain a dollar sign.
     """
     totals: Counter[str] = Counter(s.kind for s in graph.series)
     if graph.logarithmic:

@@ -168,7 +168,7 @@ def _draw_legend(figure: Any, axis: Axes) -> None:
 def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float]:
     """Ends of the colour scale: all numbers; symmetric about 0 if the onset is at 0.
 
-    The symmetric scale ends at the 95th percentile of the absolute values: growing swings with very
+    The symmetric scale ends at the 95th percentile of the absolute values; growing swings with very
     large values would leave no colour for the rest.
     """
     finite = values.values[np.isfinite(values.values)]

@@ -1,6 +1,6 @@
 """Parameter sets of one diagram as numbers for its compiled laws, grouped by structure.
 
-The simulated form of a diagram differs from the stated one: absent effects are left out, ideal
+The simulated form of a diagram differs from the stated one; absent effects are left out, ideal
 friction gets a short bristle, and controllers take their sampled form. So cases fall into groups,
 by the effects that their values switch off. Some numbers of the simulated form depend on several
 values of a case.

@@ -251,7 +251,7 @@ class Setup:
     def check_size(self, timing: Timing, *, every_step: bool = False) -> None:
         """Raise ModelError if the tables of one run could hold more than `MOST_NUMBERS` values.
 
-        Constant inputs count as well: a run of so many steps would not end.
+        Constant inputs count as well; a run of so many steps would not end.
         """
         layout = self.program.layout
         numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)

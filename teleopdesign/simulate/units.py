@@ -45,7 +45,7 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
 def _quantities(diagram: Diagram) -> dict[str, str]:
     """Quantity of each signal, from bodies through sums; of a controller's output, from its target.
 
-    The output of a controller that enters a sum has the quantity of the sum: a position if it is
+    The output of a controller that enters a sum has the quantity of the sum, a position if it is
     compared with one. An output that enters only controllers has the quantity of the input: a
     filter.
     """

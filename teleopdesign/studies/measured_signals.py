@@ -63,6 +63,7 @@ def measured_signals(data: Any) -> MeasuredSignals:
     """Measured signals from a mapping with "time", a data set over `time`, or a record.
 
     The time of a record is counted from its first sample.
+
     raises ModelError: no time, another shape, times that do not increase, a record with gaps
     """
     if isinstance(data, Record):

@@ -1,6 +1,6 @@
 """Points of a study on all cores of this machine, computed in worker processes.
 
-Each point is computed by the same code with the same numbers in any process: the number of
+Each point is computed by the same code with the same numbers in any process; the number of
 processes changes only the time. A process that dies is started again; a point at which that happens
 twice is recorded as failed.
 """

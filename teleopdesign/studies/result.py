@@ -187,7 +187,7 @@ def label_outcomes(
 ) -> Study:
     """Outcomes of all points as one data set, which depends only on the arguments.
 
-    The first point that did not fail decides the form of the measures: a point with other names,
+    The first point that did not fail decides the form of the measures; a point with other names,
     units or dimensions has failed.
     """
     import xarray

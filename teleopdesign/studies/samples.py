@@ -90,6 +90,7 @@ def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) 
     and k points between them, in each of which one parameter has the value of the second point.
     Saltelli et al., Computer Physics Communications 181 (2010) 259, in the order that SALib
     expects.
+
     base: a power of two;  ranges: as in `latin_hypercube`
     """
     _check_count("sensitivity_samples", base)

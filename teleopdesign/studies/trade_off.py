@@ -94,6 +94,7 @@ def trade_off(
     """Search for the best trade-offs between two measures, within limits.
 
     Other arguments are those of `tune`.
+
     objectives: two measures;  points: largest number of points of the front
     evaluations: number of points that are evaluated in all
     raises ModelError: not two objectives, no point within the limits, and the errors of `tune`

@@ -1,8 +1,8 @@
 """The text encoding of a table, judged from its bytes alone.
 
-A byte-order mark and UTF-8 can be recognised for certain. Many other encodings decode the same
-bytes: the module takes the encoding in which most letters are usual in tables of measurements. A
-    table holds few words ("time", "position", "torque") and units, so that few letters decide.
+A byte-order mark and UTF-8 can be recognised for certain. Many other encodings can decode the same
+bytes; the module takes the encoding in which most letters are usual in tables of measurements. A
+table holds few words ("time", "position", "torque") and units, so that few letters decide.
 """
 
 from __future__ import annotations

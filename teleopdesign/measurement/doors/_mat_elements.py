@@ -1,6 +1,6 @@
 """Checks of the elements of a MAT file of version 5 before scipy reads them.
 
-scipy does not check the class of a matrix and the type of its numbers: a damaged file ends the
+scipy does not check the class of a matrix and the type of its numbers; a damaged file ends the
 process with a segmentation fault, which cannot be caught.
 """
 

@@ -112,6 +112,7 @@ def local_scale(e: Array, floor: float) -> Array:
 
     The larger of two estimates, from the middle and from the tail of the nearby values, so that a
     signal with heavy tails is judged by its tails. A few outliers do not count.
+
     floor: least value
     """
     scale = np.full(len(e), max(floor, 1e-300))
