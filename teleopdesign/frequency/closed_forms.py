@@ -31,7 +31,7 @@ def smoothed_coulomb(
 
 
 def smoothed_share(r: sp.Expr, reciprocal: sp.Expr | float) -> sp.Expr:
-    """First harmonic of smoothed over that of Coulomb friction, r = a/V; see `reciprocals`."""
+    """Ratio of first harmonics, smoothed to Coulomb friction, r = a/V; see `reciprocals`."""
     return 1 - sp.pi * r / 2 + r**2 * reciprocal
 
 

@@ -132,7 +132,7 @@ def _filled_rows(
 
 
 def _mark_later_rows(stamps: Array) -> NDArray[np.bool_]:
-    """Rows with a stamp later than that of the row before by more than half the median step."""
+    """Rows whose stamp exceeds the stamp of the row before by more than half the median step."""
     steps = np.diff(stamps, prepend=stamps[:1])
     forward = steps[steps > 0]
     return np.asarray(steps > 0.5 * np.median(forward)) if len(forward) else steps > 0

@@ -165,7 +165,7 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
 
 
 def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
-    """What an encoder reads on the line between two readings.
+    """Readings of an encoder at times between two readings, for a straight motion between them.
 
     part: of the way between them, 0 to 1;  step: of the encoder; 0: the nearer reading is taken
     """

@@ -87,7 +87,7 @@ def force_displacement(
     within: tuple[float, float] | None = None,
     after: float = 0.0,
 ) -> ForceDisplacement:
-    """The user's force over the motion of the master, and the tip's force over that of the slave.
+    """The user's force over the motion of the master, and the tip's force over the slave's motion.
 
     simulations: case -> simulation of a teleoperator, all on one time grid
     within: displacements between which slope and width are fitted, m (default: the middle half of

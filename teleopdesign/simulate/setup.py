@@ -131,7 +131,7 @@ class Setup:
 
     @cached_property
     def delays(self) -> list[float]:
-        """Delay of each delayed signal, s: of the analog ones, then of those in the computer."""
+        """Delay (s) of each delayed signal: of analog signals, then of signals in the computer."""
         values, parameters = self.diagram.values, self.program.equations.parameters
         at = {x: values[n] for x, n in parameters.items()}
         return [float(d.subs(at)) for d in self.program.equations.delays]

@@ -81,7 +81,7 @@ def _feeds_controllers_alone(diagram: Diagram, signal: str) -> bool:
 
 
 def _axes(diagram: Diagram) -> dict[str, str]:
-    """Axis of each signal: that of its body, passed on by blocks and sums."""
+    """Axis of each signal: the axis of its body, passed on by blocks and sums."""
     axis_of = {k.output: k.axis for k in diagram.kinematics}
     for block in diagram.bodies:
         axis = getattr(block.body, "axis", None)

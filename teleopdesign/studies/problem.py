@@ -108,7 +108,7 @@ class Problem:
         return self.case.with_values(self.parameters.named(np.array(values)))
 
     def best(self, key: Callable[[TrialPoint], float] | None = None) -> TrialPoint:
-        """The point with the least objective within limits; else that of least violation."""
+        """The point with the least objective within limits; else the least violation."""
         if kept := self.points_within_limits():
             return min(kept, key=key or (lambda t: t.objectives[0]))
         return min(self.trials.values(), key=lambda t: t.violation)

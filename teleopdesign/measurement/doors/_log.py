@@ -77,9 +77,9 @@ def refuse_damage(kind: str, file: str) -> Iterator[None]:
 
 
 def how_to_save(name: str) -> str:
-    """What to type in MATLAB for an object that only MATLAB can unpack.
+    """Message on an object that only MATLAB can unpack, with commands that save it readably.
 
-    name: of the variable
+    name: name of the variable
     """
     return (
         f"{quote(name)} is a timetable, table or other object that only MATLAB can unpack: in "

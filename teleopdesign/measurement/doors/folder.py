@@ -1,4 +1,4 @@
-"""A folder of tables that one run wrote side by side: the log of a drive, that of a force sensor.
+"""A folder of tables that one run wrote: the log of a drive, the log of a force sensor.
 
 Each table keeps its clock, as each topic of a bag does. The name of the table is put before the
 names of its columns ("drive.position").

@@ -19,7 +19,7 @@ TO_THE_NEXT = 0.9
 
 
 def check_force_steps(signal: Signal) -> list[Finding]:
-    """Report a force with steps so coarse that rounding hides what the force did between them."""
+    """Report a force with steps so coarse that rounding hides its course between two steps."""
     if signal.channel.quantity not in ("actuator_force", "interaction_force") or not signal.step:
         return []
     step, spread = signal.step, float(np.std(signal.values))
