@@ -1,11 +1,11 @@
-"""Arguments are checked against the types that a function declares, before it computes anything.
+"""A function checks its arguments against its declared types before it computes anything.
 
     @checked
     def sine(*, amplitude: float) -> Motion     # sine(amplitude="2 mm") is refused in one line
 
-A wrong type is refused at the call, with what was found, what was expected, and the nearest
-match where names are expected. Numbers are finite or infinite, never NaN, True or a text. What is
-no argument of the function stays a TypeError, as in any Python.
+A wrong type is refused at the call. The message says what the value is, what was expected, and the
+nearest match where names are expected. Numbers are finite or infinite, never NaN, True or a text.
+An argument that the function does not have raises TypeError, as in any Python.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _OF_EXPERIMENTS = ("measurement", "examples")
 
 
 def check_types(target: Target) -> Target:
-    """The function with its arguments checked; of a dataclass, what it is made from.
+    """The function, with its arguments checked; for a dataclass, the arguments of its constructor.
 
     Annotations that only type checkers can resolve, and `Any`, are not checked.
     """
@@ -60,7 +60,7 @@ def check_types(target: Target) -> Target:
 
     @cache  # at the first call: what annotations name may be defined later than the function
     def declared() -> tuple[tuple[str, ...], str, dict[str, TypeCheck]]:
-        """Names by position, the name of what follows them, and the checks by name."""
+        """Parameters by position, the name of `*arguments` or "", and the checks by parameter."""
         names = vars(sys.modules[target.__module__])
         parameters = inspect.signature(function).parameters.values()
         by_parameter = {p.name: check_of(_resolve(p.annotation, names)) for p in parameters}
@@ -90,7 +90,11 @@ def check_types(target: Target) -> Target:
 
 
 def check_arguments(names: dict[str, Any], public: Iterable[str]) -> None:
-    """In the names of a folder (`globals()`), every public function with its arguments checked."""
+    """Replace every public function in `names` by the same function with its arguments checked.
+
+    names: the names of a folder (`globals()`); changed in place
+    public: the names of its public functions
+    """
     for name in public:
         function = names[name]
         if isinstance(function, types.FunctionType) and not hasattr(function, "_is_checked"):
@@ -100,20 +104,23 @@ def check_arguments(names: dict[str, Any], public: Iterable[str]) -> None:
 
 
 def number(value: Any, where: str) -> float:
-    """A number as float; ModelError where it is a text, True, None, NaN or the like."""
+    """The value as a float; raises ModelError for a text, True, None, NaN and the like."""
     if (wrong := number_check(value)) is not None:
         raise _error("", "", where, wrong)
     return float(value)
 
 
 def instance(value: Any, kind: type[Any], where: str, *, expected: str = "") -> None:
-    """Raise ModelError unless the value is of that class; expected: in words."""
+    """Raise ModelError unless the value is an instance of the class `kind`.
+
+    where: beginning of the message;  expected: words for what was expected; "": the class name
+    """
     if not isinstance(value, kind):
         raise _error("", "", where, WrongValue("", value, expected or with_article(kind.__name__)))
 
 
 def matrix_of(value: Any, where: str) -> Any:
-    """A matrix of numbers as an array (n, m) of floats; ModelError where it is none."""
+    """A matrix of numbers as an array (n, m) of floats; raises ModelError for any other value."""
     import numpy as np
 
     expected = "a matrix of numbers, such as [[1, 0], [0, 1]]"
@@ -155,9 +162,10 @@ _MOST_NAMES = 9  # most names of one annotation that are imported for it
 
 
 def _find_type_import(module: str, name: str) -> Any:
-    """What a module imports under that name in `if TYPE_CHECKING`.
+    """The object that a module imports under a name in `if TYPE_CHECKING`; `Any` without an import.
 
-    A class of the package itself, or what stands for one that takes long to import.
+    The result is a class of the package, or a stand-in for a class of another package, which would
+    take long to import.
     """
     tree = ast.parse(inspect.getsource(sys.modules[module]))
     for node in (n for block in tree.body if isinstance(block, ast.If) for n in block.body):
@@ -177,7 +185,7 @@ def _find_type_import(module: str, name: str) -> Any:
 
 
 class _Outside:
-    """A package that is not imported: its classes, by their names."""
+    """A package that is not imported; its attributes stand in for its classes, by their names."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -190,7 +198,7 @@ class _Outside:
 
 
 def _allow_default(check: TypeCheck, default: Any) -> TypeCheck:
-    """A default is right, whatever its type."""
+    """The check, which also accepts the default value of the parameter, whatever its type."""
     if default is inspect.Parameter.empty:
         return check
     return lambda value: None if value is default else check(value)

@@ -1,4 +1,4 @@
-"""Results compare by value and print in a few lines, also where they hold arrays or NaN."""
+"""Results are compared by value and printed in a few lines, also with arrays or NaN in them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 class ByValue:
     """Base of frozen dataclasses (with eq=False): `is_same` compares fields, arrays print short.
 
-    A class that writes its `__repr__` keeps it.
+    A class that defines `__repr__` keeps its definition.
     """
 
     def __init_subclass__(cls) -> None:
@@ -46,7 +46,7 @@ def _shorten(value: Any) -> str:
 
 
 def is_same(one: Any, other: Any) -> bool:
-    """Whether two things have the same content; NaN is the same as NaN, arrays go by entry.
+    """Whether two objects have the same content; NaN equals NaN, arrays are compared by entry.
 
     Dataclasses are compared field by field, whatever their `==` says.
     """

@@ -1,7 +1,7 @@
-"""The command `teleopdesign`; each of its commands is a file of `commands`.
+"""The command `teleopdesign`; each of its commands is a file of the folder `commands`.
 
-Ctrl-C at any moment ends in one line and status 130. What takes time to import is imported within
-`main`, where Ctrl-C is heard.
+Ctrl-C at any moment ends the command in one line and with status 130. Modules that take time to
+import are imported within `main`, where Ctrl-C is handled.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ CIRCLES_SOUGHT = 10_000
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status.
 
-    arguments: None: those of the process, of which nothing is left to do afterwards: from then on
-        Ctrl-C ends it at once, with this status
+    arguments: words of the command line; None: those of the process. The process then does nothing
+        more after this function: from here on Ctrl-C ends it at once, with this status
+
     0: done; 2: bad input, or a file that cannot be read or written (one line says which); 70: a
     mistake of the package (one line says where); 130: stopped
     """

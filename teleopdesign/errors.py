@@ -1,4 +1,4 @@
-"""What can go wrong, in one line: where, what was found, what was expected, the nearest match."""
+"""Errors of the package, in one line: where, what the value was, what was expected, a near name."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -23,13 +23,13 @@ class ModelError(TeleopDesignError):
 
 
 class UnstableLoop(ModelError):
-    """A loop that is unstable as it is: it has no margin."""
+    """A loop is unstable without any change, so that it has no stability margin."""
 
 
 class GrowsWithoutBound(ModelError):
     """Signals of a simulation grow beyond all bounds: the loop is unstable.
 
-    words: what every such message holds
+    words: text that every such message contains
     """
 
     words = "grow beyond all bounds"
@@ -52,7 +52,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """End of a message: '; did you mean "x"?', or nothing if no known name is close.
 
-    word: the text in place of a name; what is no text is close to nothing
+    word: the text in place of a name; a value that is not a text is close to no name
     """
     match = nearest(word, known) if isinstance(word, str) else None
     return "" if match is None else f'; did you mean "{match}"?'
@@ -68,7 +68,7 @@ def quote(text: str) -> str:
 def printable(text: str, *, keep: str = "") -> str:
     """`text` with its control characters, marks of direction and line breaks escaped.
 
-    keep: such characters that stay
+    keep: characters that are not escaped
     """
     return "".join(c if c.isprintable() or c in keep else _escape(c) for c in text)
 

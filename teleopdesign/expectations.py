@@ -1,4 +1,4 @@
-"""What an annotation expects of a value: a check that says what is wrong, in words."""
+"""Checks of a value against an annotation; a check says in words what is wrong with the value."""
 
 from __future__ import annotations
 
@@ -15,9 +15,12 @@ _LONGEST = 60  # characters of a value that a message repeats
 
 @dataclass(frozen=True)
 class WrongValue:
-    """What is wrong with a value.
+    """A value that fails a check.
 
-    place: where within it, such as '["x"]';  expected: in words;  hint: the nearest match
+    place: where it stands within the argument, such as '["x"]'
+    value: the wrong value
+    expected: words for what was expected
+    hint: end of the message with the nearest match, or ""
     """
 
     place: str
@@ -56,7 +59,7 @@ def with_article(name: str) -> str:
 
 
 def check_of(annotation: Any) -> TypeCheck | None:
-    """The check of a resolved annotation; None where every value is right."""
+    """The check for a resolved annotation; None if the annotation accepts every value."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if annotation is Any or annotation is object or isinstance(annotation, TypeVar | str):
         return None
@@ -87,7 +90,7 @@ def _make_check(expected: str, accepts: Callable[[Any], bool]) -> TypeCheck:
 
 
 def _is_real_number(value: Any) -> bool:
-    """A real number: of Python, numpy or sympy; no text, no truth value."""
+    """Whether a value is a real number of Python, numpy or sympy; truth values are not."""
     if isinstance(value, bool | str | bytes) or value is None:
         return False
     if isinstance(value, int | float):
@@ -100,7 +103,7 @@ def _is_real_number(value: Any) -> bool:
 
 
 def number_check(value: Any) -> WrongValue | None:
-    """A finite or infinite number; quick for floats, which most are."""
+    """The check for a finite or infinite number; quick for floats, the most frequent case."""
     if type(value) is float and value == value:
         return None
     if not _is_real_number(value):

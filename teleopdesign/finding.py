@@ -1,4 +1,4 @@
-"""A finding: a plain sentence, the numbers that it was made from, and a graph that shows it."""
+"""A finding: one sentence, the numbers on which it is based, and a graph that shows it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 class Series(ByValue):
     """One set of points or one line of a graph.
 
-    x, y: (n,);  low, high: a band around y, (n,)
+    x, y: (n,);  low, high: a band around y, (n,), or None
     kind: "measured" and "rest" are drawn as points, "model" and "trend" as lines, "limit" dashed
     """
 
@@ -36,7 +36,7 @@ class Series(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Graph(ByValue):
-    """What a graph shows; labels carry quantity and unit: "velocity (mm/s)"."""
+    """Series over common axes; a label names quantity and unit, such as "velocity (mm/s)"."""
 
     x_label: str
     y_label: str
@@ -48,10 +48,12 @@ class Graph(ByValue):
 class Finding(ByValue):
     """One fact about a recording, or about what a model leaves unexplained.
 
-    topic: what was looked at ("sample clock", "dependence on velocity")
+    topic: the subject of the finding ("sample clock", "dependence on velocity")
     concern: "fine" says that all is well, "note" is worth knowing, "warning" needs care
-    sentence: in plain words, made from the numbers;  numbers: name -> value (SI)
-    where: record or body that it is about; "" for all;  graph: what shows it
+    sentence: the fact in plain words, with the numbers
+    numbers: name -> value (SI)
+    where: the record or body that the finding is about; "" for all
+    graph: a graph that shows the fact, or None
     """
 
     topic: str

@@ -1,7 +1,8 @@
 """Folders that can be called: `td.diagnose(experiment)` is `td.find_missing(experiment)`.
 
-`td.NAME` is a folder once anything below it is imported, so no function can have its name. The one
-function that a user expects under a verb runs instead; a noun says which functions there are.
+`td.NAME` is a folder once a module in the folder is imported, so that no function can have the name
+of a folder. A folder named by a verb runs the one function that a user expects. A folder named by a
+noun raises an error that lists its functions.
 """
 
 from __future__ import annotations
@@ -35,14 +36,14 @@ INSTEAD = {
 
 
 class _Imported(ModuleType):
-    """A module that pickles as its name: a function of a script that uses it can be sent."""
+    """A module that pickles as its name, so that a script's function that uses it can be sent."""
 
     def __reduce__(self) -> tuple[Callable[[str], ModuleType], tuple[str]]:
         return import_module, (self.__name__,)
 
 
 class _Folder(_Imported):
-    """A folder that runs its function. `__call__` is looked up when the folder is called."""
+    """A folder whose call runs its function; the function is looked up at the time of the call."""
 
     @property
     def __call__(self) -> Any:
@@ -55,7 +56,7 @@ class _Folder(_Imported):
 
 
 class _Package(_Imported):
-    """The package: what the import system binds to it as a folder becomes a `_Folder`."""
+    """The package; a folder that the import system binds as its attribute becomes a `_Folder`."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if type(value) is ModuleType and value.__name__ == f"{self.__name__}.{name}":
@@ -65,5 +66,8 @@ class _Package(_Imported):
 
 
 def let_folders_be_called(package: str) -> None:
-    """From here on the folders of the package can be called, whichever way they are imported."""
+    """From now on the folders of the package can be called, however they are imported.
+
+    package: name of the package, whose module is already imported
+    """
     sys.modules[package].__class__ = _Package

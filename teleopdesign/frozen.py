@@ -1,4 +1,4 @@
-"""Mappings that nobody changes: they pickle, copy and compare by value; catalogues among them."""
+"""Read-only mappings, which pickle, copy and compare by value; catalogues are among them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST_SHOWN = 400  # characters of a mapping's content that its repr shows
 
 
 class Frozen(Mapping[Key, Content]):
-    """A copy of a mapping, which cannot be changed; equal to any mapping with the same content."""
+    """A read-only copy of a mapping; it equals any mapping with the same content."""
 
     __slots__ = ("__weakref__", "_content")
     _content: dict[Key, Content]
@@ -36,15 +36,15 @@ class Frozen(Mapping[Key, Content]):
         return key in self._content
 
     def keys(self) -> KeysView[Key]:
-        """The keys, in the order of the call."""
+        """The keys, in the order of the original mapping."""
         return self._content.keys()
 
     def items(self) -> ItemsView[Key, Content]:
-        """The pairs, in the order of the call."""
+        """The pairs of key and value, in the order of the original mapping."""
         return self._content.items()
 
     def values(self) -> ValuesView[Content]:
-        """The values, in the order of the call."""
+        """The values, in the order of the original mapping."""
         return self._content.values()
 
     def __eq__(self, other: object) -> bool:
@@ -75,17 +75,19 @@ class Frozen(Mapping[Key, Content]):
 
 
 class UnknownName(ModelError, KeyError):
-    """A catalogue has nothing of that name; a KeyError too, as of any mapping."""
+    """A catalogue has no entry of that name; also a KeyError, as for any mapping."""
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
 class Catalogue(Frozen[str, Content]):
-    """A read-only mapping from names to things of one kind, such as effects.
+    """A read-only mapping from names to objects of one kind, such as effects.
 
     A name that the catalogue lacks raises ModelError with the nearest name.
-    kind: word for one thing in messages ("effect");  see: last words of a message, where to look
+
+    kind: word for one object in messages ("effect")
+    see: last words of that message, which say where to look
     """
 
     __slots__ = ("kind", "see")
@@ -107,7 +109,7 @@ class Catalogue(Frozen[str, Content]):
         return value  # type: ignore[no-any-return]
 
     def get(self, key: object, default: Any = None) -> Any:
-        """The thing of that name, or the default."""
+        """The object of that name, or the default."""
         try:
             return self._content.get(key, default)  # type: ignore[call-overload]
         except TypeError:  # a list or the like is no name

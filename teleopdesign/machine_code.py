@@ -1,10 +1,12 @@
-"""Machine code that numba keeps on disk: kept where it can be, made anew where it cannot.
+"""Machine code that numba keeps on disk; where that is impossible, the process compiles again.
 
-Where nothing can be written (a package that only others may write to, no home, a full disk), or
-what is kept is damaged, a function is compiled in the process, which takes seconds; no error.
+A function is compiled in the process, which takes seconds, where nothing can be written (a package
+that only other users may write to, no home folder, a full disk) or where the kept code is damaged.
+None of these raises an error.
 
-Compiled code holds what it calls. numba asks only whether the file of a function itself changed, so
-that after an upgrade an old callee would go on within its caller: here all their files count.
+Compiled code contains the functions that it calls. numba asks only whether the file of the function
+itself has changed, so that after an upgrade the code of an old callee would still run within its
+caller. Here the files of all callees count.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def compile_and_keep(function: Function) -> Function:
-    """The compiled function, without the lock of the interpreter; its machine code is kept."""
+    """The compiled function, which releases Python's lock; its machine code is kept on disk."""
     dispatcher: Any
     try:
         dispatcher = njit(cache=True, nogil=True)(function)
@@ -33,14 +35,14 @@ def compile_and_keep(function: Function) -> Function:
 
 
 def _stamp_callees(dispatcher: Any) -> None:
-    """Let machine code that is kept count as old where a file of what it calls has changed."""
+    """Treat kept machine code as out of date if a file of a called function has changed."""
     file: Any = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
     if hasattr(file, "_source_stamp"):
         file._source_stamp = (file._source_stamp, hash_files(list_files_of_callees(dispatcher)))
 
 
 def list_files_of_callees(dispatcher: Any) -> list[Path]:
-    """Files of the compiled functions that a compiled one calls, and of those that these call."""
+    """Files of all compiled functions that a compiled function calls, directly or indirectly."""
     waiting, callees = [dispatcher.py_func], set[Any]()
     while waiting:
         function = waiting.pop()
@@ -53,7 +55,7 @@ def list_files_of_callees(dispatcher: Any) -> list[Path]:
 
 
 def hash_files(files: Iterable[Path]) -> str:
-    """A hash of what files hold; one that cannot be read counts as empty."""
+    """A hash of the contents of files; a file that cannot be read counts as empty."""
     whole = hashlib.sha256()
     for path in files:
         with suppress(OSError):
@@ -62,9 +64,9 @@ def hash_files(files: Iterable[Path]) -> str:
 
 
 def without_cache_errors(dispatcher: object) -> None:
-    """Let a compiled function go on where its cache cannot be read or written.
+    """Let a compiled function run although its cache cannot be read or written.
 
-    What is no compiled function with a cache stays as it is.
+    An object that is not a compiled function with a cache stays unchanged.
     """
     cache = getattr(dispatcher, "_cache", None)
     if hasattr(cache, "load_overload") and hasattr(cache, "save_overload"):
@@ -72,9 +74,10 @@ def without_cache_errors(dispatcher: object) -> None:
 
 
 class _ForgivingCache:
-    """numba's cache of one function; what it cannot read is not there, what it cannot write waits.
+    """numba's cache of one function; a failure to read or write it raises no error.
 
-    numba unpickles what it reads, and a file cut short may raise whatever unpickling raises.
+    After a failure to read, the function is compiled. numba unpickles the code, and a truncated
+    file may raise any exception.
     """
 
     def __init__(self, cache: Any) -> None:

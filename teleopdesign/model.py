@@ -1,6 +1,6 @@
 """The model that a user compares with a recording: bodies with their effects at places.
 
-Frozen: `model.with_effect("stribeck", at="device")` returns a new one.
+A model is frozen; `model.with_effect("stribeck", at="device")` returns a new model.
 """
 
 from __future__ import annotations
@@ -270,7 +270,7 @@ class Model:
         return next(p for p, b in self.bodies.items() if b.has(CONTACT.name))
 
     def _place_of(self, holder: str, local_name: str) -> str:
-        """Prefix, with its dot, of a body's parameter in its full name."""
+        """Prefix, with its dot, of a body's parameter in the parameter's full name."""
         effect, _, parameter = local_name.partition(".")
         if effect == CONTACT.name:
             return ""

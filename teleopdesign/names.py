@@ -1,7 +1,7 @@
-"""What a name may be: of a signal, a block, a parameter, wherever a file or a call states it.
+"""The names that signals, blocks and parameters may have, in files and in calls.
 
-A name is a plain word, so that it can be shown, looked up and written into any file. No generated
-source holds it: there each name has a private stand-in (`realise.private_names`).
+A name is a plain word, so that it can be shown, looked up and written into any file. Generated
+source contains none of these names: each has a private stand-in there (`realise.private_names`).
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 
 
 def check_name(name: object, *, where: str, dotted: bool = False) -> str:
-    """The name itself, where it is one: ASCII letters, digits and underscores, no digit first.
+    """The name unchanged, if it is made of ASCII letters, digits and underscores, no digit first.
 
-    where: beginning of a message;  dotted: words joined by dots, such as "coulomb.level"
-    raises ModelError: anything else, with a name that is near to it
+    where: beginning of a message;  dotted: accept words joined by dots, such as "coulomb.level"
+    raises ModelError: the name is too long, has other characters or is a keyword of Python; the
+        message proposes a valid name where there is one
     """
     if not isinstance(name, str):
         raise ModelError(f"{where}: found {type(name).__name__}, expected a name")
@@ -44,6 +45,6 @@ def check_name(name: object, *, where: str, dotted: bool = False) -> str:
 
 
 def _mend(name: str) -> str:
-    """The name with an underscore for everything that it may not hold."""
+    """The name with an underscore in place of characters that are not allowed."""
     word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     return f"_{word}" if word[:1].isdigit() else word

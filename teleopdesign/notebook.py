@@ -1,4 +1,4 @@
-"""Small HTML tables, by which results show themselves in a notebook. Every text is escaped."""
+"""Small HTML tables, in which results show themselves in a notebook. Every text is escaped."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ MOST_ROWS = 40
 def html_table(
     title: str, head: Sequence[str], rows: Iterable[Sequence[object]], *, note: str = ""
 ) -> str:
-    """A table with a title above, and a note below where there is one."""
+    """An HTML table with a title above, and with `note` below unless it is "".
+
+    At most MOST_ROWS rows are shown; a last row counts the others.
+    """
     listed = [tuple(map(str, row)) for row in rows]
     more = len(listed) - MOST_ROWS
     if more > 0:

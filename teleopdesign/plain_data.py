@@ -1,7 +1,7 @@
-"""Results as plain data and as files: one way into JSON, and one way onto the disk.
+"""Results as plain data and as files: one function makes JSON, and one writes to the disk.
 
-A file is written beside its target and takes its name when it is whole: who reads it never meets
-half a file, and what was there stays where writing fails.
+A file is written under another name beside its target and is renamed when it is complete. A reader
+never meets an incomplete file, and the old file stays where writing fails.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ _TRIAL = 4096  # bytes of a trial of writing: one block, which a full disk does 
 
 
 def make_plain(value: object, *, digits: int | None = None) -> Any:
-    """What JSON knows: mappings, lists, texts, numbers, true and false, null.
+    """The value as data that JSON can hold: mappings, lists, texts, numbers, true and false, null.
 
-    Dataclasses become mappings in the order of their fields, arrays and tuples lists, sets sorted
-    lists, paths texts; a number that is not finite becomes null.
+    Dataclasses become mappings in the order of their fields, arrays and tuples become lists, sets
+    become sorted lists, and paths become texts. A number that is not finite becomes null.
+
     digits: significant digits that numbers of arrays keep; None: all of them
-    raises TypeError: something else, by its type
+    raises TypeError: a value of another type, which the message names
     """
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = dataclasses.fields(value)
@@ -60,34 +61,35 @@ def make_plain(value: object, *, digits: int | None = None) -> Any:
 
 
 def json_text(data: object) -> str:
-    """The data as JSON: one space a level, keys in their order, a line break at the end."""
+    """The data as JSON: an indent of one space per level, a line break at the end."""
     return json.dumps(make_plain(data), indent=1, allow_nan=False) + "\n"
 
 
 def write_json(path: str | Path, data: object) -> None:
-    """Write the data as JSON; raises ExperimentError where the file cannot be written."""
+    """Write the data as JSON; raises ExperimentError if the file cannot be written."""
     write_text(path, json_text(data))
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text in UTF-8 with line feeds; raises ExperimentError where that cannot be done."""
+    """Write a text in UTF-8 with line feeds; raises ExperimentError if that fails."""
     with write_beside(path) as part:
         # backslashes: a file name that is no UTF-8 comes as halves of pairs, which UTF-8 lacks
         part.write_bytes(text.encode("utf-8", "backslashreplace"))
 
 
 def write_netcdf(path: str | Path, data: xarray.Dataset) -> None:
-    """Write a data set as netCDF; raises ExperimentError where the file cannot be written."""
+    """Write a data set as netCDF; raises ExperimentError if the file cannot be written."""
     with write_beside(path) as part:
         data.to_netcdf(part)
 
 
 @contextmanager
 def write_beside(path: str | Path) -> Iterator[Path]:
-    """A path beside `path` to write to, with the same ending; it becomes `path` at the end.
+    """A temporary path beside `path`, with the same ending; at the end the file becomes `path`.
 
-    Where writing fails `path` stays what it was, and nothing is left beside it.
-    raises ExperimentError: the system refuses, in one line
+    If writing fails, `path` stays unchanged and no temporary file is left.
+
+    raises ExperimentError: the system refuses to write; the message is one line
     """
     try:
         target = Path(os.path.realpath(path))  # a link stays a link
@@ -111,7 +113,7 @@ def write_beside(path: str | Path) -> Iterator[Path]:
 
 
 def check_writable(path: str | Path) -> None:
-    """Try whether `path` could be written, as `write_beside` does it; leaves what is there.
+    """Check whether `write_beside` could write `path`; a file that exists stays unchanged.
 
     raises ExperimentError: an unwritable folder, a full disk
     """
@@ -132,10 +134,10 @@ def check_writable(path: str | Path) -> None:
 
 
 def harmless_cell(text: str) -> str:
-    """A text as a cell of a table, which no spreadsheet takes for a formula.
+    """The text as a cell of a table which no spreadsheet takes for a formula.
 
-    What begins with = + - @, a tab or a carriage return is shown by spreadsheets as the result of
-    a formula; an apostrophe in front makes it a text.
+    A spreadsheet evaluates a cell that begins with = + - @, a tab or a carriage return; an
+    apostrophe in front makes the cell a text.
     """
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 

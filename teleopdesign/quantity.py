@@ -1,9 +1,10 @@
-"""Quantities and their units: SI inside, anything a laboratory writes at the file's boundary.
+"""Quantities and their units: SI inside the package, any unit of a laboratory in a file.
 
-A quantity has one unit on a prismatic axis and another on a revolute one (`unit_of`). A user's unit
-is a product of symbols with powers and SI prefixes, such as `mm`, `N*s/m`, `N m s/rad`, `kg*m^2` or
-`deg/s`; `to_si` checks that it fits the quantity. Radians have no dimension; degrees, turns and rpm
-are converted. Currents and voltages become forces by a constant (`converting_factor`).
+A quantity has one unit on a prismatic axis and another on a revolute axis (`unit_of`). A user's
+unit is a product of symbols with powers and SI prefixes, such as `mm`, `N*s/m`, `N m s/rad`,
+`kg*m^2` or `deg/s`; `to_si` checks that the unit fits the quantity. Radians have no dimension;
+degrees, turns and rpm are converted. Currents and voltages become forces by a constant
+(`converting_factor`).
 """
 
 import math
@@ -20,7 +21,7 @@ MAINS = (50.0, 60.0)
 
 @dataclass(frozen=True)
 class _Kind:
-    """What a quantity is called and in which units it is written, the SI unit first."""
+    """The noun for a quantity in messages, and the units shown as examples, the SI unit first."""
 
     noun: str
     units: tuple[str, ...]
@@ -77,7 +78,7 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
 
 
 def unit_of(quantity: str, axis: str) -> str:
-    """SI unit in which `quantity` is stored and shown: "N*m" for a force on a revolute axis.
+    """The SI unit in which `quantity` is stored and shown: "N*m" for a force on a revolute axis.
 
     axis: "prismatic" or "revolute"
     raises ExperimentError: no such quantity or axis
@@ -91,18 +92,18 @@ def noun_of(quantity: str, axis: str) -> str:
 
 
 def unit_after_number(unit: str) -> str:
-    """A unit as it stands behind a number: " N*m"; nothing where the number has no dimension."""
+    """A unit as it stands behind a number: " N*m"; "" for a number without dimension."""
     return "" if unit in ("", "1") else f" {unit}"
 
 
 def to_si(
     value: float, unit: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
 ) -> float:
-    """`value`, written in `unit`, in the SI unit of `quantity` on `axis` (see `unit_of`).
+    """`value`, given in `unit`, converted to the SI unit of `quantity` on `axis` (see `unit_of`).
 
-    unit: None is allowed where the quantity has no dimension
+    unit: None is allowed for an angle and for a quantity without dimension
     where: file and key, the beginning of an error message
-    raises ExperimentError: not a unit, a unit of something else, or a result that is not finite
+    raises ExperimentError: not a unit, a unit of another quantity, or a result that is not finite
     """
     result = value * si_factor(unit, quantity=quantity, axis=axis, where=where)
     if not math.isfinite(result):
@@ -113,7 +114,7 @@ def to_si(
 def si_factor(
     unit: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
 ) -> float:
-    """Factor from `unit` to the SI unit of `quantity`; arguments and errors of `to_si`."""
+    """Factor from `unit` to the SI unit of `quantity`; arguments and errors as for `to_si`."""
     kind = _kind(quantity, axis, where)
     expected = f"expected {kind.noun} such as " + " or ".join(quote(u) for u in kind.units)
     if unit is None:
@@ -136,12 +137,13 @@ def si_factor(
 def converting_factor(
     unit: str, constant: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
 ) -> float:
-    """Factor from `unit` to the SI unit of `quantity` by way of a constant written in `constant`.
+    """Factor from `unit` to the SI unit of `quantity` after multiplication by a constant.
 
-    A current in A times a torque constant in N*m/A is a torque; an angle in turns over a ratio in
+    A current in A times a torque constant in N*m/A is a torque. An angle in turns over a ratio in
     rad/mm, written as the constant `mm/rad`, is a length.
-    constant: its unit; None: it has no dimension
-    raises ExperimentError: not units, or their product is no such quantity
+
+    constant: the unit of the constant; None: without dimension
+    raises ExperimentError: not units, or their product is not a unit of this quantity
     """
     kind = _kind(quantity, axis, where)
     parts = []
@@ -164,7 +166,7 @@ def converting_factor(
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text can be read as a unit: "N*m/A" is one, "Pos" is none."""
+    """Whether a text can be read as a unit: "N*m/A" can, "Pos" cannot."""
     try:
         parse_unit(text)
     except NotAUnit:
@@ -173,7 +175,7 @@ def is_unit(text: str) -> bool:
 
 
 def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:
-    """Whether a unit is one of that quantity on that axis."""
+    """Whether `unit` is a unit of that quantity on that axis."""
     try:
         parsed = parse_unit(unit)
     except NotAUnit:

@@ -1,7 +1,7 @@
-"""How things that hold code are made again: what pickles and copies of effects and laws rest on.
+"""How objects that hold code are made again; pickles and copies of effects and laws use this.
 
-Code does not pickle. What comes from a catalogue is looked up by its name, what comes from a file
-is read again, what was derived is derived again: `remember` keeps which.
+Code cannot be pickled. An object from a catalogue is looked up by its name, an object from a file
+is read again, and a derived object is derived again: `remember` keeps the recipe of each.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ _RECIPES: WeakKeyDictionary[Any, tuple[Callable[..., Any], tuple[Any, ...]]] = W
 def remember(thing: Thing, make: Callable[..., Thing], *arguments: Any) -> Thing:
     """The thing itself; from now on it pickles as `make(*arguments)`.
 
-    make: a function at the top of a module of the package
+    make: a function at the top level of a module of the package
     """
     _RECIPES[thing] = (make, arguments)
     return thing
 
 
 def recipe(thing: Any) -> tuple[Any, ...]:
-    """What `__reduce__` returns of a frozen dataclass that holds functions.
+    """The return value of `__reduce__` for a frozen dataclass that holds functions.
 
-    raises ModelError: nothing says how the thing is made, and it holds code that has no name
+    raises ModelError: the object has no recipe, and it holds a function that cannot be imported
     """
     if thing in _RECIPES:
         return _RECIPES[thing]
@@ -49,7 +49,7 @@ def _remake(kind: type[Any], values: Mapping[str, Any]) -> Any:
 
 
 def _nameless(thing: Any, place: str = "") -> str:
-    """The first function in there that cannot be imported by its name; "" where there is none."""
+    """Place of the first function in `thing` that cannot be imported by its name, or ""."""
     if is_dataclass(thing) and not isinstance(thing, type):
         parts: list[tuple[str, Any]] = [(f.name, getattr(thing, f.name)) for f in fields(thing)]
     elif isinstance(thing, Mapping):

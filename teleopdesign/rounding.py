@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 
 def _round_to(value: float, digits: int, side: str) -> float:
-    """By the decimals that a number is printed with: one that has few digits stays as it is."""
+    """The value rounded in its decimal form; a number with few digits stays unchanged."""
     if value == 0 or not math.isfinite(value):
         return value
     exact = Decimal(repr(float(value)))
@@ -16,22 +16,22 @@ def _round_to(value: float, digits: int, side: str) -> float:
 
 
 def round_down(value: float, *, digits: int = 3) -> float:
-    """The largest number of so many digits that is not above a value; 0 and infinity stay."""
+    """The largest number with `digits` digits that is not above the value; 0 and infinity stay."""
     return _round_to(value, digits, ROUND_FLOOR)
 
 
 def round_up(value: float, *, digits: int = 3) -> float:
-    """The smallest number of so many digits that is not below a value; 0 and infinity stay."""
+    """The smallest number with `digits` digits that is not below the value; 0 and infinity stay."""
     return _round_to(value, digits, ROUND_CEILING)
 
 
 def round_near(value: float, *, digits: int = 3) -> float:
-    """The nearest number of so many digits."""
+    """The number with `digits` significant digits that is nearest to the value."""
     return float(f"{value:.{digits}g}")
 
 
 def duration_text(seconds: float) -> str:
-    """A duration with few digits in the unit that fits: "42 s", "7 min", "3.5 h", "12 days"."""
+    """A duration (s) with few digits in a suitable unit: "42 s", "7 min", "3.5 h", "12 days"."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     if seconds < 90 * 60:

@@ -8,8 +8,8 @@ import math
 def with_standard_error(value: float, error: float) -> str:
     """A value and its standard error: 0.0244 +- 0.0009, 110 +- 15, 2.63e+05 +- 3.1e+03.
 
-    The error has two significant digits, the value ends at the same decimal. A value whose error is
-    not known (NaN, infinite, 0) stands alone, with five digits.
+    The error has two significant digits, and the value ends at the same decimal. A value whose
+    error is unknown (NaN, infinite, 0) stands without an error, with five digits.
     """
     if not (math.isfinite(error) and error > 0.0 and math.isfinite(value)):
         return f"{value:.5g}"

@@ -14,7 +14,7 @@ class ParsedUnit:
 
     @property
     def dimension(self) -> tuple[int, ...]:
-        """The powers without that of the radian, which has no dimension."""
+        """The powers except the power of the radian, which has no dimension."""
         return self.powers[:-1]
 
 
@@ -77,7 +77,10 @@ _SCALES = (1e-40, 1e40)
 
 
 class NotAUnit(Exception):
-    """`part` of a text is no unit."""
+    """A text contains a part that is not a unit.
+
+    part: that part of the text
+    """
 
     def __init__(self, part: str) -> None:
         super().__init__(part)
@@ -85,7 +88,7 @@ class NotAUnit(Exception):
 
 
 def parse_unit(text: str) -> ParsedUnit:
-    """A unit of at most 60 characters; raises NotAUnit."""
+    """The unit that a text of at most 60 characters describes; raises NotAUnit."""
     if not 0 < len(text) <= _LONGEST_UNIT:
         raise NotAUnit(text)
     tokens, position = [], 0
@@ -103,9 +106,9 @@ def parse_unit(text: str) -> ParsedUnit:
 
 
 def multiply(unit: ParsedUnit, factor: ParsedUnit, power: int, text: str) -> ParsedUnit:
-    """unit * factor^power; raises NotAUnit where the scale leaves 1e-40 to 1e40.
+    """unit * factor^power; raises NotAUnit if the scale leaves the range from 1e-40 to 1e40.
 
-    text: what is read, for the error
+    text: the whole text of the unit, for the error
     """
     scale = unit.scale * factor.scale**power
     if not _SCALES[0] < scale < _SCALES[1]:
@@ -115,7 +118,7 @@ def multiply(unit: ParsedUnit, factor: ParsedUnit, power: int, text: str) -> Par
 
 
 def _product(tokens: list[str], text: str) -> tuple[ParsedUnit, list[str]]:
-    """Product and quotient from left to right, up to the end or a closing bracket."""
+    """Product or quotient from left to right, up to the end or a closing bracket; unread tokens."""
     unit, tokens = _factor(tokens, text)
     divided = False
     while tokens and tokens[0] != ")":
@@ -131,7 +134,7 @@ def _product(tokens: list[str], text: str) -> tuple[ParsedUnit, list[str]]:
 
 
 def _factor(tokens: list[str], text: str) -> tuple[ParsedUnit, list[str]]:
-    """A symbol with its power, or a bracket."""
+    """The unit of a symbol with its power, or of a bracket; and the unread tokens."""
     if not tokens:
         raise NotAUnit(text)
     name, tokens = tokens[0], tokens[1:]

@@ -1,7 +1,7 @@
 """Python files of the user: effects and control laws.
 
-What was read is what is run: the digest that names a file in answers and pickles is that of the
-very bytes that are compiled. Nothing is written beside the file.
+The bytes that were read are the code that runs; the digest that identifies a file in answers and
+pickles is the digest of these bytes. Nothing is written beside the file.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ Again = Callable[[Path, Path, str], Thing]
 
 
 def checked_path(path: str | Path, what: str, example: str) -> Path:
-    """The path of a user's file.
+    """The path of a user's file, after a check of its existence and name.
 
-    what: it holds, for messages;  example: a file name that may stand there
-    raises ModelError: there is no such file, its name is no name, or it is no Python file
+    what: content of the file, for messages;  example: a valid file name, for messages
+    raises ModelError: there is no such file, its name is not an identifier, or it is no Python file
     """
     path = Path(path)
     if not path.is_file():
@@ -45,12 +45,15 @@ def load_once(
     written: Path,
     expected: str,
 ) -> Thing:
-    """What a user's file defines; the same thing again where the file has not changed.
+    """The object that a user's file defines; the same object again if the file has not changed.
 
-    loaded: by path and digest;  again: what the thing pickles as;  read: the thing, from the bytes
-    of the file;  written: the path as the user wrote it;  expected: digest that the file must
-    have, "" for any
-    raises ModelError: the file cannot be read, or has another digest than expected
+    loaded: objects by path and digest; changed in place
+    again: the function as whose call the object pickles
+    read: makes the object from the bytes of the file
+    path, written: the resolved path, and the path as the user wrote it
+    expected: digest that the file must have; "" for any
+
+    raises ModelError: the file cannot be read, or its digest is not the expected one
     """
     try:
         content = path.read_bytes()
@@ -66,9 +69,9 @@ def load_once(
 
 
 def run(content: bytes, path: Path, package: str) -> ModuleType:
-    """The module that the bytes of a user's file make; its relative imports start at `package`.
+    """The module that the bytes of a user's file define; its relative imports start at `package`.
 
-    raises ModelError: it cannot be compiled or run (the kind of the error in one line)
+    raises ModelError: it cannot be compiled or run (the message names the kind of error)
     """
     module = ModuleType(f"{package}.{path.stem}")
     module.__file__ = str(path)

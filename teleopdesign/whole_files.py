@@ -1,7 +1,7 @@
-"""A user's file, found and read whole: never without end, never more than its kind of text has.
+"""A user's file, read completely but with limits on waiting time and size.
 
-A pipe that nobody writes into would hold a reader for ever, and a device such as /dev/zero would
-fill the memory. What a shell hands over as a pipe, `<(command)`, is read as a file is.
+A pipe that nobody writes into would stop a reader for ever, and a device such as /dev/zero would
+fill the memory. A pipe from a shell, `<(command)`, is read like a file.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ _BLOCK = 1 << 20
 
 
 def read_whole(path: str | Path, *, largest: int = LARGEST) -> bytes:
-    """Its bytes.
+    """The bytes of a file.
 
+    largest: limit on the number of bytes
     raises OSError: as `open` does; more bytes than `largest`; a pipe from which nothing comes
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -36,9 +37,9 @@ def read_whole(path: str | Path, *, largest: int = LARGEST) -> bytes:
 
 
 def follow_links(path: Path) -> Path:
-    """The path without links; one that leads round in a ring stays, and is no file then.
+    """The path without symbolic links; a link in a ring stays, and is not a file then.
 
-    `Path.resolve` raises RuntimeError there, and OSError from Python 3.13 on
+    `Path.resolve` raises RuntimeError there, and OSError from Python 3.13 on.
     """
     return Path(os.path.realpath(path))
 

@@ -1,6 +1,6 @@
 """The workbench in a browser: a record, the residual of a model, and effects that explain it.
 
-`teleopdesign app FOLDER` opens it. The page is a marimo notebook (`notebook.py`); what it does is
+`teleopdesign app FOLDER` opens it. The page is a marimo notebook (`notebook.py`); its work is done
 in `workbench.py`, without a page, so that a script can do the same.
 """
 

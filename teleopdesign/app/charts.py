@@ -1,4 +1,4 @@
-"""The page's charts: one selection runs through all of them (Vega-Lite, drawn in the browser)."""
+"""The charts of the page, which share one selection (Vega-Lite, drawn in the browser)."""
 
 from __future__ import annotations
 
@@ -51,7 +51,8 @@ def rows_of(data: Dataset, body: str, use: str) -> list[dict[str, float | str]]:
 def residual_chart(data: Dataset, body: str, use: str) -> Chart:
     """Measured and modelled force over time; the residual over time, velocity and position.
 
-    A span that is drawn with the mouse in one panel is shown in the others.
+    A span that the user draws in one panel is marked in the others.
+
     data: as `Comparison.data`;  use: "fit" or "check"
     """
     unit = {n: data[n].attrs["units"] for n in ("time", "position", "velocity", "residual")}
@@ -98,7 +99,7 @@ def residual_chart(data: Dataset, body: str, use: str) -> Chart:
 
 
 def _forces(unit: dict[str, str]) -> dict[str, Any]:
-    """Measured and modelled force over time, one line a record."""
+    """Measured and modelled force over time, one line for each record."""
     colours = {"domain": ["measured", "model"], "range": ["gray", AFTER]}
     force = {"field": "value", "type": "quantitative", "title": f"force ({unit['residual']})"}
     return {
@@ -124,7 +125,7 @@ def _forces(unit: dict[str, str]) -> dict[str, Any]:
 def comparison_chart(
     one: Dataset, other: Dataset, body: str, use: str, names: tuple[str, str]
 ) -> Chart:
-    """The residual of two models over velocity and time, one above the other.
+    """The residuals of two models over velocity and over time, one panel above the other.
 
     one, other: as `Comparison.data`;  names: of the two models
     """
@@ -160,7 +161,7 @@ def comparison_chart(
 
 
 def _colour_by_direction() -> dict[str, Any]:
-    """Colour by the direction of motion; what is not selected is grey."""
+    """Colour by the direction of motion; samples that are not selected are grey."""
     colours = {
         "domain": ["forward", "backward", "at rest"],
         "range": [FORWARD, BACKWARD, "darkgray"],

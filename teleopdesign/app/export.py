@@ -1,4 +1,4 @@
-"""What the page offers: report, answer, figure, the compensation as a diagram, a script."""
+"""Files that the page writes: report, answer, figure, the compensation as a diagram, a script."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RESULTS = "results"
 
 
 def script(bench: Workbench, folder: str | None = None) -> str:
-    """Python that comes to the same model: the experiment, then each effect that was added."""
+    """A Python script that makes the same model: the experiment, then each added effect."""
     place = folder or bench.experiment.folder.name
     lines = [
         "import teleopdesign as td",
@@ -40,9 +40,9 @@ def script(bench: Workbench, folder: str | None = None) -> str:
 def write_all(
     bench: Workbench, folder: Path, say: Callable[[str], None] = lambda text: None
 ) -> str:
-    """Write everything below `folder`/results; one line with what was written.
+    """Write all files below `folder`/results; returns one line with their names.
 
-    say: gets what is being made
+    say: receives the name of each step
     """
     from ..report import write_report
     from ..unexplained import where_it_fails

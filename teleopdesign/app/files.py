@@ -1,4 +1,4 @@
-"""What the page may open: experiments and logs inside its folder, nothing outside."""
+"""Files that the page may open: experiments and logs inside its folder, nothing outside."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONGEST = 60
 
 
 def experiments_in(folder: Path) -> tuple[str, ...]:
-    """Names of the experiments below a folder, two levels deep, relative to it; "." is itself."""
+    """Names of the experiments in a folder and two levels below, relative to it; "." is itself."""
     places = [folder, *sorted(folder.glob("*")), *sorted(folder.glob("*/*"))]
     return tuple(
         str(p.relative_to(folder))
@@ -30,7 +30,7 @@ def experiments_in(folder: Path) -> tuple[str, ...]:
 
 
 def logs_in(folder: Path) -> tuple[str, ...]:
-    """Names of the logs in a folder and in what was dropped, relative to it."""
+    """Names of the logs in a folder and in its folder of dropped files, relative to it."""
     files = [*sorted(folder.glob("*")), *sorted((folder / DROPPED).glob("*"))]
     return tuple(
         str(p.relative_to(folder))
@@ -40,12 +40,12 @@ def logs_in(folder: Path) -> tuple[str, ...]:
 
 
 def _is_offered(path: Path) -> bool:
-    """Whether a log is one by its place too: answers are JSON files beside experiments."""
+    """Whether the place of a file suits a log: JSON files beside experiments are answers."""
     return path.suffix.lower() != ".json" or path.parent.name == DROPPED
 
 
 def newest(folder: Path, names: Sequence[str]) -> str | None:
-    """Of experiments or logs in a folder the one that was written last; None: there are none."""
+    """The experiment or log in a folder that was written last; None: there are none."""
 
     def written(name: str) -> float:
         path = folder / name
@@ -56,17 +56,17 @@ def newest(folder: Path, names: Sequence[str]) -> str | None:
 
 
 def endings() -> str:
-    """The endings of files that can be read, for a label or a message."""
+    """The endings of files that can be read, as text for a label or a message."""
     return ", ".join(dict.fromkeys(DOORS))
 
 
 def is_inside(folder: Path, path: Path) -> bool:
-    """Whether a path, links followed, lies in the folder."""
+    """Whether a path lies in the folder, after links are followed."""
     return path.resolve().is_relative_to(folder.resolve())
 
 
 def resolve_inside(folder: Path, name: str) -> Path:
-    """The path of that name in the folder; raises ExperimentError where it leads out of it."""
+    """The path of a name in the folder; raises ExperimentError: it leads out of the folder."""
     path = folder / name
     if not is_inside(folder, path):
         raise ExperimentError(f'"{name}": lies outside of {folder.name}')
@@ -74,9 +74,9 @@ def resolve_inside(folder: Path, name: str) -> Path:
 
 
 def keep_dropped(folder: Path, name: str, content: bytes) -> str:
-    """Write a dropped file; its name relative to the folder. No file is written over.
+    """Write a dropped file, never over another one; returns its name relative to the folder.
 
-    raises ExperimentError: an ending that is no log's, or too large
+    raises ExperimentError: the ending of no log, or too large
     """
     base = re.sub(r"[^\w.\- ]", "_", name.replace("\\", "/").rpartition("/")[2])
     stem, _, ending = base.rpartition(".")

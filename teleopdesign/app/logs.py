@@ -1,4 +1,4 @@
-"""From a log to an experiment: what the log seems to hold, as chosen, and the folder made of it."""
+"""From a log to an experiment: the proposed channels, the user's choices, and the new folder."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ NUMBERS = {
 
 @dataclass(frozen=True)
 class Preview:
-    """A log as it is understood with what was chosen.
+    """The interpretation of a log with the user's choices.
 
-    columns: names of the log's columns;  survey: what they are taken for
+    columns: names of the log's columns;  survey: proposed channels
     """
 
     name: str
@@ -50,7 +50,7 @@ class Preview:
     def table(self) -> str:
         """Channels with column, unit and the reason of each guess, as Markdown.
 
-        Columns in no channel stand below them, each with its reason.
+        Columns in no channel follow, each with its reason.
         """
         lines = ["| channel | column | unit | guessed |", "|:---|:---|:---|:---|"]
         for key, entry in self.survey.channels.items():
@@ -64,7 +64,7 @@ class Preview:
         return "\n".join(lines)
 
     def guessed_units(self) -> str:
-        """Which units are guesses, and where to type them; "" where every unit is known."""
+        """Which units are guesses, and where to type them; "" if every unit is known."""
         guessed = [
             f"*{name}* ({_cell(entry['unit'])})"
             for name, key in ASKED.items()
@@ -76,14 +76,14 @@ class Preview:
         return f"No name says the unit of {', '.join(guessed)}: type it where the guess is wrong."
 
     def spans(self) -> FitAndCheck:
-        """The fit and check spans that are proposed, s from the first row, within the log."""
+        """The proposed fit and check spans, s from the first row, within the log."""
         (begin, cut), (after, _) = spans_of(self.survey.duration, self.survey.trials)
         return (begin, cut), (after, self.survey.duration)
 
     def plot(self, spans: FitAndCheck | None = None) -> Figure:
-        """The columns that were taken, over time, as they are written in the log.
+        """The columns of the channels over time, with the values of the log.
 
-        spans: drawn over them: what is fitted, and what is checked
+        spans: drawn over them: the fit and the check record
         """
         from matplotlib.figure import Figure
 
@@ -108,7 +108,7 @@ class Preview:
 
 
 def columns_of(folder: Path, name: str) -> tuple[str, ...]:
-    """The names of a log's columns, whatever they hold.
+    """The names of all columns of a log.
 
     raises ExperimentError: the log cannot be read
     """
@@ -117,11 +117,11 @@ def columns_of(folder: Path, name: str) -> tuple[str, ...]:
 
 
 def preview(folder: Path, name: str, answers: Answers | None = None) -> Preview:
-    """Look at a log of the folder.
+    """Interpret a log of the folder.
 
     answers: columns, units, axis and constants that the user states; the rest is detected
     raises ExperimentError: the log cannot be read, or holds no position or no force; an answer that
-        is no number, or a unit of something else
+        is no number, or a unit that does not fit
     """
     path = resolve_inside(folder, name)
     log = open_log(path, path.name)
@@ -133,7 +133,7 @@ def preview(folder: Path, name: str, answers: Answers | None = None) -> Preview:
 
 
 def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file: str) -> Choices:
-    """Choices with the units of channels as those of columns, which are held as they were found."""
+    """Choices with the units of channels as units of columns; these columns are then fixed."""
     columns: dict[str, str] = {}
     for key in units:
         column = survey.channels.get(key, {}).get("column")
@@ -153,17 +153,17 @@ def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file
 
 
 def spans_of_sliders(fit: Sequence[float], check: Sequence[float], shown: Preview) -> FitAndCheck:
-    """What two sliders say; raises ExperimentError where the spans overlap or are empty."""
+    """The spans of two sliders; raises ExperimentError: spans that overlap or are empty."""
     spans = (fit[0], fit[1]), (check[0], check[1])
     check_spans(spans, shown.survey.duration, [Path(shown.name).name])
     return spans
 
 
 def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = None) -> str:
-    """Make the experiment's folder beside the log; its name relative to the page's folder.
+    """Make the experiment's folder beside the log; returns its name relative to the page's folder.
 
-    spans: of the fit and the check record; default: those that are proposed
-    raises ExperimentError: the folder is there already, or cannot be written; spans that overlap
+    spans: of the fit and the check record; default: the proposed ones
+    raises ExperimentError: the folder exists already, or cannot be written; spans that overlap
     """
     log = resolve_inside(folder, shown.name)
     stem = log.name.split(".")[0] or "experiment"
@@ -175,9 +175,9 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
 
 
 def choices_of(answers: Answers) -> Choices:
-    """What a form of the page says of columns, axis and constants; an empty answer: to be detected.
+    """Columns, axis and constants from a form of the page; an empty answer: to be detected.
 
-    answers: of `ASKED`, "axis", "torque constant" with its unit, and of `NUMBERS`
+    answers: by the names of `ASKED` and `NUMBERS`, "axis", and "torque constant" with its unit
     raises ExperimentError: a constant that is no number
     """
     column = {key: answers.get(name) or None for name, key in ASKED.items()}
@@ -208,6 +208,6 @@ def _number(answers: Answers, name: str) -> float | None:
 
 
 def _cell(text: object) -> str:
-    """A text as a cell of a Markdown table shows it letter by letter: "N*m" is no emphasis."""
+    """A text for a cell of a Markdown table, shown letter by letter: "N*m" is no emphasis."""
     plain = " ".join(str(text).split())
     return "".join(c if c.isalnum() or c == " " or ord(c) > 127 else f"&#{ord(c)};" for c in plain)

@@ -1,4 +1,4 @@
-"""The parts of the page as text, tables and figures of a workbench; no part changes anything."""
+"""The parts of the page as text, tables and figures of a workbench, which stays unchanged."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def residuals(bench: Workbench, rung: int = -1) -> Dataset:
 
 
 def rung_options(bench: Workbench) -> dict[str, int]:
-    """The models of the ladder as the page names them -> number of the rung."""
+    """The models of the ladder: name on the page -> number of the rung."""
     return {_name(rung): k for k, rung in enumerate(bench.rungs)}
 
 
@@ -37,7 +37,7 @@ def _name(rung: Rung) -> str:
 
 
 def ladder(bench: Workbench) -> str:
-    """The errors of every rung as a Markdown table, and what counts as noise."""
+    """The errors of every rung as a Markdown table, with the noise floor."""
     lines = ["| model | fit error | check error |", "|:---|---:|---:|"]
     for rung in bench.rungs:
         fit, check = (_percent(e) for e in (rung.fit.fit_error, rung.fit.check_error))
@@ -47,7 +47,7 @@ def ladder(bench: Workbench) -> str:
 
 
 def candidate_options(bench: Workbench) -> dict[str, tuple[str, str]]:
-    """What may be added, best first, as the page names it -> (effect, place)."""
+    """Candidates, best first: name on the page -> (effect, place)."""
     return {
         f"{r.candidate}: check error {_percent(r.fit.check_error)}"
         + (f" ({r.note})" if r.note else ""): r.candidate.key
@@ -56,7 +56,7 @@ def candidate_options(bench: Workbench) -> dict[str, tuple[str, str]]:
 
 
 def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
-    """The candidates beside the last rung as rows of a table."""
+    """The candidates for the last rung, as rows of a table."""
     supported = {r.candidate.key for r in bench.state.supported}
     return [
         {
@@ -88,7 +88,7 @@ def compare_rungs(bench: Workbench, one: int, other: int) -> str:
 
 
 def _estimate(model: Model, name: str) -> str:
-    """A parameter with its standard error and unit; "-" where the model has none of that name."""
+    """A parameter with its standard error and unit; "-" if the model has no such parameter."""
     if name not in model.parameters:
         return "-"
     value = model.parameters[name]
@@ -98,7 +98,7 @@ def _estimate(model: Model, name: str) -> str:
 
 
 def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
-    """What the errors become where one parameter is `factor` times its value."""
+    """The errors with one parameter at `factor` times its value, as Markdown."""
     value = bench.model.parameters[parameter]
     unit = unit_text(bench.model.unit(parameter))
     there = bench.state.fit
@@ -121,7 +121,7 @@ def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:
 
 
 def moved_residuals(bench: Workbench, parameter: str, factor: float) -> Dataset | None:
-    """Forces of the last model with one parameter moved; None where the value is out of bounds."""
+    """Forces of the last model with one parameter moved; None if the value is out of bounds."""
     if factor == 1.0:
         return residuals(bench)
     value = factor * bench.model.parameters[parameter].value
@@ -141,16 +141,16 @@ def what_is_left(bench: Workbench) -> Figure:
 
 
 def next_experiment(bench: Workbench) -> str:
-    """What to measure next to tell apart what the records leave open."""
+    """The next measurement that distinguishes what the records leave open, as text."""
     from ..next_experiment import propose
 
     return repr(propose(bench.diagnosis()))
 
 
 def design_parts(bench: Workbench, body: str) -> list[tuple[str, str, Figure | Drawing | str]]:
-    """A compensation for the body as the last model describes it, one part a tab of the page.
+    """A compensation for the body of the last model, one part for each tab of the page.
 
-    returns: (title, caption, what it shows); one part with the reason where there is no design
+    returns: (title, caption, content); a single part with the reason if there is no design
     """
     from ..plot import draw_diagram
 
@@ -209,7 +209,7 @@ def _push(design: Design) -> float:
 
 
 class _Key:
-    """A workbench by its model, for the cache: the models of two steps are two objects."""
+    """A workbench compared by its model, for the cache; models of two steps are two objects."""
 
     def __init__(self, bench: Workbench, model: Model) -> None:
         self.bench, self.model = bench, model

@@ -1,4 +1,4 @@
-"""Serve the page on this machine alone, behind a token."""
+"""Serve the page on this machine only, behind a token."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ NOTEBOOK = Path(__file__).with_name("notebook.py")
 
 
 def serve(host: str, port: int, token: str, *, open_browser: bool) -> NoReturn:
-    """Serve until Ctrl-C; the address, with its token, is printed once it answers.
+    """Serve until Ctrl-C; the address, with its token, is printed once the server answers.
 
-    port: 0: a free one
+    port: 0: a free port
     raises KeyboardInterrupt: Ctrl-C; kernels of open pages may still compute
-    raises ExperimentError: the port is taken
+    raises ExperimentError: the port is in use
     """
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -1,4 +1,4 @@
-"""What the page works with: from the command that serves it, or from a notebook's arguments."""
+"""Settings of the page: from the command that serves it, or from a notebook's arguments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ EFFECTS = "TELEOPDESIGN_APP_EFFECTS"
 
 
 def folder(arguments: Mapping[str, object] | None = None) -> Path:
-    """The folder that the page may read; the present one where none is set."""
+    """The folder that the page may read; the current one if none is set."""
     stated = (arguments or {}).get("folder") or os.environ.get(FOLDER) or "."
     return Path(str(stated)).resolve()
 

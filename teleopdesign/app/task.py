@@ -1,4 +1,4 @@
-"""Long work beside a page: it tells how far it is, and can be cancelled."""
+"""Long work in the background of a page, with progress and cancellation."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ T = TypeVar("T")
 
 
 class Cancelled(Exception):  # noqa: N818 - it is no error
-    """Raised inside the work at its next line of progress."""
+    """Raised inside the work at its next report of progress."""
 
 
 class BackgroundTask(Generic[T]):
     """One piece of work in a separate thread.
 
-    name: what it does, for the page;  progress: its last line
-    result: what it gave; None until `done`, or where it failed or was cancelled
+    name: of the work, for the page;  progress: its last line
+    result: of the work; None until `done`, or if it failed or was cancelled
     error: one line for the user, or ""
     """
 
@@ -34,15 +34,15 @@ class BackgroundTask(Generic[T]):
 
     @property
     def done(self) -> bool:
-        """Whether it is over, one way or another."""
+        """Whether the work has ended, with a result or without."""
         return not self._thread.is_alive()
 
     def cancel(self) -> None:
-        """Stop at the next line of progress."""
+        """Stop the work at its next report of progress."""
         self._stop.set()
 
     def wait(self, timeout: float | None = None) -> None:
-        """Until it is over, or for `timeout` seconds."""
+        """Wait until the work has ended, or for `timeout` seconds."""
         self._thread.join(timeout)
 
     def _say(self, text: str) -> None:
@@ -62,9 +62,9 @@ class BackgroundTask(Generic[T]):
 
 
 def stop_running(task: BackgroundTask[T] | None) -> str:
-    """Cancel a task of the page; the note that says so.
+    """Cancel a task of the page; returns a note about it.
 
-    task: None: nothing runs any more, as at a second click. Then there is nothing to say: ""
+    task: None: no task runs, as at a second click; the note is then ""
     """
     if task is None:
         return ""

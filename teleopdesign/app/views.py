@@ -1,7 +1,7 @@
-"""The parts of the page as they are laid out: buttons, tables and charts in rows and columns.
+"""Layout of the page: buttons, tables and charts in rows and columns.
 
-Each function lays out the arguments from a cell of the notebook; what a button does is in the
-notebook.
+Each function lays out the arguments from a cell of the notebook; the notebook defines what a button
+does.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ Spans = Sequence[tuple[float, float]]
 
 
 def place_side_by_side(*elements: PageElement) -> PageElement:
-    """Elements in a row, on a narrow page in several."""
+    """Elements in a row; on a narrow page in several rows."""
     return mo.hstack(list(elements), justify="start", wrap=True)
 
 
 def span_sliders(duration: float, proposed: Spans) -> tuple[PageElement, PageElement]:
-    """Two sliders: what is fitted, and what is checked, s from the first row."""
+    """Two sliders, for the fit span and the check span, s from the first row."""
     # nine digits: what the sliders show beside them is no rounding error
     duration = float(f"{duration:.9g}")
     proposed = [(float(f"{begin:.9g}"), float(f"{end:.9g}")) for begin, end in proposed]
@@ -47,7 +47,7 @@ def span_sliders(duration: float, proposed: Spans) -> tuple[PageElement, PageEle
 
 
 def column_form(columns: Sequence[str]) -> PageElement:
-    """What a person can say of a log: columns with their units, axis, constants."""
+    """The form for a log: columns with their units, axis, constants."""
     fields: dict[str, PageElement] = {}
     for name in logs.ASKED:
         fields[name] = mo.ui.dropdown(columns, label=name)
@@ -61,7 +61,7 @@ def column_form(columns: Sequence[str]) -> PageElement:
 
 
 def form_rows(form: PageElement) -> PageElement:
-    """The form as it is laid out: each column above its unit, then axis and constants."""
+    """The layout of the form: each column above its unit, then axis and constants."""
     fields = form.elements
     pairs = [mo.vstack([fields[name], fields[f"{name} unit"]]) for name in logs.ASKED]
     others = [fields[name] for name in ("axis", "torque constant", *logs.NUMBERS)]
@@ -75,10 +75,10 @@ def log_parts(
     sliders: tuple[PageElement, PageElement],
     make: Callable[[logs.Preview, Any], object],
 ) -> list[PageElement]:
-    """A log as it is understood, and the button that makes an experiment of it.
+    """The interpretation of a log, and the button that makes an experiment of it.
 
-    understood: None where `trouble` says why not
-    make: what the button does with the log and its spans
+    understood: None if `trouble` states why not
+    make: called by the button with the preview and its spans
     """
     parts = [
         mo.md("Empty fields: columns are chosen by names and physics. Choose where that is wrong:"),
@@ -103,7 +103,7 @@ def log_parts(
 def residual_view(
     bench: Workbench, body: PageElement, use: PageElement, rung: PageElement
 ) -> PageElement:
-    """The residual of one model, with what chooses it."""
+    """The residual of one model, with the controls that select it."""
     data = pages.residuals(bench, rung.value)
     return mo.vstack(
         [
@@ -117,7 +117,7 @@ def residual_view(
 def compare_view(
     bench: Workbench, models: tuple[PageElement, PageElement], body: PageElement, use: PageElement
 ) -> PageElement:
-    """Two models beside each other."""
+    """Two models side by side."""
     one, other = models
     parts = [place_side_by_side(one, other)]
     if one.value == other.value:
@@ -162,7 +162,7 @@ def slider_view(
     body: PageElement,
     use: PageElement,
 ) -> PageElement:
-    """One parameter moved: the errors that the model then has, and its force beside the record."""
+    """One parameter moved: the new errors, and the force of the model beside the record."""
     if not which.value:
         return mo.md("This model has no free parameter.")
     parts = [
@@ -176,7 +176,7 @@ def slider_view(
 
 
 def design_view(bench: Workbench, body: str) -> PageElement:
-    """The compensation for a body: what it does, its claims, diagram, Bode plot, simulation."""
+    """The compensation for a body: predictions, claims, diagram, Bode plot, simulation."""
     return mo.ui.tabs(
         {
             title: mo.vstack(
@@ -191,7 +191,7 @@ def design_view(bench: Workbench, body: str) -> PageElement:
 
 
 def export_view(bench: Workbench, write: PageElement) -> PageElement:
-    """The button that writes, and the script that repeats what was clicked."""
+    """The button that writes files, and the script that repeats the user's steps."""
     said = (
         "Report (html), answer (json), figure (svg), for each body the compensation as a diagram "
         "(toml), and a script that repeats these steps."

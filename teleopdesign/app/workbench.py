@@ -1,6 +1,6 @@
-"""A diagnosis taken one step at a time: see the candidates, add one, look again, take it back.
+"""A diagnosis in single steps: rank the candidates, add one, look again, take it back.
 
-Frozen: each step gives a new workbench, and the one before it is the way back.
+A workbench is frozen; each step gives a new one, and the old one is the way back.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from ..model import Model
 
 @dataclass(frozen=True)
 class Workbench:
-    """The rungs that were chosen so far, and what was seen beside each of them.
+    """The rungs of the ladder so far, with the candidates of each.
 
-    search: what stays the same;  states: one for each rung, the last is the present one
-    is_ranked: whether the candidates beside the last rung are known already
+    search: the part that stays the same;  states: one for each rung, the last is the present one
+    is_ranked: whether the candidates for the last rung are known already
     """
 
     search: LadderSearch
@@ -43,10 +43,10 @@ class Workbench:
         among: Collection[str] | None = None,
         progress: Callable[[str], None] | None = None,
     ) -> Workbench:
-        """The user's model re-estimated, and every candidate beside it; takes some seconds.
+        """The user's model, re-estimated, and every candidate for it; takes some seconds.
 
         known: effects by name, which a description may use;  among: names of the candidates
-        raises ExperimentError: the experiment lacks what the comparison needs
+        raises ExperimentError: the experiment lacks something that the comparison needs
         """
         model = Model.from_experiment(experiment, known)
         if among is not None:
@@ -62,17 +62,17 @@ class Workbench:
         among: Collection[str] | None = None,
         progress: Callable[[str], None] | None = None,
     ) -> Workbench:
-        """As `of`, of the experiment of a folder."""
+        """As `of`, for the experiment in a folder."""
         return cls.of(load_experiment(folder), among=among, progress=progress)
 
     @property
     def experiment(self) -> Experiment:
-        """The experiment that all models are held against."""
+        """The experiment with which all models are compared."""
         return self.search.experiment
 
     @property
     def state(self) -> LadderState:
-        """Where the ladder stands."""
+        """The present state of the ladder."""
         return self.states[-1]
 
     @property
@@ -82,18 +82,18 @@ class Workbench:
 
     @property
     def rungs(self) -> tuple[Rung, ...]:
-        """The user's model first, then one rung an effect."""
+        """The user's model first, then one rung for each effect."""
         return self.state.rungs
 
     @property
     def candidates(self) -> tuple[Ranked, ...]:
-        """Effects that may be added, best first; none where they were not looked at yet."""
+        """Effects that may be added, best first; empty until they are ranked."""
         return self.state.ranking.ranked if self.is_ranked else ()
 
     def add(self, effect: str, at: str) -> Workbench:
-        """With that candidate, whose fit is known: at once.
+        """With that candidate added, whose fit is known, so that this is fast.
 
-        raises ModelError: no such candidate beside the last rung
+        raises ModelError: no such candidate for the last rung
         """
         chosen = self._candidate(effect, at)
         rung = Rung(chosen.candidate, chosen.fit, self.state.ranking)
@@ -101,13 +101,13 @@ class Workbench:
         return replace(self, states=(*self.states, state), is_ranked=False)
 
     def take_back(self) -> Workbench:
-        """Without the last rung; ModelError where there is none but the user's model."""
+        """Without the last rung; raises ModelError: only the user's model is left."""
         if len(self.states) == 1:
             raise ModelError("take back: nothing was added")
         return replace(self, states=self.states[:-1], is_ranked=True)
 
     def rank(self, progress: Callable[[str], None] | None = None) -> Workbench:
-        """With the candidates beside the last rung; takes some seconds."""
+        """With the candidates for the last rung; takes some seconds."""
         if self.is_ranked:
             return self
         search = replace(self.search, progress=progress) if progress else self.search
@@ -115,7 +115,7 @@ class Workbench:
         return replace(self, states=(*self.states[:-1], state), is_ranked=True)
 
     def go_on(self, progress: Callable[[str], None] | None = None) -> Workbench:
-        """All that `teleopdesign diagnose` would do from here, each of its moves a step back."""
+        """All further steps of `teleopdesign diagnose`; each can be taken back."""
         bench = self.rank(progress)
         search = replace(self.search, progress=progress) if progress else self.search
         states = bench.states
@@ -124,13 +124,13 @@ class Workbench:
         return replace(bench, states=states)
 
     def diagnosis(self, progress: Callable[[str], None] | None = None) -> Diagnosis:
-        """What is concluded of the rungs as they stand: verdict, probabilities, open questions."""
+        """The conclusion from the present rungs: verdict, probabilities, open questions."""
         bench = self.rank(progress)
         search = replace(self.search, progress=progress) if progress else self.search
         return conclude(search, bench.state)
 
     def errors(self, values: Mapping[str, float]) -> tuple[float, float]:
-        """Fit and check error (relative) of the model with other values of parameters (SI)."""
+        """Fit and check error (relative) of the model with other parameter values (SI)."""
         model, prepared = self.model.with_values(values), self.search.whole
         return force_error(model, prepared.of("fit")), force_error(model, prepared.of("check"))
 

@@ -1,4 +1,4 @@
-"""One joint of an arm for commands that work on one body: which joint, its records, its inertia."""
+"""One joint of an arm, for commands that work on one body: its name, its records, its inertia."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
-    """Which body, and for commands that need an inertia, the pose at which a joint has it."""
+    """Arguments: the body; with `pose`, the pose of an arm for the inertia of the joint."""
     parser.add_argument(
         "--body",
         metavar="NAME",
@@ -32,7 +32,10 @@ def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
 
 
 def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
-    """The joint of an arm that the options say; ExperimentError with all of them if none is."""
+    """The joint of an arm that the options name.
+
+    raises ExperimentError: the options name no joint, or none of this arm; it lists all joints
+    """
     joints, chosen = list(experiment.bodies), options.body
     if chosen is None:
         raise ExperimentError(
@@ -50,10 +53,10 @@ def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
 def place_at_pose(
     model: Model, experiment: Experiment, joint: str, options: argparse.Namespace
 ) -> Model:
-    """The model of one joint with the inertia that the links have about it at the stated pose.
+    """The model of one joint, with the inertia of the links about the joint at the stated pose.
 
-    experiment: that of the whole arm;  raises ExperimentError: no such joint or unit, or links that
-        have no inertia there
+    experiment: the experiment of the whole arm
+    raises ExperimentError: no such joint or unit, or the computed inertia there is not positive
     """
     import numpy as np
 
@@ -82,7 +85,7 @@ def place_at_pose(
 
 
 def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
-    """Joint -> position in SI."""
+    """Joint -> position (SI), from texts JOINT=VALUE[UNIT]."""
     pose, joints = {}, list(experiment.bodies)
     for text in texts:
         joint, _, value = text.partition("=")
@@ -98,7 +101,7 @@ def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
 
 
 def inertia_line(model: Model, joint: str, options: argparse.Namespace) -> str:
-    """What a joint's body is when it is taken out of its arm, in a sentence."""
+    """A sentence on the assumptions when a joint is treated as one body without its arm."""
     value, unit = model.parameters[f"{joint}.inertia"].value, model.unit(f"{joint}.inertia")
     where = "at the stated pose" if options.pose else "the mean over the recorded poses"
     return (

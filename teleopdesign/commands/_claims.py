@@ -14,7 +14,7 @@ WIDTH = 100
 
 
 def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
-    """Status and topic of each claim, with its statement and how it is known."""
+    """Lines with status and topic of each claim, its statement and its verdict."""
     lines = []
     for one in claims:
         lines += ["", f"{one.heading:<9} {one.topic}"]
@@ -32,7 +32,7 @@ def _wrap_text(text: str) -> list[str]:
 
 
 def claim_data(entry: TopicClaim) -> dict[str, Any]:
-    """A claim as plain data: verdict, certificates, and the motions that refute it."""
+    """A claim as plain data: verdict, certificates, and the motions that refute the claim."""
     claim = entry.claim
     return {
         "topic": entry.topic,

@@ -1,4 +1,4 @@
-"""Arguments of `teleopdesign`, and how a command ends: its status and at most one line."""
+"""Arguments of `teleopdesign`, and the end of a command: an exit status and at most one line."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ EXAMPLES = """\
 
 
 def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda: False) -> int:
-    """Run the command; returns the exit status, but of what is stopped.
+    """Run the command; returns the exit status, unless the command is stopped.
 
-    is_stopped: whether Ctrl-C was heard: what is raised after it is no further error
+    is_stopped: whether Ctrl-C was pressed; an exception after Ctrl-C is not reported as an error
     raises KeyboardInterrupt: the command is stopped
     """
     with printable_streams(), plain_warnings(), keep_home_absent():
@@ -78,13 +78,13 @@ def _flush() -> None:
 
 
 def close_output() -> None:
-    """What is left to write goes nowhere: Python would try it once more, and fail, at its end."""
+    """Discard remaining output; at its end Python would try to write it again, and fail."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def parser() -> argparse.ArgumentParser:
-    """The arguments of all commands."""
+    """The parser for the arguments of all commands."""
     parser = argparse.ArgumentParser(
         prog="teleopdesign",
         description="Friction in haptic interfaces and teleoperators: find what a model lacks.",

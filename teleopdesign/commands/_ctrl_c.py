@@ -1,6 +1,6 @@
-"""Ctrl-C at any moment of a command: heard once, never lost, and reported in one line.
+"""Ctrl-C at any moment of a command: handled once, never lost, and reported in one line.
 
-Nothing but the standard library is imported here: Ctrl-C is not heard before this module is there.
+Only the standard library is imported here; Ctrl-C is not handled before this module is imported.
 """
 
 from __future__ import annotations
@@ -20,11 +20,13 @@ if TYPE_CHECKING:
 
 
 def hear_ctrl_c(request: threading.Event) -> bool:
-    """Let Ctrl-C raise KeyboardInterrupt, and none be lost; whether this process hears it at all.
+    """Let Ctrl-C raise KeyboardInterrupt at any moment; returns whether Ctrl-C is handled here.
 
-    Python only prints what is raised where nothing can catch it: in a `__del__`, in a call from C.
-    Code in C may drop it, or abort, while its module is imported: Ctrl-C waits for that import.
-    request: set by Ctrl-C: a library may turn its exception into another
+    Python only prints an exception that nothing can catch (in a `__del__`, in a call from C). Such
+    an interrupt is raised again. Code in C may ignore an exception, or abort, while its module is
+    imported: Ctrl-C waits until the import is complete.
+
+    request: set by Ctrl-C, since a library may convert the exception into another one
     """
     loader = ExtensionFileLoader
     in_c = {loader.create_module.__code__, loader.exec_module.__code__}
@@ -61,7 +63,7 @@ def hear_ctrl_c(request: threading.Event) -> bool:
 
 
 def _interrupt_main() -> None:
-    """As Ctrl-C does: it ends a wait of the main thread too."""
+    """Send the signal of Ctrl-C to the main thread, which also ends a wait of this thread."""
     main = threading.main_thread().ident
     if hasattr(signal, "pthread_kill") and main is not None:
         signal.pthread_kill(main, signal.SIGINT)
@@ -70,13 +72,13 @@ def _interrupt_main() -> None:
 
 
 def end_at_once(status: int) -> None:
-    """Let Ctrl-C end the process without a word from here on: all is done or reported."""
+    """From now on Ctrl-C ends the process without a message: all work is done or reported."""
     leave = os._exit  # names of modules may be gone at the end
     signal.signal(signal.SIGINT, lambda *_: leave(status))
 
 
 def tell_of_stop() -> None:
-    """One line on standard error, where there is still one."""
+    """Print one line that the command was stopped on standard error, if it is still open."""
     with suppress(OSError, ValueError, AttributeError):  # its reader is stopped too, or closed
         print("teleopdesign: stopped", file=sys.stderr)
     try:

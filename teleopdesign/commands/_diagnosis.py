@@ -1,8 +1,9 @@
-"""The experiment of a command, and its diagnosis: made now, or read from an answer.
+"""The experiment of a command, and its diagnosis: computed now, or read from an answer.
 
-Every command that needs one comes by it here: from the experiment's folder; with `--answer F` from
-what `teleopdesign diagnose --json F` has written of it; or from an answer alone, which says where
-its experiment is, and from a folder that holds `answer.json` and no experiment.
+Every command that needs a diagnosis gets it here. The diagnosis is computed from the experiment's
+folder; with `--answer F` it is read from the file that `teleopdesign diagnose --json F` has
+written. An answer may also stand alone, or in a folder with `answer.json` and no experiment: it
+names the folder of its experiment.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ Diagnosed = TypeVar("Diagnosed", bound="Diagnosis | ArmDiagnosis")
 
 
 def effects_by_name(options: argparse.Namespace) -> Mapping[str, Effect]:
-    """The effects by name, those of the user among them."""
+    """Effect name -> effect: the catalogue and the user's effects."""
     from ..effects import catalogue
 
     return catalogue(options.effect)
@@ -39,10 +40,10 @@ def effects_by_name(options: argparse.Namespace) -> Mapping[str, Effect]:
 def candidate_effects(
     known: Mapping[str, Effect], only: Sequence[str], exclude: Sequence[str]
 ) -> tuple[str, ...] | None:
-    """Names of the effects that a diagnosis tries; None where neither list has one: all.
+    """Names of the effects that a diagnosis considers; None (all effects) if both lists are empty.
 
-    only: names, all where empty;  exclude: names
-    raises ModelError: an unknown name, or none is left
+    only: names; all effects if empty;  exclude: names
+    raises ModelError: an unknown name, or no effect is left
     """
     from ..effects import find_effect
 
@@ -60,14 +61,14 @@ def candidate_effects(
 
 
 def experiment_of(folder: Path) -> Experiment:
-    """The experiment of a folder, or of an answer in its place."""
+    """The experiment in a folder, or the experiment of an answer given in place of the folder."""
     from ..measurement import load_experiment
 
     return load_experiment(folder_of(folder))
 
 
 def folder_of(path: Path) -> Path:
-    """The folder of an experiment, or of the experiment that an answer is of."""
+    """The path itself if it is not an answer; else the folder of the answer's experiment."""
     answer = _answer_in(path)
     if answer is None:
         return path
@@ -77,7 +78,10 @@ def folder_of(path: Path) -> Path:
 
 
 def experiment_and_answer(options: argparse.Namespace) -> Experiment:
-    """The experiment of a folder, or of an answer, which then stands in `options.answer`."""
+    """The experiment of a folder or of an answer; such an answer is stored in `options.answer`.
+
+    raises ExperimentError: there is an answer in `options.answer` already
+    """
     answer = _answer_in(options.folder)
     if answer is None:
         return experiment_of(options.folder)
@@ -90,7 +94,7 @@ def experiment_and_answer(options: argparse.Namespace) -> Experiment:
 
 
 def _answer_in(path: Path) -> Path | None:
-    """The answer that a path is, or that a folder without an experiment holds; None: none."""
+    """A path that is an answer, or answer.json of a folder without experiment; else None."""
     if path.suffix == ".json" and path.is_file():
         return path
     saved = path / "answer.json"
@@ -100,16 +104,16 @@ def _answer_in(path: Path) -> Path | None:
 
 
 def stated_model(experiment: Experiment, options: argparse.Namespace) -> Model:
-    """The model that the experiment describes."""
+    """The model that the experiment describes, with the user's effects."""
     from ..model import Model
 
     return Model.from_experiment(experiment, effects_by_name(options))
 
 
 def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
-    """The diagnosis of an experiment: as the answer tells, or made now, with progress said.
+    """The diagnosis of an experiment: read from the answer, or computed now with progress shown.
 
-    Of an arm, that of the joint that the options say.
+    For an arm, the diagnosis of the joint that the options name.
     """
     if experiment.arm is not None:
         joint = joint_of(experiment, options)
@@ -122,14 +126,14 @@ def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnos
 
 
 def diagnose_experiment(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
-    """The diagnosis of an experiment, made now, with progress said."""
+    """The diagnosis of an experiment, computed now with progress shown."""
     from ..diagnose import find_missing
 
     return search_missing(find_missing, experiment, options)
 
 
 def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> ArmDiagnosis:
-    """The diagnosis of an arm: as the answer tells, or made now, with progress said."""
+    """The diagnosis of an arm: read from the answer, or computed now with progress shown."""
     from ..diagnose.answers import load_answer
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.restored import restore_arm_diagnosis
@@ -144,7 +148,10 @@ def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Arm
 def search_missing(
     find: Callable[..., Diagnosed], experiment: Experiment, options: argparse.Namespace
 ) -> Diagnosed:
-    """What a search finds (`find_missing`, or that of an arm) as the options ask for it."""
+    """The result of a search, with the plan and the candidate effects that the options choose.
+
+    find: `find_missing` or `find_missing_in_arm`
+    """
     from ..diagnose.search_plan import PLAN, QUICK
 
     among = candidate_effects(
@@ -180,9 +187,9 @@ def print_diagnosis(diagnosis: Diagnosis | ArmDiagnosis) -> None:
 
 
 def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
-    """The diagnosed model, and the answer or folder that it comes from; of an arm, of one joint.
+    """The diagnosed model, and the answer or folder from which it comes; for an arm, of one joint.
 
-    Of an answer alone (.json) it needs no records; of a folder without one it is diagnosed now.
+    An answer alone (.json) needs no records. A folder without an answer is diagnosed now.
     """
     from ..diagnose.answers import load_answer
 
@@ -202,7 +209,7 @@ def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
 
 
 def _model_of_answer(file: Path, options: argparse.Namespace) -> Model:
-    """The model of an answer alone; of an arm, that of the joint that the options say."""
+    """The model in an answer alone; for an arm, the model of the joint that the options name."""
     from ..diagnose.answers import load_answer
 
     saved = load_answer(file)
@@ -216,7 +223,7 @@ def _model_of_answer(file: Path, options: argparse.Namespace) -> Model:
 
 
 def _select_body(model: Model, body: str, source: Path) -> Model:
-    """The model of one body of several."""
+    """The model of one body of several bodies."""
     from ..model import Model
 
     place = _place(model, source, body)
@@ -224,10 +231,12 @@ def _select_body(model: Model, body: str, source: Path) -> Model:
 
 
 def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
-    """The diagnosed body: of an answer (.json), or of a folder that is diagnosed now and printed.
+    """The diagnosed body of an answer (.json), or of a folder, which is diagnosed now and printed.
 
-    An answer holds its model, so it needs no folder; with a folder it is held against the records.
-    returns: the body, and what its records reached; None where there are no records
+    An answer contains its model, so it needs no folder. With a folder and `--answer`, the model of
+    the answer is used with the records of the folder.
+
+    returns: the body, and the range that its records reached; None without records
     """
     from ..design.reach import reach_of
 
@@ -257,7 +266,10 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
 
 
 def _place(model: Model, source: Path, body: str | None) -> str:
-    """The place of the chosen body; by default the only body."""
+    """The place of the chosen body; by default the only body.
+
+    raises ExperimentError: no such body, or several bodies and none is chosen
+    """
     bodies = list(model.bodies)
     if body is None and len(bodies) > 1:
         raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")

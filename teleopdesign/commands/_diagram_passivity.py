@@ -1,4 +1,4 @@
-"""Passivity at the ports of a diagram, from its file or by its shipped name."""
+"""Passivity at the ports of a diagram from a file, or of a shipped diagram."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BESIDE_A_DIAGRAM = ("answer", "body", "dahl", "smoothed-coulomb", "wall")
 
 
 def is_diagram(source: Path) -> bool:
-    """Whether a diagram is meant: a TOML file that is no experiment, or a shipped name."""
+    """Whether a source is a diagram: a TOML file other than experiment.toml, or a shipped name."""
     from ..diagrams import SHIPPED
 
     if source.suffix == ".toml":
@@ -29,7 +29,7 @@ def is_diagram(source: Path) -> bool:
 
 
 def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> int:
-    """Print the claims about a diagram's ports; write what was asked for."""
+    """Print the claims about a diagram's ports and write the requested file; returns 0."""
     import numpy as np
 
     from ..passivity.diagram_claims import Search, diagram_claims

@@ -1,8 +1,8 @@
-"""What ends a command, in one line and an exit status; no traceback unless one is asked for.
+"""An error that ends a command, as one line and an exit status; a traceback only on request.
 
-Errors that the package raises on purpose tell where and what. Those of the system and of a user's
-Python file are reported here, as a class: with the file they come from. Whatever else happens
-is a mistake of the package, and the line says where.
+Errors that the package raises on purpose say where and what. Errors of the system and of a user's
+Python file are reported with the file that they come from. Any other error is a mistake of the
+package, and the line says where it is.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LONGEST = 500  # most characters of another package's message
 
 
 def failure(error: BaseException, options: argparse.Namespace | None) -> tuple[str, int]:
-    """The line that tells of an error, and the exit status."""
+    """The line that reports an error, and the exit status."""
     if isinstance(error, TeleopDesignError):
         return str(error), BAD_INPUT
     if (place := _place_in(error, tuple(python_files(options)))) is not None:
@@ -46,7 +46,7 @@ def failure(error: BaseException, options: argparse.Namespace | None) -> tuple[s
 
 
 def _place_in(error: BaseException, files: tuple[Path, ...]) -> str | None:
-    """The user's file and line that an error passed through; None where it passed through none."""
+    """File and line of the user's code in an error's traceback; None if there is none."""
     known = {os.path.realpath(path): path for path in files}
     frames = traceback.extract_tb(error.__traceback__)
     for frame in reversed(frames):
@@ -74,7 +74,7 @@ def _error_text(error: BaseException) -> str:
 
 
 def _origin(error: BaseException) -> str:
-    """The package's innermost place: file and line."""
+    """File and line of the package's innermost frame in an error's traceback."""
     folder = Path(teleopdesign.__file__).parent
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         path = Path(frame.filename)

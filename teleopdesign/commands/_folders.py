@@ -1,4 +1,4 @@
-"""Diagnosing many folders: an answer for each, and a table of them all."""
+"""Diagnosis of many folders: an answer for each folder, and a table of all."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _HEAD = ("folder", "verdict", "missing", "error before", "error after")
 
 
 def diagnose_all(options: argparse.Namespace) -> int:
-    """Diagnose every folder, print and write the table; 2 where a folder could not be diagnosed."""
+    """Diagnose every folder, print and write the table; returns 2 if one was not diagnosed."""
     if options.output is None:
         raise ExperimentError(f"{len(options.folder)} folders: expected --output DIR beside them")
     for name in ("json", "predictions", "figure", "report"):
@@ -109,7 +109,7 @@ def _percent(error: float) -> str:
 
 
 def table_csv(rows: Sequence[DiagnosedFolder]) -> str:
-    """The table for a spreadsheet; errors are parts of the measured force."""
+    """The table as CSV for a spreadsheet; errors are fractions of the measured force."""
     text = StringIO()
     out = csv.writer(text, lineterminator="\n")
     out.writerow(

@@ -1,4 +1,4 @@
-"""A home that is not there: nothing that a command imports may make it."""
+"""A home folder that does not exist: no library that a command imports creates it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ PLACE = "MPLCONFIGDIR"
 
 @contextmanager
 def keep_home_absent() -> Iterator[None]:
-    """Within: matplotlib keeps its files in a folder that is removed, where there is no home.
+    """Let matplotlib keep its files in a temporary folder if the user has no home folder.
 
-    It would make the home otherwise. Whoever names none wants nothing to be kept there.
+    Otherwise matplotlib would create the home folder. A user without one wants no files to be kept
+    there.
     """
     if PLACE in os.environ or Path(os.path.expanduser("~")).is_dir():
         yield

@@ -11,7 +11,7 @@ from ._terminal import replace_line
 
 
 def add_folder(parser: argparse.ArgumentParser) -> None:
-    """The experiment's folder."""
+    """Argument: the experiment's folder."""
     parser.add_argument(
         "folder",
         type=Path,
@@ -20,7 +20,7 @@ def add_folder(parser: argparse.ArgumentParser) -> None:
 
 
 def add_effect_files(parser: argparse.ArgumentParser) -> None:
-    """The user's effect files."""
+    """Argument: the user's effect files."""
     parser.add_argument(
         "--effect",
         action="append",
@@ -32,7 +32,10 @@ def add_effect_files(parser: argparse.ArgumentParser) -> None:
 
 
 def check_output(path: Path, endings: tuple[str, ...]) -> None:
-    """Raise an error before the work, not after it, if a result cannot be written."""
+    """Raise ExperimentError before the work, not after it, if a result cannot be written.
+
+    endings: endings of the file name that are allowed
+    """
     if not path.name.endswith(endings):
         raise ExperimentError(f"{path}: found {path.suffix!r}, expected {' or '.join(endings)}")
     if not path.parent.is_dir():
@@ -43,7 +46,7 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
 
 
 def count_argument(text: str) -> int:
-    """A whole number from 1, as the type of an argument."""
+    """A whole number from 1, as the type of an argument of argparse."""
     try:
         number = int(text)
     except ValueError:
@@ -54,15 +57,17 @@ def count_argument(text: str) -> int:
 
 
 def say_written(*paths: Path | None) -> None:
-    """Name the files that were written, in one line; no line where there are none."""
+    """Print the names of the files that were written, in one line; nothing if there are none."""
     if written := [str(path) for path in paths if path is not None]:
         print(f"\nwritten: {', '.join(written)}")
 
 
 def make_folder(path: Path) -> Path:
-    """The folder, made where it is not there; raises ExperimentError where nothing can be written.
+    """The folder, which is created if it does not exist.
 
-    A file of it that is there already may be written anew.
+    A file that exists in the folder may be replaced later.
+
+    raises ExperimentError: the folder cannot be created, or no file can be written in it
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -94,7 +99,7 @@ def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> N
 
 
 def add_answer(parser: argparse.ArgumentParser) -> None:
-    """The answer that stands for a diagnosis."""
+    """Argument: an answer that replaces a diagnosis."""
     parser.add_argument(
         "--answer",
         type=Path,
@@ -104,7 +109,7 @@ def add_answer(parser: argparse.ArgumentParser) -> None:
 
 
 def add_search(parser: argparse.ArgumentParser) -> None:
-    """What a diagnosis searches."""
+    """Arguments: the extent of a diagnosis's search, and its candidate effects."""
     parser.add_argument(
         "--quick",
         action="store_true",
@@ -115,7 +120,7 @@ def add_search(parser: argparse.ArgumentParser) -> None:
 
 
 def add_candidate_options(parser: argparse.ArgumentParser) -> None:
-    """Adds the options that choose the candidate effects."""
+    """Arguments: the effects that are candidates, and the effects that are not."""
     for option, text in (
         ("--only", "only these effects are candidates (default: all that the model lacks)"),
         ("--exclude", "these effects are no candidates"),

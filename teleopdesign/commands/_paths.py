@@ -1,6 +1,7 @@
-"""What a command reads and writes: nothing that is read is written over.
+"""Paths that a command reads and writes; a file that is read is never overwritten.
 
-The names of the options say which is which, so that no command has to.
+The names of the options decide which paths are read and which are written, so that no command has
+to declare them.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_f
 
 
 def shell_word(path: Path | str) -> str:
-    """A path as it is typed in a shell: in quotes where it holds spaces."""
+    """A path as it is typed in a shell: in quotes if it contains spaces."""
     return shlex.quote(str(path))
 
 
@@ -49,9 +50,9 @@ def _paths(options: argparse.Namespace | None, names: tuple[str, ...]) -> Iterat
 
 
 def check_paths(options: argparse.Namespace) -> None:
-    """Refuse an output that is an input, or another output; raises ExperimentError.
+    """Raise ExperimentError if an output is also an input, or if two outputs are the same file.
 
-    The records that an experiment names count as inputs, so do files that another TOML file names.
+    Records that an experiment names count as inputs; so do files that another TOML file names.
     """
     read = {os.path.realpath(p): p for p in _files_read(options)}
     written: dict[str, Path] = {}
@@ -75,7 +76,7 @@ def _files_read(options: argparse.Namespace) -> Iterator[Path]:
 
 
 def _texts_of(file: Path) -> Iterator[str]:
-    """Every text in a TOML file; none where it is not sound: reading it reports that."""
+    """Every text in a TOML file; none for an invalid file, which is reported when it is read."""
     from ..measurement.toml_table import parse_toml
 
     try:

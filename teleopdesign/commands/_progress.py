@@ -1,4 +1,4 @@
-"""Progress of long work: one line that changes on a terminal, else a line now and then."""
+"""Progress of long work: one line that changes on a terminal, elsewhere a line now and then."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ FEWEST = 4
 class Reporter:
     """Shows lines of progress on standard error.
 
-    A line that says how much of its stage is begun (`ProgressLine`) gets the time left of it.
+    A line that counts the parts of its stage (`ProgressLine`) is shown with the time left in the
+    stage.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -32,7 +33,7 @@ class Reporter:
         self._stage, self._start = "", clock()
 
     def __call__(self, text: str, *, last: bool = False) -> None:
-        """Show a line; last: it ends the work, and is shown wherever it goes."""
+        """Show a line;  last: it ends the work, and is printed also where no terminal shows it."""
         now = self._clock()
         line = f"{text}{self._time_left(text, now)}"
         if sys.stderr is None:
@@ -44,7 +45,7 @@ class Reporter:
             print(line, file=sys.stderr, flush=True)
 
     def clear(self) -> None:
-        """Take the line off a terminal."""
+        """Remove the line from a terminal."""
         say("")
 
     def _time_left(self, text: str, now: float) -> str:
@@ -60,25 +61,25 @@ class Reporter:
 
 
 class PointReporter:
-    """Shows how far a study is; `last` is its latest report."""
+    """Shows the progress of a study; `last` is its latest report."""
 
     def __init__(self) -> None:
         self.last: Progress | None = None
         self._reporter = Reporter()
 
     def __call__(self, progress: Progress) -> None:
-        """Show it, and once how many were kept of an earlier run."""
+        """Show a report; the first one also shows how many points an earlier run kept."""
         if self.last is None and progress.kept:
             print(f"goes on after {progress.kept} {progress.things}", file=sys.stderr)
         self.last = progress
         self._reporter(str(progress), last=progress.done == progress.total)
 
     def clear(self) -> None:
-        """Take the line off a terminal."""
+        """Remove the line from a terminal."""
         self._reporter.clear()
 
     def describe_finished(self) -> str:
-        """How much is kept where the study is stopped."""
+        """Words for how much is kept if the study is stopped now."""
         last = self.last
         if last is None:
             return "what is finished is"

@@ -1,4 +1,4 @@
-"""The page of a diagnosis, with every section filled."""
+"""The page of a diagnosis, with every section."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
-    """The page, with the findings about the recording, what is left, and what to measure next."""
+    """Write the page, with findings on the recording, the residual, and what to measure next."""
     from ..check import check_experiment
     from ..next_experiment import propose
     from ..report import write_report
@@ -29,7 +29,7 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
 
 
 def write_arm_page(diagnosis: ArmDiagnosis, path: Path) -> None:
-    """The page of an arm, with the findings about the recording and what each joint leaves."""
+    """Write the page of an arm, with findings on the recording and the residual of each joint."""
     from ..check import check_experiment
     from ..report import write_arm_report
     from ..unexplained import where_it_fails

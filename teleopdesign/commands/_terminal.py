@@ -1,7 +1,7 @@
-"""What a terminal shows: text alone, in characters that it has.
+"""Output on a terminal: plain text, in characters that the terminal has.
 
-A file's text may hold codes that move the cursor, clear lines or turn the direction of writing; a
-terminal may know ASCII alone. Everything that commands print goes through here.
+A file's text may contain codes that move the cursor, clear lines or turn the direction of writing,
+and a terminal may know ASCII only. All output of the commands goes through this module.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class PrintableStream:
 
 @contextmanager
 def printable_streams() -> Iterator[None]:
-    """Within it, standard output and standard error take text alone."""
+    """Inside this context, standard output and standard error escape control characters."""
     before = sys.stdout, sys.stderr
     streams = [None if s is None else PrintableStream(s) for s in before]  # None: closed
     sys.stdout, sys.stderr = streams
@@ -55,9 +55,9 @@ def printable_streams() -> Iterator[None]:
 
 @contextmanager
 def plain_warnings() -> Iterator[None]:
-    """Within it, a warning is one line without code.
+    """Inside this context, a warning is one line without code.
 
-    That a figure's font lacks a sign is not reported: the figure shows a box in its place.
+    A letter that a figure's font lacks is not reported here: the figure shows a box in its place.
     """
 
     def show(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -89,9 +89,9 @@ def shows_colours() -> bool:
 
 
 def print_styled(text: str, style_of: Callable[[str], str]) -> None:
-    """Print lines, each in its style on a terminal that shows colours; elsewhere plain.
+    """Print lines, each in its style on a terminal that shows colours; elsewhere without styles.
 
-    style_of: of a line, a key of `STYLES`, or "" for none
+    style_of: line -> a key of `STYLES`, or "" for no style
     """
     if not shows_colours():
         print(text)

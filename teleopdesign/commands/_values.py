@@ -1,4 +1,4 @@
-"""Values of the command line: a number, and a unit where it is not in SI."""
+"""Values on the command line: a number, and a unit unless the number is in SI."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from ..quantity import to_si
 def value_from(text: str, *, quantity: str, axis: str, where: str) -> float:
     """The value in SI of a text such as "0.2", "45deg" or "3 N".
 
-    where: what errors call it;  raises ExperimentError: no number, or a unit of another quantity
+    where: beginning of an error message
+    raises ExperimentError: no number, or a unit of another quantity
     """
     from ..measurement.value_text import split_value  # heavy: not for --help
 

@@ -37,7 +37,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the findings, warnings first; write what was asked for."""
+    """Print the findings, warnings first; write the requested file."""
     if options.json is not None:
         check_output(options.json, (".json",))
     from ..check.soundness_check import check_experiment
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _model_of(experiment: Experiment, options: argparse.Namespace) -> Model | None:
-    """The stated model; None where it is incomplete, which the findings then say."""
+    """The stated model; None if a body has no inertia, which the findings then say."""
     try:
         return stated_model(experiment, options)
     except ExperimentError:
@@ -73,9 +73,9 @@ def _model_of(experiment: Experiment, options: argparse.Namespace) -> Model | No
 
 
 def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
-    """What is wrong with records that do not read as they are described, from the logs themselves.
+    """Findings from the logs on records that do not have the columns or units of their description.
 
-    Empty where the mistake is in experiment.toml and no log is at fault.
+    Empty if the description agrees with the logs, or if the logs cannot be read.
     """
     from ..finding import Finding
     from ..measurement.survey import Choices, survey_log
@@ -122,7 +122,7 @@ def text_of(findings: Sequence[Finding]) -> str:
 
 
 def _wrap_lines(finding: Finding, width: int) -> str:
-    """Every line of a finding wrapped by itself; rows keep their columns where these fit."""
+    """A finding with each line wrapped separately; rows of a table keep columns that fit."""
     first, *more = str(finding).split("\n")
     indent = " " * INDENT
     lines = [textwrap.fill(first, width, subsequent_indent=indent, break_on_hyphens=False)]
@@ -143,7 +143,7 @@ def _wrap_lines(finding: Finding, width: int) -> str:
 
 
 def finding_data(finding: Finding) -> dict[str, Any]:
-    """A finding as plain data; numbers in SI, null where there is none or it is infinite."""
+    """A finding as plain data, numbers in SI; in JSON a number that is not finite is null."""
     return {
         "topic": finding.topic,
         "concern": finding.concern,

@@ -31,7 +31,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the table; exit status 1 where a statement is no longer what it says to be."""
+    """Print the table; returns 1 if an outcome differs from what the statement says."""
     if options.json is not None:
         check_output(options.json, (".json",))
     from ..papers import STATEMENTS, check, find_statement
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _table(results: list[Result], width: int) -> str:
-    """One row for each statement: name, outcome, what it says, where the code is."""
+    """Lines for each statement: name, outcome, words, formula, source, place of the code."""
     first, second = 5, 20
     third = width - first - second - 2
     lines = []
@@ -86,7 +86,7 @@ def _explain_failure(result: Result) -> list[str]:
 
 
 def _full(result: Result, width: int) -> str:
-    """Everything about one statement."""
+    """All information on one statement, with every step and number."""
     s = result.statement
     lines = [f"{s.name}  {result.outcome}", ""]
     for text in (s.words, s.formula and f"    {s.formula}"):
@@ -114,7 +114,7 @@ def _summary(results: list[Result]) -> str:
 
 
 def as_json(result: Result) -> dict[str, Any]:
-    """A result as plain data; figures with the range that they must lie in and their margin."""
+    """A result as plain data; each figure has the range in which it must lie and its margin."""
     s = result.statement
 
     return {

@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def say_what_follows(parser: argparse.ArgumentParser, effects: Iterable[str]) -> None:
-    """Mark the arguments of every command that take files, and those that take effects' names."""
+    """Mark the arguments of every command that take files, or names of effects."""
     import shtab
 
     commands = next(a for a in parser._actions if isinstance(a, argparse._SubParsersAction))

@@ -22,7 +22,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Diagnose the shipped experiment; everything that can be written goes into one folder."""
+    """Diagnose the shipped experiment; all possible outputs are written into one folder."""
     from ..examples import example
 
     output = make_folder(options.output)

@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _diagram(options: argparse.Namespace) -> Diagram:
-    """The diagram that is named, or the haptic interface of an identified device."""
+    """The diagram that the options name, or the haptic interface with an identified device."""
     from ..diagrams import SHIPPED, haptic_interface
 
     source = Path(options.diagram)
@@ -83,10 +83,10 @@ def _diagram(options: argparse.Namespace) -> Diagram:
 
 
 def diagram_of(name: str, effects: Sequence[Path] = ()) -> Diagram:
-    """The shipped diagram of that name, or the one in that file.
+    """The shipped diagram of that name, or the diagram in the file of that name.
 
-    effects: the user's effect files
-    raises ModelError, ExperimentError: neither, or a file that cannot be read
+    effects: the user's effect files raises ModelError, ExperimentError: neither exists, or the file
+        cannot be read
     """
     from ..diagrams import SHIPPED, load_shipped, read_diagram
     from ..effects import catalogue

@@ -49,7 +49,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the sentences; write what was asked for."""
+    """Print the sentences; write the requested files."""
     for path, endings in (
         (options.json, (".json",)),
         (options.figure, (".png", ".pdf", ".svg")),
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
-    """The fit that is described, its noise floor (if a diagnosis states it), and the model."""
+    """The fit, its data, its noise floor (if a diagnosis states one), and words for the model."""
     from ..diagnose.prepare import prepare
     from ..diagnose.stated_fit import estimate_stated
 

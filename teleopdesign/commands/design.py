@@ -56,7 +56,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the design of each body; write what was asked for."""
+    """Print the design of each body; write the requested files."""
     for path, endings in (
         (options.answer, (".json",)),
         (options.json, (".json",)),

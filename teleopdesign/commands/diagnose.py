@@ -89,9 +89,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the ladder; write what was asked for.
+    """Print the ladder; write the requested files.
 
-    Of several folders: 0 where all were diagnosed, whatever the verdicts; 2 where one was not.
+    For several folders, returns 0 if all were diagnosed, whatever the verdicts, and 2 if one was
+    not.
     """
     if options.loop is not None and not options.simulate:
         raise ModelError("--loop: found without --simulate, which it belongs to")
@@ -133,7 +134,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
-    """The same for an arm."""
+    """Diagnose an arm, print the ladder and write the requested files."""
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
 
@@ -157,7 +158,10 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
 
 
 def _suggest_for_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
-    """What helps on at each joint; source: the answer if one was written, else the folder."""
+    """Lines with the next command for each joint.
+
+    source: the answer if one was written, else the folder, as typed in a shell
+    """
     lines = []
     for joint, one in diagnosis.joints.items():
         if one.groups:
@@ -168,7 +172,7 @@ def _suggest_for_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
 
 
 def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
-    """The final model driven by the recorded command, printed; None: it was not asked for."""
+    """The final model driven by the recorded command, also printed; None without --simulate."""
     if not options.simulate:
         return None
     from ..diagnose.by_simulation import compare_by_simulation
@@ -179,7 +183,7 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
 def _simulation_of_arm(
     diagnosis: ArmDiagnosis, options: argparse.Namespace
 ) -> SimulationComparison | None:
-    """The same for an arm."""
+    """An arm's final model driven by the recorded command, also printed; None if not requested."""
     if not options.simulate:
         return None
     from ..diagnose.arms.by_simulation import compare_arm_by_simulation
@@ -204,7 +208,7 @@ def _simulate(
 
 
 def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -> list[str]:
-    """What helps on from here; with the answer that was written nothing is diagnosed again."""
+    """Lines with the next commands; with a written answer they need no second diagnosis."""
     from ..diagnose.narrower_band import narrower_band
     from ..measurement.bandwidth import motion_beyond
 

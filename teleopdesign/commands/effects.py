@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the catalogue, or one effect's page."""
+    """Print the catalogue, or the page of one effect."""
     from ..effects import catalogue, find_effect
 
     known = catalogue(options.effect)

@@ -27,7 +27,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the file; say what it holds of the model, and what it cannot."""
+    """Write the file; print the parts of the model that it contains, and those left out."""
     from ..realise.simulator_files import ENDINGS, as_simulator_file
 
     ending = ENDINGS[options.to]

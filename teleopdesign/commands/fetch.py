@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the folder of the experiment."""
+    """Download the recording if necessary; print the folder of its experiment."""
     from ..measurement.recordings import fetch
 
     print(fetch(options.name, options.folder))

@@ -74,7 +74,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Look at the logs, ask, write the folder and a picture of what was understood."""
+    """Survey the logs, ask, write the folder and a picture of what was understood."""
     from ..measurement import load_experiment
     from ..measurement.new_folder import make_folder, require_new
     from ..measurement.survey import require_same_columns, survey_log
@@ -128,7 +128,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _spans(options: argparse.Namespace) -> FitAndCheck | None:
-    """Both spans, or none."""
+    """The fit span and the check span (s), or None if neither is given.
+
+    raises ExperimentError: only one of them is given
+    """
     fit, check = options.fit_span, options.check_span
     if fit is None and check is None:
         return None
@@ -139,7 +142,7 @@ def _spans(options: argparse.Namespace) -> FitAndCheck | None:
 
 
 def survey_text(survey: Survey, name: str) -> str:
-    """What was understood, a line a channel, and what was guessed."""
+    """Lines on what was understood, one for each channel, and on what was guessed."""
     lines = [f"{name}: {survey.duration:.4g} s, {len(survey.columns)} columns; {survey.axis} axis"]
     for key, entry in survey.channels.items():
         said = ("column", "unit") if "column" in entry else entry
@@ -163,7 +166,7 @@ def survey_text(survey: Survey, name: str) -> str:
 
 
 def _option_of(key: str, survey: Survey) -> str:
-    """What to type where a guess is wrong; "" where an option does not say it."""
+    """The option that replaces a wrong guess; "" if no option does."""
     _, quantity, part = (*key.split("."), "", "")[:3]
     columns = {"actuator_force": "force", "interaction_force": "hand"}
     if part == "column":
@@ -218,7 +221,7 @@ def _choices(options: argparse.Namespace) -> Choices:
 
 
 def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
-    """The user's answers to what was guessed; an empty answer takes the guess."""
+    """The choices, with the user's answers on the guesses; an empty answer accepts a guess."""
     from ..measurement.value_text import motor_constant, plain_number
 
     units = dict(choices.units)

@@ -74,7 +74,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what to run next and what it will show; write what was asked for."""
+    """Print the proposed experiment and what it will show; write the requested files."""
     for path, endings in (
         (options.output, (".csv",)),
         (options.json, (".json",)),
@@ -118,7 +118,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
-    """Paths of all joints of an arm; with --body it is the motion of one joint that is planned."""
+    """Propose paths of all joints of an arm; with --body, `run` plans one joint instead."""
     from ..next_experiment import propose_paths, write_reference
 
     for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
@@ -147,14 +147,14 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
 
 
 def _shown_limits(diagnosis: ArmDiagnosis, joint: str) -> Limits:
-    """The limits that the records of an arm have shown at one joint."""
+    """The limits that the records of an arm have reached at one joint."""
     from ..next_experiment import shown_limits
 
     return shown_limits(diagnosis.prepared.joints[joint])[joint]
 
 
 def _wrap(text: str) -> str:
-    """The sentence within the terminal; the table as it is."""
+    """The text with its first line wrapped; the other lines, a table, stay unchanged."""
     first, *rest = text.split("\n")
     return "\n".join([textwrap.fill(first, WIDTH, break_on_hyphens=False), *rest])
 
@@ -174,7 +174,10 @@ def _content(proposal: Any, shown: Sequence[SimulatedDiagnosis]) -> dict[str, An
 
 
 def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, float]]:
-    """Body -> limit -> value (SI), from the command line; ExperimentError says what is wrong."""
+    """Body -> limit -> value (SI), from the command line.
+
+    raises ExperimentError: no such body or limit, or a wrong value
+    """
     bodies = tuple(experiment.bodies)
     limits: dict[str, dict[str, float]] = {}
     for text in texts:
@@ -202,7 +205,7 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
 
 
 def _limits(limits: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
-    """Body -> the limits that its records have shown, with those asked for in their place."""
+    """Body -> limits that its records have reached, replaced by the requested limits."""
     from ..diagnose.prepare import prepare
     from ..next_experiment import shown_limits
 

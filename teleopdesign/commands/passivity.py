@@ -74,7 +74,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_compensator(parser: argparse.ArgumentParser) -> None:
-    """Arguments: the compensation that is judged, by its law, or none."""
+    """Arguments: the law of the compensation that is judged, if there is one."""
     law = parser.add_mutually_exclusive_group()
     law.add_argument(
         "--dahl",
@@ -95,7 +95,7 @@ def _add_compensator(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_computer(parser: argparse.ArgumentParser) -> None:
-    """Arguments: the computer that samples, and the virtual wall that it renders."""
+    """Arguments: the sampling of the computer, and the virtual wall that it renders."""
     parser.add_argument("--period", type=float, metavar="T", help="sample period, s")
     parser.add_argument(
         "--delay",
@@ -122,7 +122,7 @@ def _add_computer(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print claims and margins; write what was asked for. The verdicts do not change the status."""
+    """Print claims and margins; write the requested file. The exit status ignores verdicts."""
     if options.check is not None:
         return _check_file(options.check)
     _check_options(options)
@@ -274,7 +274,7 @@ def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> 
 
 
 def _check_file(path: Path) -> int:
-    """Check each certificate of a file of claims with the small checker alone."""
+    """Check each certificate in a file of claims with the small checker only; returns 0."""
     from ..passivity.checker import Refused, check
 
     try:

@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the page; say what was computed for it."""
+    """Write the page; with an answer, print that nothing is searched or estimated again."""
     if options.output is not None:
         check_output(options.output, (".html",))
     experiment = experiment_and_answer(options)

@@ -55,7 +55,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the study, print what it measured, write what was asked for."""
+    """Run the study, print its results, write the requested files."""
     if options.scheduler and options.workers is not None:
         raise ExperimentError("--workers: found beside --scheduler: a cluster has its own workers")
     if options.out is not None:
@@ -101,7 +101,7 @@ def _arguments(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _run_file(path: Path) -> dict[str, Any]:
-    """Run a user's file, as the user asked, and take its study."""
+    """Run a user's Python file at the user's request; returns the arguments of its study."""
     import inspect
 
     from ..studies import study

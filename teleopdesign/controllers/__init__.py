@@ -79,6 +79,7 @@ def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controlle
     """A control law with these parameter values (SI).
 
     name: of a law of the catalogue, or a user's law (`load_controller`)
+    raises ModelError: no such law, or a value that is missing, unknown or out of bounds
     """
     if isinstance(name, ControlLaw):
         return Controller((Stage(name, values),))
@@ -91,9 +92,9 @@ def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controlle
 
 
 def laws_that_declare(ability: Ability) -> tuple[ControlLaw, ...]:
-    """Control laws of the catalogue that declare an ability, in the order of their names.
+    """Control laws of the catalogue that declare an ability, sorted by name.
 
-    ability: such as "bound": the law states the largest force that it makes
+    ability: such as "bound": the law states its largest force
     """
     return tuple(law for law in CONTROLLERS.values() if getattr(law, ability))
 
@@ -108,8 +109,8 @@ def scheduled_force_feedback(
     """Block H: low-pass of the force error with a gain k b/(b + abs(v)).
 
     gain: k at rest, 1;  scheduling_velocity: b in m/s;  bandwidth: of the low-pass, Hz
-    schedule: whether the gain acts before the filter or after it; the two differ where abs(v)
-    changes within the filter's time constant. The paper leaves it open.
+    schedule: whether the gain acts "before" or "after" the filter; both differ if abs(v) changes
+        within the time constant of the filter. The paper does not state it.
     """
     if schedule not in ("before", "after"):
         raise ModelError(f'schedule: "before" or "after", found "{schedule}"')

@@ -1,4 +1,4 @@
-"""Laws that state their transfer function or were measured: values stand in it as numbers."""
+"""Laws given as a transfer function or a measured response, with their values as numbers."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
 
 
 def has_numbers(stage: Stage) -> bool:
-    """Whether it was measured, or has a transfer function in z at a fixed period."""
+    """Whether the law is a measured response, or has a transfer function in z at a fixed period."""
     if stage.law.response is not None:
         return True
     return stage.law.shift is not None and stage.values["period"] > 0
 
 
 def is_by_numbers(stage: Stage) -> bool:
-    """Whether the law states its transfer function, from its input alone."""
+    """Whether the law states a transfer function or response, which depends on its input alone."""
     law = stage.law
     return any(x is not None for x in (law.transfer, law.shift, law.response))
 
 
 def insert_values(stage: Stage, s: sp.Symbol) -> sp.Expr:
-    """Transfer function of a law that states it, with its values in place."""
+    """Transfer function of a law that states one, with the values of the stage inserted."""
     if stage.law.transfer is not None:
         return stage.law.transfer(stage.values, s)
     if stage.law.response is not None:

@@ -1,4 +1,4 @@
-"""A controller: control laws in series, composed into one equation, and its linear form."""
+"""A controller: control laws in series, composed into one equation, and their linear form."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _MOST_SHOWN = 8  # most parameters of a law in one line
 
 @dataclass(frozen=True)
 class ControllerEquation:
-    """Output and states of a controller placed under a name, on its input signals.
+    """Output and states of a controller in a named block, as functions of its input signals.
 
-    rates: state -> rate;  steps: state -> value at the next sample, for those that state it
-    before: states that are brought up to a sample before its output is taken
+    rates: state -> rate;  steps: state -> value at the next sample, for laws that state it
+    before: states that are updated at a sample before the output is computed
     """
 
     output: sp.Expr
@@ -49,9 +49,9 @@ class ControllerEquation:
 @check_types
 @dataclass(frozen=True, repr=False)
 class Controller:
-    """One or more control laws in series, the first one next to the input.
+    """One or more control laws in series; the first one receives the input.
 
-    A law that is there twice is numbered: "low_pass.bandwidth" and "low_pass_2.bandwidth".
+    A law that occurs twice is numbered, as in "low_pass.bandwidth" and "low_pass_2.bandwidth".
     """
 
     stages: tuple[Stage, ...]
@@ -67,12 +67,12 @@ class Controller:
 
     @check_types
     def then(self, other: Controller) -> Controller:
-        """This controller with another one behind it."""
+        """This controller followed by another one."""
         return Controller((*self.stages, *other.stages))
 
     @property
     def dead_time(self) -> float | None:
-        """Time (s) by which it is late, where it does nothing else; None of any other."""
+        """Delay (s) of a controller that does nothing else; None for any other."""
         times = [stage.value_of("dead_time") for stage in self.stages]
         known = [t for t in times if t is not None]
         return sum(known) if known and len(known) == len(times) else None
@@ -100,10 +100,10 @@ class Controller:
         )
 
     def sampled(self, period: float) -> Controller:
-        """The controller as a computer of that period (s) realises it.
+        """The controller as a computer with this period (s) realises it.
 
-        Only laws that say so change: `virtual_admittance`, a system of python-control in continuous
-        time. The others are stepped by the simulation, with their inputs held over a period.
+        Laws that declare a sampled form change: `virtual_admittance`, and continuous systems of
+        python-control. The simulation steps all other laws with their inputs held over a period.
         """
         stages = (
             g if g.law.sampled is None else replace(g.law.sampled(g.values, period), name=g.name)
@@ -119,13 +119,13 @@ class Controller:
         others: tuple[sp.Expr, ...] = (),
         code: bool = False,
     ) -> ControllerEquation:
-        """The laws composed in series; prefix: name of the block, in its symbols.
+        """The laws composed in series; prefix: name of the block, for its symbols.
 
-        signals: those of `SIGNALS`; a `period` of 0 is continuous time
-        others: further signals that a law known as code reads
-        code: whether systems that are known as code take part, as calls of their functions
-        raises ModelError: continuous time, and a state that exists in a computer only; a system
-            that is known as code only
+        signals: those of `SIGNALS`; a `period` of 0 means continuous time
+        others: further signals, read by a law that is only code
+        code: whether systems that are only code take part, as calls of their functions
+        raises ModelError: a measured response; a system that is only code, without `code`;
+            continuous time with a state that exists only in a computer
         """
         value, before = signals["input"], set()
         rates: dict[sp.Symbol, sp.Expr] = {}
@@ -166,13 +166,13 @@ class Controller:
     def linear_form(
         self, prefix: str, s: sp.Symbol, speed: sp.Expr, *, held: bool = False
     ) -> sp.Expr | None:
-        """Transfer function at constant speed; None where a law declares no linear form.
+        """Transfer function at constant speed; None if a law declares no linear form.
 
-        The velocity is that of the input: where it is another motion's, see `linear_parts`.
+        The velocity is that of the input; for the velocity of another motion, see `linear_parts`.
 
-        held: also of what was measured, and of laws in discrete time, as
-            H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to the mean of the held output, copies
-            at other multiples of the sampling rate left out
+        held: also for measured responses, and for laws in discrete time, from the samples to the
+            mean of the held output, as H(e^(s T)) (1 - e^(-s T))/(s T), without copies at other
+            multiples of the sampling rate
         """
         parts = self.linear_parts(prefix, s, speed, held=held)
         if parts is None or parts[1] == 0:
@@ -184,7 +184,7 @@ class Controller:
     ) -> tuple[sp.Expr, sp.Expr] | None:
         """Transfer functions from the input, and from the position along whose velocity it acts.
 
-        Arguments as of `linear_form`, which is their sum: the two are one signal there
+        Arguments are those of `linear_form`, which returns the sum of both, for a single signal.
         """
         if not all(stage.law.linear or (held and has_numbers(stage)) for stage in self.stages):
             return None
@@ -205,7 +205,7 @@ class Controller:
 
     @property
     def sees_velocity(self) -> bool:
-        """Whether a law of it that has a linear form takes the velocity itself, not its size."""
+        """Whether a law with a linear form uses the velocity itself, not only its magnitude."""
         velocities = SIGNALS["velocity"], SIGNALS["travel_rate"]
         for stage in self.stages:
             if is_by_numbers(stage) or not stage.law.linear:
@@ -236,7 +236,7 @@ class Controller:
 def _make_symbols(
     stage: Stage, prefix: str, signals: Mapping[str, sp.Expr]
 ) -> tuple[SimpleNamespace, SimpleNamespace]:
-    """The signals and states that the law reads, and its parameters, as symbols of that block."""
+    """Signals and states that the law reads, and its parameters, as symbols of the block."""
     law = stage.law
     states = {s: state_symbol(prefix, stage.name, s) for s in law.states}
     values = {n: parameter_symbol(prefix, f"{stage.name}.{n}") for n in law.parameters}
@@ -244,7 +244,7 @@ def _make_symbols(
 
 
 def parameter_symbol(prefix: str, name: str) -> sp.Symbol:
-    """Symbol of parameter "law.parameter" (or "effect.parameter") of the block `prefix`."""
+    """Symbol of the parameter "law.parameter" (or "effect.parameter") of the block `prefix`."""
     return sp.Symbol(f"{prefix}_{name.replace('.', '_')}", real=True)
 
 

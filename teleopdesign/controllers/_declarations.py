@@ -1,7 +1,7 @@
-"""What a control law declares of itself, held against the law: claims and linear forms rest on it.
+"""Check of the declarations of a control law, on which claims and linear forms depend.
 
-Symbolic: whether a law is linear, a dead time and nothing else, a smoothed level, a bristle or a
-low-pass. How large its force can be (`bound`) is a matter of intervals and no part of this.
+The check is symbolic; whether a law is linear, only a dead time, a smoothed level, a bristle or a
+low-pass. The largest force of a law (`bound`) is a matter of intervals and is not checked here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _S = sp.Symbol("s")
 
 @lru_cache(maxsize=64)
 def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
-    """Declarations that a law in continuous time does not keep, in words; (): it keeps them."""
+    """Declarations that are wrong for a law in continuous time, in words; () if there are none."""
     if law.system is not None or law.response is not None or law.shift is not None:
         return ()  # no law that is written down: claims leave these out
     values = {n: p.lower if p.lower > 0 else 1.0 for n, p in law.parameters.items()}
@@ -61,7 +61,7 @@ def _keeps_linear(made: ControllerEquation) -> bool:
 
 
 def _keeps_transfer(stage: Stage, made: ControllerEquation) -> bool:
-    """At the values of the stage; a stated transfer function is that of the input alone."""
+    """Whether the stated transfer function, from the input alone, holds at the stage's values."""
     assert stage.law.transfer is not None
     numbers = {parameter_symbol("law", f"{stage.name}.{n}"): v for n, v in stage.values.items()}
     states = sp.solve([_S * x - rate for x, rate in made.rates.items()], *made.rates)

@@ -1,6 +1,6 @@
-"""Exact numbers for what floats were written as, and exact transfer functions from matrices.
+"""Exact numbers for floats as they were written, and exact transfer functions from matrices.
 
-A float is taken for the shortest decimal number that prints like it: 0.1 is 1/10. Poles and zeros
+A float stands for the shortest decimal number that prints like it; 0.1 is 1/10. Poles and zeros
 that cancel on paper then cancel, and a pole at zero stays there.
 """
 
@@ -18,7 +18,7 @@ def exact_decimal(value: float) -> sp.Rational:
 
 
 def make_exact(expression: sp.Expr) -> sp.Expr:
-    """The expression with every number as a fraction; pi and roots keep the digits of a float."""
+    """The expression with all numbers as fractions; pi and roots are rounded to a float first."""
 
     def is_inexact(part: sp.Basic) -> bool:
         return bool(part.is_number) and not part.is_rational and bool(part.is_extended_real)

@@ -26,17 +26,17 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
 
     system: transfer function or state space with one input and one output, proper. In continuous
         time its linear form is its transfer function, and a computer realises it exactly for an
-        input held over each sample. In discrete time it is stepped as it is; the computer's period
-        must be its sample time.
-    name: in the names of parameters: "H.state_space.numerator_0" of a transfer function, the
+        input held over each sample. In discrete time it is stepped without change; the period of
+        the computer must be its sample time.
+    name: used in names of parameters: "H.state_space.numerator_0" of a transfer function, the
         coefficient of s^0, "H.state_space.a_0_0" of a state space
-    Its numbers are kept as they came, so that poles and zeros that cancel on paper do cancel.
+    The numbers are not rounded, so that poles and zeros that cancel on paper do cancel.
     A nonlinear system (`control.nlsys`) is Python code: it takes part in `simulate`, which then
     runs in plain Python, some hundred times slower, and in `to_iosystem`; claims and margins name
-    it as what they leave out, or refuse. A computer carries it over a sample with its input held,
-    by an adaptive integrator to 1e-10, or steps it as it is in discrete time. A
-    measured frequency response (`control.frd`) takes part in `bode`, `loop_gain` and
-    `matrix_response` alone, within its frequencies, on the line between two of them.
+    it as left out, or refuse it. Over a sample with its input held, an adaptive integrator advances
+    it to 1e-10; in discrete time it is stepped without change. A measured frequency response
+    (`control.frd`) takes part only in `bode`, `loop_gain` and `matrix_response`, within its
+    frequencies, by linear interpolation.
     raises ModelError: several inputs or outputs, improper, no system
     """
     import control
@@ -70,7 +70,7 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
 
 
 def unit_state(*, discrete: bool) -> Controller:
-    """An integrator, or a delay of one sample: one state, as it is."""
+    """An integrator, or a delay of one sample: a single state without parameters."""
     return Controller((Stage(_state_law(discrete), {}),))
 
 
@@ -88,9 +88,9 @@ def _state_law(discrete: bool) -> ControlLaw:
 
 
 def matrices_of(law: object) -> tuple[Array, Array, Array, float, float | None] | None:
-    """A (n, n), B (n,), C (n,), D and period (s; None: continuous) of a state space as they came.
+    """A (n, n), B (n,), C (n,), D of a state space, unchanged, and its period (s) or None.
 
-    None of what is no single system of matrices
+    None in place of all if the controller is no single system of matrices
     """
     stages = law.stages if isinstance(law, Controller) else ()
     values = stages[0].values if len(stages) == 1 else {}
@@ -100,11 +100,13 @@ def matrices_of(law: object) -> tuple[Array, Array, Array, float, float | None] 
 
 
 def invert_plant(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:
-    """The inverse of a transfer function with a low-pass of just enough roll-off to be proper.
+    """The inverse of a transfer function, with a low-pass of just enough roll-off to be proper.
 
-    w(s) / T(s),   w(s) = (2 pi f_c / (s + 2 pi f_c))^r,   r: relative degree of T
-    Where T = R_M / R_D is that of a compensated haptic interface and wired ahead of R_D, the hand
-    feels w times the wanted force. Several axes: the same w for each makes every direction alike.
+        w(s) / T(s),   w(s) = (2 pi f_c / (s + 2 pi f_c))^r,   r: relative degree of T
+
+    If T = R_M / R_D is that of a compensated haptic interface, and the inverse is wired ahead of
+    R_D, the hand feels w times the wanted force. With several axes, the same w on each makes all
+    directions equal.
 
     bandwidth: f_c in Hz
     raises ModelError: T is zero or has a zero that is not in the left half-plane, discrete time

@@ -1,4 +1,4 @@
-"""A user's control law, from a file written as those of this folder are."""
+"""A user's control law, from a file of the same form as those in this folder."""
 
 from __future__ import annotations
 
@@ -16,19 +16,23 @@ _LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary
 
 
 def load_controller(path: str | Path) -> ControlLaw:
-    """Read one file of a control law; the name of the file becomes the name of the law.
+    """Read a file with a control law; the name of the file becomes the name of the law.
 
-    It is used as a law of the catalogue is: `controller(load_controller("my_law.py"), values)`.
-    An unchanged file returns the same law again.
-    raises ModelError: the file cannot be read or run, defines no CONTROLLER, or one that does
-        not do what it declares
+    Use the law like one of the catalogue, `controller(load_controller("my_law.py"), values)`. An
+    unchanged file returns the same law again.
+
+    raises ModelError: the file cannot be read or run, defines no CONTROLLER, or one whose
+        declarations are wrong
     """
     path = checked_path(path, "control law", "my_law.py")
     return _load_law(path.resolve(), path)
 
 
 def _load_law(path: Path, written: Path, expected: str = "") -> ControlLaw:
-    """The law of a file;  written: its path in messages;  expected: digest that it must have."""
+    """The law in a file.
+
+    written: path of the file in messages;  expected: digest that the file must have, "" for any
+    """
 
     def read(content: bytes) -> ControlLaw:
         return _check_law(run(content, written, str(__package__)), written)

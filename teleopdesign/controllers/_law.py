@@ -34,18 +34,18 @@ SIGNALS = {
 
 
 def mark_sampled_rate(now: Any, p: Any) -> sp.Expr:
-    """Stands for the rate of a state that exists in a computer only."""
+    """Placeholder for the rate of a state that exists only in a computer."""
     return sp.nan
 
 
 @check_types
 @dataclass(frozen=True)
 class ControllerState:
-    """A hidden state of a control law, whose `now` also carries the states of the law.
+    """A hidden state of a control law, whose `now` also contains the states of the law.
 
     rate(now, p): rate of change, or `mark_sampled_rate`
-    step(now, p): value at the next sample, `now.period` later;  None: the step that is exact for
-    the rate, which is affine in the state, with all else held
+    step(now, p): value at the next sample, `now.period` later; None: the exact step for the rate,
+        which is affine in the state, with all other signals held
     """
 
     quantity: str
@@ -58,25 +58,25 @@ class ControllerState:
 class ControlLaw:
     """A control law: law(now, p) is its output; see the package's folder for examples.
 
-    linear: declares that, at frozen `speed`, the law is linear in its input and in velocity;
-    False: the LTI form leaves the block out, and says so.
-    States whose rate or step uses `travel_rate` are brought up to a sample before its output is
-    taken, all others are carried from it to the next with their inputs held.
-    takes: "force" where the input must not be the motion itself; "": anything
-    transfer(values, s): transfer function from the input, where the states do not determine it
-    shift(values, z): transfer function in z of a law that exists in a computer only, stepped each
-        `period` (a parameter of it, s); its output is held in between
-    sampled(values, period): the stage that takes the place of this one in a computer of that
-    period (s); None: this one, its states stepped as they say
-    system: a python-control system that the law calls: known as code only, it has no equation
+    linear: declares that, at constant `speed`, the law is linear in its input and in velocity;
+        False: the LTI form leaves the block out and names it
+    States whose rate or step uses `travel_rate` are updated at a sample before the output is
+    computed; all others advance from one sample to the next with their inputs held.
+    takes: "force" if the input must not be the motion itself; "": any input
+    transfer(values, s): transfer function from the input, if the states do not determine it
+    shift(values, z): transfer function in z of a law that exists only in a computer, stepped each
+        `period` (a parameter of the law, s); its output is held in between
+    sampled(values, period): the stage that replaces this one in a computer of that period (s);
+        None: this stage, with the steps of its states
+    system: a python-control system that the law calls; it is only code and has no equation
     response: a sympy function of s in place of a law, known on the axis at measured frequencies
-
-    What the law can do, each by the name of the parameter that says how much; "": it cannot.
-    bound: its force is never more than that, whatever the motion
-    bristle_stiffness: its force is that of a Dahl bristle of that stiffness, level `bound`
-    smoothing: its force is bound v/(a + abs(v)) with that a
-    filter_bandwidth: its output follows its input through a low-pass of first order
-    dead_time: its output is its input, late by that
+    Abilities of the law, each as the name of the parameter with its value; "": none.
+    bound: the force never exceeds this value, for any motion
+    bristle_stiffness: the force is that of a Dahl bristle of this stiffness, with level `bound`
+    smoothing: the force is bound v/(a + abs(v)) with this a
+    filter_bandwidth: the output follows the input through a first-order low-pass
+    dead_time: the output is the input, delayed by this time
+    raises ModelError: an ability names no parameter
     """
 
     law: Callable[[Any, Any], sp.Expr]
@@ -142,7 +142,9 @@ class ControlLaw:
 class Stage:
     """A control law with a value (SI) for every parameter.
 
-    name: in the names of its parameters; that of its law, numbered where a controller has it twice
+    name: used in the names of its parameters; that of its law, numbered if a controller has it
+        twice
+    raises ModelError: a value is missing, unknown, infinite or out of bounds
     """
 
     law: ControlLaw
@@ -172,6 +174,6 @@ class Stage:
         object.__setattr__(self, "values", Frozen(self.values))
 
     def value_of(self, ability: Ability) -> float | None:
-        """Value (SI) of the parameter that the law declares for this ability; None without one."""
+        """Value (SI) of the parameter that the law declares for an ability; None without it."""
         parameter = getattr(self.law, ability)
         return float(self.values[parameter]) if parameter else None

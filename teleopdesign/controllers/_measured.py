@@ -1,4 +1,4 @@
-"""A measured frequency response as a controller: values at frequencies, and no known law."""
+"""A measured frequency response as a controller: values at frequencies, without a law."""
 
 from __future__ import annotations
 
@@ -25,15 +25,16 @@ _OF_MASS = 10
 
 
 def wrap_response(name: str, system: control.FrequencyResponseData) -> Controller:
-    """The response as a controller that frequency responses take, and nothing else."""
+    """The response as a controller that only frequency responses accept."""
     return _controller(name, *_points(name, system))
 
 
 def measured_plant(name: str, system: control.FrequencyResponseData) -> tuple[float, Controller]:
     """A response from force (N) to position (m) as a mass (kg), and the force of the rest.
 
-    1/P = m s^2 + R: m is what the highest frequencies show, median of the last tenth of them, and R
-    exact at each frequency whatever m.
+    1/P = m s^2 + R: m is the median over the highest tenth of the frequencies; R is exact at each
+    frequency for any m.
+
     raises ModelError: no motion, or no mass at the highest frequencies
     """
     w, values = _points(name, system)
@@ -50,7 +51,7 @@ def measured_plant(name: str, system: control.FrequencyResponseData) -> tuple[fl
 
 
 def _points(name: str, system: control.FrequencyResponseData) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (rad/s) in their order, and values."""
+    """Frequencies (rad/s), sorted, and values at them."""
     w = np.asarray(system.frequency, dtype=float)
     values = np.asarray(system.frdata, dtype=complex).reshape(-1)
     order = np.argsort(w)
@@ -63,10 +64,10 @@ def _points(name: str, system: control.FrequencyResponseData) -> tuple[np.ndarra
 
 
 def _controller(name: str, w: np.ndarray, values: np.ndarray) -> Controller:
-    """What was measured at these frequencies, on the line between two of them."""
+    """A controller from values at frequencies, with linear interpolation between them."""
 
     def at(s: Any) -> np.ndarray:
-        """On the line between its neighbours over the logarithm of frequency, part by part."""
+        """Interpolate real and imaginary part linearly over the logarithm of frequency."""
         s = np.asarray(s, dtype=complex)
         asked_at = np.abs(s.imag)
         ends = asked_at.min(initial=np.inf), asked_at.max(initial=0.0)
@@ -95,7 +96,7 @@ def _controller(name: str, w: np.ndarray, values: np.ndarray) -> Controller:
 
 
 def measured_frequencies(expression: sp.Expr) -> tuple[np.ndarray, ...]:
-    """Frequencies (rad/s, in their order) of each response that an expression holds."""
+    """Frequencies (rad/s), sorted, of each measured response in an expression."""
     calls = (f.func._imp_ for f in expression.atoms(AppliedUndef))
     return tuple(call.points for call in calls if hasattr(call, "points"))
 

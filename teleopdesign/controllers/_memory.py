@@ -1,4 +1,4 @@
-"""What laws in a computer keep from one sample to the next."""
+"""Values that laws in a computer keep from one sample to the next."""
 
 from sympy import S
 
@@ -9,5 +9,5 @@ def store_input(now, p):
 
 
 def zero_rate(now, p):
-    """In continuous time there is no last sample."""
+    """Rate 0: in continuous time there is no last sample."""
     return S.Zero

@@ -1,7 +1,7 @@
-"""A nonlinear python-control system as a controller: code, of which no equation is known.
+"""A nonlinear python-control system as a controller: code without a known equation.
 
-Its law calls the system's functions. In a computer a system in continuous time is carried over
-a sample with its input held, by an adaptive integrator; one in discrete time is stepped as it is.
+The law calls the functions of the system. In a computer, an adaptive integrator advances a
+continuous system over a sample with its input held; a discrete system is stepped without change.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ _Reading = Callable[[Any], _Read]
 
 
 def wrap_code(name: str, system: control.InputOutputSystem) -> Controller:
-    """The system as a controller, which simulations call and `to_iosystem` takes as it is.
+    """The system as a controller that simulations call and `to_iosystem` uses unchanged.
 
-    raises ModelError: the system has dynamics, and does not say how many states
+    raises ModelError: the system has dynamics, but states no number of states
     """
     made, n = _Laws(name, system), _order(name, system)
 
@@ -57,10 +57,11 @@ def opaque_laws(
     """A system of several inputs as controllers: one for each state, one for each output.
 
     Each reads the first input, and as `others` the rest of the inputs, then all states.
+
     is_plant: inputs are forces and outputs positions, which no force moves at once: outputs are
-        taken at no force
-    raises ModelError: as of `opaque`, the system has no input; a plant's output follows a force at
-        once, at one of some states
+        computed with zero force
+    raises ModelError: as `wrap_code`; the system has no input; the output of a plant follows a
+        force at once, at one of some states
     """
     made, n, m = _Laws(name, system), _order(name, system), int(system.ninputs or 0)
     if m < 1:
@@ -98,7 +99,7 @@ def _order(name: str, system: control.InputOutputSystem) -> int:
 
 
 class _Laws:
-    """Laws that call a system's functions on what they read of it."""
+    """Laws that call the functions of a system with the inputs and states that they read."""
 
     def __init__(self, name: str, system: control.InputOutputSystem) -> None:
         self.name, self.system, self.calls = name, system, _Calls(system)
@@ -155,25 +156,25 @@ class _Laws:
 
 
 def calls_in(expressions: list[sp.Expr]) -> dict[str, Callable[..., float]]:
-    """Name in generated source -> function, of every function that the expressions call."""
+    """Name in generated source -> function, for every function that the expressions call."""
     every = set().union(*(e.atoms(sp.core.function.AppliedUndef) for e in expressions))
     return {str(f.func): f.func._imp_ for f in every if is_call(f)}
 
 
 def is_call(expression: sp.Expr) -> bool:
-    """Whether an expression calls a function that is known as code only, not as an equation."""
+    """Whether an expression calls a function that is only code, without an equation."""
     return str(expression.func).startswith(_CALLED) and hasattr(expression.func, "_imp_")
 
 
 def _function(what: str, called: Callable[..., float]) -> Callable[..., sp.Expr]:
-    """The function as one of sympy, under a unique name."""
+    """The function as a sympy function, under a unique name."""
     symbol = sp.Function(f"{_CALLED}{next(_numbers)}_{what}", real=True)
     made: Callable[..., sp.Expr] = implemented_function(symbol, called)
     return made
 
 
 class _Calls:
-    """The system's functions on plain numbers; equations ask for one state after the other."""
+    """The functions of a system on plain numbers; the last result is kept for the other states."""
 
     def __init__(self, system: control.InputOutputSystem) -> None:
         self.system = system
@@ -183,11 +184,11 @@ class _Calls:
         return self._remember("output", (t, u, x), lambda: self._compute_output(t, x, u))
 
     def change(self, t: float, u: _Numbers, x: _Numbers) -> np.ndarray:
-        """Rates, or states at the next sample of a system in discrete time."""
+        """Rates of the states; in discrete time, the states at the next sample."""
         return self._remember("change", (t, u, x), lambda: self._compute_rates(t, x, u))
 
     def advance(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
-        """States a period later, the inputs held."""
+        """States one period later, with the inputs held."""
         return self._remember("held", (t, u, period, x), lambda: self._integrate(t, u, period, x))
 
     def _remember(self, what: str, at: Any, call: Callable[[], np.ndarray]) -> np.ndarray:

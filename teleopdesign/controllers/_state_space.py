@@ -1,8 +1,7 @@
-"""The laws of linear systems from python-control, their numbers as they came the parameters.
+"""The laws of linear systems from python-control, with their unrounded numbers as parameters.
 
 State space: dx/dt = A x + B u, y = C x + D u. Transfer function: numerator and denominator, as a
-system in the controllable form. States have separate units, `scale`, on which no
-output depends.
+system in the controllable form. Each state has a unit, `scale`, on which no output depends.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ _Law = Callable[[Any, Any], sp.Expr]
 def stage(name: str, matrices: tuple[Array, Array, Array, float], period: float | None) -> Stage:
     """A system in state space as a stage of a controller.
 
-    matrices: A (n, n), B (n,), C (n,), D;  period: None: continuous; s, of a discrete-time system
+    matrices: A (n, n), B (n,), C (n,), D;  period: s, of a discrete system; None: continuous
     """
     a, b, c, d = matrices
     n = len(b)
@@ -44,9 +43,10 @@ def stage(name: str, matrices: tuple[Array, Array, Array, float], period: float 
 def rational_stage(
     name: str, above: Sequence[float], below: Sequence[float], period: float | None
 ) -> Stage:
-    """A transfer function as a stage of a controller, its coefficients kept as they came.
+    """A transfer function as a stage of a controller, with unchanged coefficients.
 
     above, below: numerator and denominator from the highest power, the first of `below` not zero
+    period: s, of a discrete system; None: continuous
     """
     n = len(below) - 1
     values = {f"numerator_{k}": 0.0 for k in range(n + 1)}
@@ -70,7 +70,7 @@ def _stage(
 
 
 def _companion(below: Sequence[float]) -> Array:
-    """A of the controllable form; below: denominator from its highest power."""
+    """A of the controllable form; below: denominator from the highest power."""
     n = len(below) - 1
     a = np.eye(n, k=1)
     if n:
@@ -79,9 +79,10 @@ def _companion(below: Sequence[float]) -> Array:
 
 
 def _balance(a: Array) -> list[float]:
-    """Units of the states, powers of two: what a polynomial gives spans decades.
+    """Units of the states, powers of two, because coefficients of a polynomial span decades.
 
-    A Butterworth low-pass of order 8 at 100 Hz loses 1e-8 of its step without, 3e-15 with it.
+    Without them, a Butterworth low-pass of order 8 at 100 Hz loses 1e-8 of its step, with them
+    3e-15.
     """
     from scipy.linalg import matrix_balance
 
@@ -92,7 +93,7 @@ def _balance(a: Array) -> list[float]:
 
 
 def matrices(values: Mapping[str, float], n: int) -> tuple[Array, Array, Array, float]:
-    """A, B, C, D from the values of a stage, its states in their units."""
+    """A, B, C, D from the values of a stage, with the states in their units `scale`."""
     scale = np.array([values[f"scale_{i}"] for i in range(n)])
     if "denominator_0" in values:
         below = [values[f"denominator_{k}"] for k in range(n, -1, -1)]
@@ -106,7 +107,7 @@ def matrices(values: Mapping[str, float], n: int) -> tuple[Array, Array, Array, 
 
 
 def as_they_came(values: Mapping[str, float]) -> tuple[Array, Array, Array, float]:
-    """A (n, n), B (n,), C (n,), D of a state space, its states in the units that they came in."""
+    """A (n, n), B (n,), C (n,), D of a state space, with the states in their original units."""
     n = _order(values)
     a = np.array([[values[f"a_{i}_{j}"] for j in range(n)] for i in range(n)]).reshape(n, n)
     b, c = (np.array([values[f"{x}_{i}"] for i in range(n)]) for x in "bc")
@@ -164,7 +165,7 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
 
 
 def _matrix_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:
-    """Output, and change of each state."""
+    """Output, and change of each state, of a state space."""
 
     def output(now: Any, p: Any) -> sp.Expr:
         terms = (_entry(p, f"c_{j}") * _state(now, p, j) for j in range(n))
@@ -181,7 +182,7 @@ def _matrix_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:
 
 
 def _coefficient_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:
-    """Output, and change of each state, in the controllable form."""
+    """Output, and change of each state, of the controllable form."""
 
     def output(now: Any, p: Any) -> sp.Expr:
         lead, straight = _entry(p, f"denominator_{n}"), _entry(p, f"numerator_{n}")
@@ -210,7 +211,7 @@ def _entry(p: Any, name: str) -> sp.Expr:
 
 
 def _state(now: Any, p: Any, i: int) -> sp.Expr:
-    """A state in the unit that its equation is written in."""
+    """A state in the unit of its equation."""
     return _entry(p, f"scale_{i}") * getattr(now, f"x_{i}")
 
 
@@ -222,7 +223,7 @@ def _meaning(entry: str) -> str:
 
 
 def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
-    """The transfer function, exact in the numbers as they came: what is zero stays exactly zero."""
+    """The transfer function in exact numbers: a zero coefficient stays exactly zero."""
     n = _order(values)
     if "denominator_0" in values:
         above, below = (
@@ -258,7 +259,7 @@ def _discretise_held(name: str, values: Mapping[str, float], n: int, period: flo
 
 
 def check_period(name: str, stated: float, period: float) -> None:
-    """ModelError where a system of that period (s; 0: any) is put into a computer of another."""
+    """Raise ModelError if the computer has another period (s) than the system (0: any)."""
     if stated and abs(stated - period) > 1e-9 * period:
         raise ModelError(
             f"{name}: is sampled every {stated * 1e3:g} ms, the computer every "

@@ -1,4 +1,4 @@
-"""Transfer functions and impedances from the wiring, symbolic."""
+"""Symbolic transfer functions and impedances from the wiring of a diagram."""
 
 from ..arguments import check_arguments
 from .all_transfers import Transfer, Transfers, all_transfers

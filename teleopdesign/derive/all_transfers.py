@@ -1,4 +1,4 @@
-"""Every transfer function and impedance of a diagram, whatever its wiring."""
+"""Every transfer function and impedance of a diagram, for any wiring."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ SECONDS = 2.0  # longest time for the derivation of one output
 
 @dataclass(frozen=True)
 class Transfer:
-    """One transfer function:  output = expression * input, all other inputs zero."""
+    """One transfer function: output = expression * input, with all other inputs zero."""
 
     name: str
     case: Case
     expression: sp.Expr
 
     def text(self) -> str:
-        """name = expression"""
+        """The equation name = expression, as plain text."""
         return f"{self.name} = {as_text(with_gamma(self.expression))}"
 
     def __repr__(self) -> str:
@@ -43,7 +43,7 @@ class Transfer:
         return f"{name_as_latex(self.name)} &= {as_latex(with_gamma(self.expression))}"
 
     def system(self, *, speed: float = 0.0) -> tuple[control.TransferFunction, tuple[str, ...]]:
-        """Transfer function with values, for one degree of freedom, and names without linear form.
+        """Transfer function with values, for one degree of freedom, and blocks without linear form.
 
         speed: m/s or rad/s, at which smoothed friction and schedules are frozen
         raises ModelError: a block has no values, or a loop no solution at its values
@@ -62,7 +62,7 @@ class Transfer:
 class Transfers:
     """The transfer functions of a diagram.
 
-    transfers: name -> transfer function;  undone: name -> why it was not derived
+    transfers: name -> transfer function;  undone: name -> reason why it was not derived
     """
 
     diagram: Diagram
@@ -76,7 +76,7 @@ class Transfers:
 
     @property
     def has_values(self) -> bool:
-        """Whether every block has values, so that each transfer function is a system too."""
+        """Whether every block has values, so that each transfer function is a system, too."""
         contents = [b.controller if isinstance(b, Control) else b.body for b in self.diagram.blocks]
         return not any(isinstance(c, AnyBlock) for c in contents)
 
@@ -95,7 +95,7 @@ class Transfers:
         return " \\\\\n".join(lines)
 
     def as_data(self, *, speed: float = 0.0) -> dict[str, Any]:
-        """Plain data for JSON, coefficients in SI from the highest power of s."""
+        """Plain data for JSON; coefficients in SI from the highest power of s."""
         return {
             "diagram": self.diagram.name,
             "speed": abs(speed),
@@ -139,11 +139,10 @@ class Transfers:
 def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
     """Every transfer function of a diagram, and the impedance at the driver of each moving body.
 
-    From each outside signal to each measured signal and to each force of an attached body.
-
-    Of a haptic interface, or with two sides, first those that have a name (`transfer_functions`,
-    `two_port_functions`). Blocks need not commute. What takes longer than `seconds`, or has no
-    solution, is named in `undone`.
+    From each outside signal to each measured signal and to each force of an attached body. For a
+    haptic interface or a teleoperator, the named functions come first (`transfer_functions`,
+    `two_port_functions`). Blocks need not commute. Functions that take longer than `seconds`, or
+    have no solution, are listed in `undone`.
     """
     transfers: dict[str, Transfer] = {}
     undone: dict[str, str] = {}

@@ -49,7 +49,7 @@ VELOCITY_TEXTS = {
 
 
 def check_convention(convention: str) -> None:
-    """Raise ModelError, with the nearest name, where a text is no convention."""
+    """Raise ModelError, with the nearest name, for a text that is no convention."""
     known = get_args(Convention)
     if convention not in known:
         near = did_you_mean(convention, known)
@@ -57,7 +57,7 @@ def check_convention(convention: str) -> None:
 
 
 def convert_convention(name: str, expression: sp.Expr, convention: Convention) -> sp.Expr:
-    """A function of a two-port from the other convention into `convention`, in exact terms.
+    """Convert a function of a two-port from the other convention into `convention`, exactly.
 
     name: "Z_mm", "h_11", ..., "Z_t";  expression: in `s`, of blocks or numbers
     raises ModelError: no such function or convention
@@ -76,7 +76,7 @@ def hybrid_from_impedance(z: sp.Matrix, *, convention: Convention) -> sp.Matrix:
     """Hybrid matrix [[h_11, h_12], [h_21, h_22]] from impedances [[Z_mm, Z_ms], [Z_sm, Z_ss]].
 
     convention: of both matrices
-    raises ModelError: no such convention, Z_ss = 0: the slave's motion follows from no force
+    raises ModelError: no such convention, or Z_ss = 0: no force determines the motion of the slave
     """
     check_convention(convention)
     _check_shape(z)
@@ -89,7 +89,7 @@ def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
     """Impedances [[Z_mm, Z_ms], [Z_sm, Z_ss]] from the hybrid matrix [[h_11, h_12], [h_21, h_22]].
 
     convention: of both matrices
-    raises ModelError: no such convention, h_22 = 0: a slave that no force moves has no impedance
+    raises ModelError: no such convention, or h_22 = 0: no force moves the slave
     """
     check_convention(convention)
     _check_shape(h)
@@ -99,7 +99,7 @@ def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
 
 
 def _second_port_turned(m: sp.Matrix, convention: Convention) -> sp.Matrix:
-    """The matrix with force and motion of port 2 exchanged: the same rule both ways."""
+    """The matrix with force and motion of port 2 exchanged; the same rule in both directions."""
     sign = -1 if convention == "velocity" else 1
     through, back = m[0, 1] / m[1, 1], m[1, 0] / m[1, 1]
     corner = m[0, 0] - through * m[1, 0]

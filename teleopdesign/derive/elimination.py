@@ -1,7 +1,7 @@
-"""Transfer functions and impedances from the wiring, symbolic; blocks need not commute.
+"""Symbolic transfer functions and impedances from the wiring; blocks need not commute.
 
-Every block acts from the left on its signal. Signals are eliminated one by one in a fixed order; an
-inverse appears only where a signal stands on both sides of its equation.
+Every block acts from the left on its signal. Signals are eliminated one by one in a fixed order. An
+inverse appears only where a signal is on both sides of its equation.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _OUTPUT = "output asked for"
 def rows(diagram: Diagram) -> list[Row]:
     """One equation (sum = 0) for each block and junction.
 
-    raises ModelError: a block is called as the derivation calls a part of another one
+    raises ModelError: a block has the name that the derivation uses for a part of another block
     """
     _check_names(diagram)
     equations: list[Row] = []
@@ -54,7 +54,7 @@ def rows(diagram: Diagram) -> list[Row]:
 
 
 def _check_names(diagram: Diagram) -> None:
-    """Two things under one symbol would be one in every transfer function."""
+    """Refuse a block whose name is also the symbol of an actuator or of an entry of a link."""
     for part in diagram.blocks:
         if isinstance(part, Moving) and has_actuation(part):
             meanings = {f"A_{part.name}": f"the actuator of {part.name}"}
@@ -72,9 +72,9 @@ def _check_names(diagram: Diagram) -> None:
 
 
 def paths(diagram: Diagram, part: Control) -> list[tuple[str, sp.Expr]]:
-    """What drives a controller, each with its block: the input, and a motion that it acts along.
+    """Signals that drive a controller, each with its block: the input, and a motion if it uses one.
 
-    raises ModelError: a block has the name of what another one makes of that motion
+    raises ModelError: a block has the name of the controller's symbol for that motion
     """
     law = block_symbol(part.name) if part.dead_time is None else delay_symbol(part.name)
     if not acts_along_another(diagram, part):
@@ -96,7 +96,7 @@ def _rows_of_link(part: Linked) -> list[Row]:
 
 
 def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
-    """Terms by their signal: a part may take the signal that it makes."""
+    """Terms summed by signal: a part may use the signal that it produces."""
     row: Row = {}
     for signal, coefficient in terms:
         row[signal] = row.get(signal, sp.S(0)) + _as_written(coefficient)
@@ -104,12 +104,12 @@ def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
 
 
 def _as_written(weight: sp.Expr) -> sp.Expr:
-    """The weight with its decimal numbers as fractions: what floats sum up to is never quite 0."""
+    """The weight with decimal numbers as fractions, because sums of floats are seldom exactly 0."""
     return weight.xreplace({x: exact_decimal(x) for x in weight.atoms(sp.Float)})
 
 
 def has_actuation(part: Moving) -> bool:
-    """Whether the body has actuation effects: the force that acts is then not the command."""
+    """Whether the body has actuation effects, so that the acting force is not the command."""
     return any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
 
 
@@ -121,11 +121,12 @@ def transfer(
     given: str | tuple[str, ...] = (),
     seconds: float = math.inf,
 ) -> dict[str, sp.Expr]:
-    """Coefficients of `output` = sum of coefficient * input.
+    """Coefficients in `output` = sum of coefficient * input.
 
-    inputs: signals from outside (default: all); those left out are zero
+    inputs: signals from outside (default: all); all others are zero
     given: prescribed motions, in place of the outside forces that drive them
     seconds: after which the elimination stops
+    returns: input -> coefficient
     raises ModelError: unknown signal, a loop without a solution, or more seconds than allowed
     """
     until = monotonic() + seconds
@@ -152,7 +153,7 @@ def transfer(
 
 
 def round_trip(diagram: Diagram, part: Control) -> sp.Expr:
-    """What comes back at the output of a controller for 1 put in there, all else at work."""
+    """Loop gain at the output of a controller: the response there to 1 at the opened loop."""
     opened, out = diagram.open_at(part.name), part.output
     ways = paths(diagram, part)
     return sp.Add(*(product(law, transfer(opened, s, (out,))[out]) for s, law in ways))
@@ -166,7 +167,7 @@ def _driver(diagram: Diagram, motion: str) -> str:
 
 
 def _order(unknown: list[str], output: str, diagram: Diagram) -> list[str]:
-    """Forces first, then the output, motions last."""
+    """Order of elimination: forces first, then the output, motions last."""
     motions = [b.motion for b in diagram.blocks if isinstance(b, Moving)]
     forces = [s for s in unknown if s not in motions]
     forces.sort(key=lambda s: s == output)
@@ -196,7 +197,7 @@ def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
 
 
 def _vanishes(coefficient: sp.Expr) -> bool:
-    """Whether a sum with inverses in it is zero, as seen exactly on random rational matrices."""
+    """Whether a sum that contains inverses is zero, decided on exact random rational matrices."""
     if not (coefficient.is_Add and any(p.exp < 0 for p in coefficient.atoms(sp.Pow))):
         return False
     return counterexample(coefficient, sp.S(0), tries=1) is None
@@ -215,7 +216,7 @@ def _mostly_negative(expression: sp.Expr) -> bool:
 
 
 def product(left: sp.Expr, right: sp.Expr) -> sp.Expr:
-    """The product, a plain number carried into a sum."""
+    """The product; a plain number is multiplied into a sum."""
     # a plain number is carried into a sum, so that like terms meet
     if right.is_Add and left.is_Number:
         return sp.Add(*(left * a for a in right.args))

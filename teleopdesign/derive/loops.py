@@ -1,4 +1,4 @@
-"""Loops of a diagram, by the names of their signals."""
+"""Loops of a diagram, as the names of their signals."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..diagrams.second_input import acts_along_another
 
 
 def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
-    """The shortest loop through a signal, of junctions alone where there is one; () if none."""
+    """The shortest loop through a signal, preferably of junctions alone; () if there is none."""
     for parts in (diagram.junctions, diagram.parts):
         makers = {s: part for part in parts for s in part.outputs}
         before: dict[str, str] = {}
@@ -32,7 +32,7 @@ def _inputs_of(diagram: Diagram, part: Part) -> tuple[str, ...]:
 
 
 def _path_back(before: Mapping[str, str], at: str, signal: str) -> tuple[str, ...]:
-    """From the signal along the search, which ran against the wires, so in their order."""
+    """The loop in the direction of the wires; the search ran in the other direction."""
     way = [at]
     while way[-1] != signal:
         way.append(before[way[-1]])

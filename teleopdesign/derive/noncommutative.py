@@ -30,7 +30,7 @@ _DEEPEST = 4  # denominators multiplied out, one inside the other
 
 @dataclass
 class _Algebra:
-    """Letters for inverses of sums and the rules they obey, collected while reading expressions."""
+    """Letters for inverses of sums and their rules, collected while expressions are read."""
 
     denominators: dict[str, WordPolynomial] = field(default_factory=dict)
     names: dict[sp.Expr, str] = field(default_factory=dict)
@@ -113,7 +113,7 @@ class _Algebra:
         return None
 
     def vanishes(self, polynomial: WordPolynomial, depth: int = _DEEPEST) -> bool:
-        """Whether the polynomial is 0, denominators multiplied out from both sides."""
+        """Whether the polynomial is proven 0, with denominators multiplied out from both sides."""
         polynomial = self.reduce(polynomial)
         if not polynomial:
             return True
@@ -154,7 +154,7 @@ def _sum(parts: Sequence[WordPolynomial]) -> WordPolynomial:
 def proved_equal(left: sp.Expr, right: sp.Expr) -> bool:
     """Whether left = right is proven, for all blocks for which the inverses exist.
 
-    True is an exact proof; False says only that the search for one failed.
+    True is an exact proof. False means only that no proof was reached.
     """
     algebra = _Algebra()
     a, b = algebra.read(sp.sympify(left, strict=True)), algebra.read(sp.sympify(right, strict=True))
@@ -164,12 +164,12 @@ def proved_equal(left: sp.Expr, right: sp.Expr) -> bool:
 def insert_matrices(
     expression: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix], *, size: int | None = None
 ) -> sp.Matrix:
-    """The expression with matrices in place of its symbols, exact where they are rational.
+    """The expression with matrices in place of its symbols, exact if they are rational.
 
-    Floating numbers in it count as the fractions that they are, so that what is zero stays so. A
-    dead time is a number: the first entry of its symbol's matrix, and 15.
+    Floating-point numbers in the expression are converted to exact fractions, so that a zero stays
+    zero. A dead time becomes a number: the first entry of the matrix of its symbol, plus 15.
 
-    size: rows of each matrix; default: as the first of the blocks
+    size: rows of each matrix; default: those of the first block
     raises ModelError: there is no block, and no size
     """
     if size is None:
@@ -195,7 +195,7 @@ def insert_matrices(
 
 
 def _scalar(late: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix]) -> sp.Expr:
-    """A dead time e^(-s T) as a number that any e^(-s T) could be; a sum of T as a product."""
+    """A number in place of the dead time e^(-s T); a sum of dead times becomes a product."""
     times = sp.Poly(-late.args[0] / S, *(late.free_symbols - {S}))
     factors = ((15 + blocks[t][0, 0]) ** n for t, n in zip(times.gens, times.coeffs(), strict=True))
     return sp.Mul(*factors)
@@ -204,9 +204,9 @@ def _scalar(late: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix]) -> sp.Expr:
 def counterexample(
     left: sp.Expr, right: sp.Expr, *, size: int = 2, tries: int = 3, seed: int = 1
 ) -> dict[sp.Symbol, sp.Matrix] | None:
-    """Matrices on which two expressions differ, in exact numbers; None where they agree.
+    """Matrices on which two expressions differ, in exact numbers; None if they agree in all draws.
 
-    size: rows of the matrices;  tries: draws before None;  seed: of the draws
+    size: rows of the matrices;  tries: largest number of draws;  seed: of the draws
     """
     random = Random(seed)
     symbols = sorted(left.free_symbols | right.free_symbols, key=str)

@@ -1,4 +1,4 @@
-"""Expressions in blocks as a paper writes them: Gamma for I + H, what is subtracted last."""
+"""Expressions in blocks as a paper writes them: Gamma for I + H, subtracted terms last."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from ..realise.lti import S
 
 
 def block_symbol(name: str) -> sp.Symbol:
-    """A symbol for the named block; the symbol commutes with no other block, as matrices do."""
+    """A symbol for the named block; it does not commute with other blocks, as matrices do not."""
     return sp.Symbol(name, commutative=False)
 
 
 def motion_controller_symbol(name: str) -> sp.Symbol:
-    """What the controller of that name makes of the motion along whose velocity it acts.
+    """Symbol V_K of a controller K for the motion along whose velocity it acts.
 
-    Where that motion is not its input: output = K input + V_K motion
+    If that motion is not its input: output = K input + V_K motion
     """
     return block_symbol(f"V_{name}")
 
 
 def delay_symbol(name: str) -> sp.Expr:
-    """A delay block of that name, e^(-s T) with its name for T: it commutes with every block."""
+    """Transfer function e^(-s T) of a delay block, its name for T; commutes with all blocks."""
     return sp.exp(-S * dead_time_symbol(name))
 
 
 def dead_time_symbol(name: str) -> sp.Symbol:
-    """Dead time (s) of the delay block of that name."""
+    """Symbol of the dead time (s) of the named delay block."""
     return sp.Symbol(name, positive=True)
 
 
 def with_gamma(expression: sp.Expr) -> sp.Expr:
-    """The expression with Gamma = I + H by its name: X + H X is written Gamma X."""
+    """The expression with the symbol Gamma for I + H: X + H X becomes Gamma X."""
     if not expression.args:
         return expression
     expression = expression.func(*(with_gamma(a) for a in expression.args))
@@ -52,14 +52,14 @@ def with_gamma(expression: sp.Expr) -> sp.Expr:
 
 
 def _sort_terms(expression: sp.Add) -> list[tuple[bool, sp.Expr]]:
-    """(is subtracted, term), blocks before their products, what is subtracted last."""
+    """Sorted (is subtracted, term): blocks before their products, subtracted terms last."""
     terms = [(bool(t.as_coeff_Mul()[0] < 0), t) for t in expression.args]
     rank = sorted(terms, key=lambda x: (x[0], len(sp.Mul.make_args(x[1])), str(x[1])))
     return [(negative, -t if negative else t) for negative, t in rank]
 
 
 def _strip_plus(terms: str) -> str:
-    """The sum without the plus that it begins with; a minus stands at its term."""
+    """The sum without a leading plus; a leading minus is joined to its term."""
     return f"-{terms[3:]}" if terms.startswith(" - ") else terms.removeprefix(" + ")
 
 
@@ -96,12 +96,12 @@ def as_text(expression: sp.Expr) -> str:
 
 
 def as_latex(expression: sp.Expr) -> str:
-    """The expression as LaTeX, blocks in the order in which they stand."""
+    """The expression as LaTeX, with the blocks in their order."""
     return str(_Latex().doprint(expression))
 
 
 def name_as_latex(name: str) -> str:
-    """The name of a transfer function: That_M and R_M/R_D with their indices in braces."""
+    """The name of a transfer function as LaTeX: That_M and R_M/R_D with their indices in braces."""
     return "/".join(_symbol_text(part) for part in name.split("/"))
 
 
@@ -114,7 +114,7 @@ def _symbol_text(name: str) -> str:
 
 
 def polynomial_as_text(coefficients: Sequence[float], variable: str = "s") -> str:
-    """2 s^2 + 3.5 s - 1, from the highest power; four digits."""
+    """A polynomial such as 2 s^2 + 3.5 s - 1, from the highest power, with four digits."""
     n, out = len(coefficients) - 1, ""
     for k, c in enumerate(coefficients):
         if c == 0 and n > 0:

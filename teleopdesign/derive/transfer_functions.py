@@ -1,4 +1,4 @@
-"""The transfer functions and impedances of a haptic interface that have a name."""
+"""The named transfer functions and impedances of a haptic interface."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class TransferFunctions:
         return self.expressions[name]
 
     def text(self) -> str:
-        """One line for each: name = expression."""
+        """One line for each function: name = expression (meaning)."""
         return "\n".join(f"{n} = {as_text(e)}    ({self.texts[n]})" for n, e in self._short())
 
     def latex(self) -> str:
-        """An align environment's body, one line for each."""
+        """The body of an align environment, one line for each function."""
         return " \\\\\n".join(f"{_LATEX.get(n, n)} &= {as_latex(e)}" for n, e in self._short())
 
     def _short(self) -> list[tuple[str, sp.Expr]]:
@@ -58,11 +58,11 @@ _LATEX = {
 
 
 def transfer_functions(diagram: Diagram) -> TransferFunctions:
-    """Transfer functions of a haptic interface that have names: T_o, T_MBC, T_FF, T_H, Zhat_M, L.
+    """The named transfer functions of a haptic interface: T_o, T_MBC, T_FF, T_H, Zhat_M, L.
 
-    T_o, T_MBC, T_FF and T_H: from R_D to R_M at R_V = 0, uncompensated, with C, with H, with both;
-    Zhat_M = (R_D - R_M)/L, and L where there is a position loop K. Of these, the ones for which the
-    diagram has the blocks; blocks that one does not name are left out of the diagram for it.
+    T_o, T_MBC, T_FF and T_H are from R_D to R_M at R_V = 0: uncompensated, with C, with H, with
+    both. Zhat_M = (R_D - R_M)/L. L is the response of a position loop K. Only functions for which
+    the diagram has the blocks are derived; other blocks are left out of the diagram for them.
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
     """
     cases = named_cases(diagram)
@@ -75,7 +75,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
 class Case:
     """Input, output and prescribed motions of one transfer function; other inputs are zero.
 
-    given: prescribed motions, as in `transfer`;  text: for a reader
+    given: prescribed motions, as in `transfer`;  text: meaning in words
     """
 
     diagram: Diagram
@@ -85,7 +85,7 @@ class Case:
     text: str
 
     def derive(self, *, seconds: float = math.inf) -> sp.Expr:
-        """The expression in the blocks; arguments and errors as of `transfer`."""
+        """The expression in the blocks; arguments and errors are those of `transfer`."""
         transfers = transfer(
             self.diagram, self.output, (self.input,), given=self.given, seconds=seconds
         )
@@ -93,7 +93,7 @@ class Case:
 
 
 def named_cases(diagram: Diagram) -> dict[str, Case]:
-    """The transfer functions of a haptic interface that have a name, see `transfer_functions`."""
+    """The cases of the named transfer functions of a haptic interface, see `transfer_functions`."""
     force = diagram.open_at("K")
     by_name: dict[str, Case] = {}
     if diagram.has("Z_H"):
@@ -121,6 +121,7 @@ def return_difference(diagram: Diagram, name: str) -> sp.Expr:
     """Return difference 1 - loop gain at the output of controller `name`.
 
     Closed-loop poles are its zeros; every other loop stays closed. Blocks keep their order.
+
     raises ModelError: `name` is no controller
     """
     block = diagram.block(name)

@@ -35,15 +35,15 @@ _TEXTS = {
 
 
 def has_two_sides(diagram: Diagram) -> bool:
-    """Whether it has the motions, forces and outside forces of a teleoperator's two sides."""
+    """Whether the diagram has the motions, forces and outside forces of a teleoperator."""
     outside = {"F_u", "F_d"} <= set(diagram.outside)
     return outside and set(_SIGNALS) <= set(diagram.signals)
 
 
 def two_port_cases(diagram: Diagram) -> dict[str, Case]:
-    """Input and output of each function of a teleoperator, without the transparency error.
+    """The case of each function of a teleoperator, without the transparency error.
 
-    raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
+    raises ModelError: the diagram lacks X_m, F_m of a master or X_s, F_s of a slave
     """
     for name in _SIGNALS:
         if name not in diagram.signals:
@@ -65,10 +65,10 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
 def two_port_functions(
     diagram: Diagram, *, convention: Convention = "position"
 ) -> TransferFunctions:
-    """Every function of a teleoperator; the last two where it has an environment Z_E.
+    """Every function of a teleoperator; Z_t and Z_t - Z_E only with an environment Z_E.
 
-    convention: "position": as above;  "velocity": Hannaford's, see `conventions`
-    raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s; no convention
+    convention: "position", or "velocity" as in Hannaford's hybrid matrix, see `conventions`
+    raises ModelError: the diagram lacks X_m, F_m of a master or X_s, F_s of a slave; no convention
     """
     check_convention(convention)
     expressions = {name: case.derive() for name, case in two_port_cases(diagram).items()}

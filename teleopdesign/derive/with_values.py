@@ -1,4 +1,4 @@
-"""A derived transfer function with the linear form of every block in place."""
+"""A derived transfer function with the linear form of every block inserted."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ def with_values(
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
-    One degree of freedom. given: prescribed motions
+    For one degree of freedom.
+
+    given: prescribed motions
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, see `linear_blocks`
     """
@@ -42,7 +44,7 @@ def with_values(
 def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
     """Symbol of a derived expression -> transfer function of the block, stage or dead time.
 
-    Substituted into a result of `derive`, they leave a function of s; dead times are in s.
+    Substituted into a result of `derive`, these leave a function of s; dead times are in s.
     """
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
@@ -61,8 +63,10 @@ def transfer_function(
 ) -> tuple[control.TransferFunction, tuple[str, ...]]:
     """The transfer function as a python-control system, and the names without linear form.
 
-    Its input and output are called as the signals are, so that `control.interconnect` joins it.
-    Arguments as in `with_values`;  delay_order: of the Pade approximation of dead times
+    Its input and output have the names of the signals, so that `control.interconnect` can connect
+    it. Other arguments are those of `with_values`.
+
+    delay_order: of the Pade approximation of dead times
     """
     expression, linear = with_values(diagram, output=output, input=input, given=given, speed=speed)
     system = as_transfer_function(expression, delay_order=delay_order)

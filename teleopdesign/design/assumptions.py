@@ -1,4 +1,4 @@
-"""What a design takes for granted because no record says it; every number can be stated."""
+"""Assumptions of a design about values that no record shows; each can be stated by the user."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from ..errors import ModelError
 class Assumptions:
     """Assumptions of a design, SI. None: derived from the record, as `design` says.
 
-    load: inertia of what the hand stands for, kg or kg m^2; None: three times the device's
+    load: inertia that stands for the hand, kg or kg m^2; None: three times that of the device
     sample_period: of the controller, s; None: that of the record
     delay: from a sample to the change of the command, s; None: one sample period
     bandwidth: of the low-pass in H, Hz
     velocity_bandwidth: of the filter on the differenced position, Hz; None: 50, at most 0.1/period
-    errors: standard errors to either side that a level may be off; 1.96: 95 %
-    fraction: part of the least level within these errors that is cancelled, at most 1
-    delay_factor: H stays stable with this many times the delay of its loop
-    count_force: part of the level by which one encoder count may move a smoothed cancellation
+    errors: half width of the interval of a level, in standard errors; 1.96: 95 %
+    fraction: part of the least level in this interval that is cancelled, at most 1
+    delay_factor: H remains stable with this multiple of the delay of its loop
+    count_force: part of the level by which one encoder count may change a smoothed cancellation
     counts: encoder counts in the bristle length of a Dahl cancellation
-    amplitude, frequency: of the motion that is predicted, m or rad, Hz; None: from the record
+    amplitude, frequency: of the predicted motion, m or rad, Hz; None: from the record
     """
 
     load: float | None = None

@@ -1,8 +1,8 @@
-"""The motion-based cancellation C that identified friction allows.
+"""The motion-based cancellation C that the identified friction allows.
 
-The level that is cancelled stays below the least level that friction may take, so that the pair of
-friction and cancellation takes energy: P37 to P39 for ideal Coulomb friction, whatever the law,
-P43 and P44 where friction is a spring before it slides.
+The cancelled level stays below the least level that friction may have, so that friction and
+cancellation together dissipate energy: P37 to P39 for ideal Coulomb friction, whatever the law, P43
+and P44 for friction that is a spring before it slides.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ STIFFNESS_FRACTION = 0.9
 
 
 def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
-    """Upper bound of acting force per commanded force, over the intervals of the parameters.
+    """Upper bound of the acting force per commanded force, over the intervals of the parameters.
 
-    raises ModelError: no bound is known of an effect of the actuation
+    raises ModelError: no bound is known for an effect of the actuation
     """
     command = 1e-3 * reach.command  # a small one: saturation only takes from it
     gain = largest_acting_force(body, command, reach, errors=errors) / command
@@ -44,9 +44,9 @@ def cancelled_level(
     gain: float,
     assumptions: Assumptions,
 ) -> Reason | None:
-    """The level to cancel, in commanded force; None where no level is sure.
+    """The level to cancel, as a commanded force; None where no level is certain.
 
-    None is where the least one may be zero, or where the records never come near the level.
+    It is None if the least level may be zero, or if the records never reach the level.
     """
     if friction.lowest.low <= 0 or not friction.slides_within(reach.travel):
         return None
@@ -73,9 +73,10 @@ def dahl_cancellation(
     late: float,
     damping: float,
 ) -> ProposedController | None:
-    """A Dahl cancellation of that level; None where presliding allows no stiffness.
+    """A Dahl cancellation with that level; None where presliding allows no stiffness.
 
-    gain: that acts of a command;  late: delay of its force, s;  damping: of small motion, lower end
+    gain: acting force per commanded force;  late: delay of the force, s
+    damping: of small motion, lower end of its interval
     """
     acting = level.value * gain
     unit = unit_of("position", axis)
@@ -124,7 +125,7 @@ def smoothed_cancellation(
     period: float,
     filter_bandwidth: float,
 ) -> ProposedController:
-    """A smoothed Coulomb cancellation of that level.
+    """A smoothed Coulomb cancellation with that level.
 
     period: of sampling, s;  filter_bandwidth: of the filter on the differenced position, Hz
     """
@@ -146,9 +147,9 @@ def smoothed_cancellation(
 
 
 def smoothing_name(names: Iterable[str], *, block: str = "") -> str | None:
-    """The name among these by which a law says how wide its step at rest is smoothed; None if none.
+    """The name of the parameter that smooths a law's step at rest; None if there is none.
 
-    names: such as "law.parameter", after `block` where that is stated
+    names: such as "law.parameter", after `block` if that is stated
     """
     declared = {f"{block}{law.name}.{law.smoothing}" for law in laws_that_declare("smoothing")}
     return next((name for name in names if name in declared), None)

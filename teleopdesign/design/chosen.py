@@ -1,4 +1,4 @@
-"""A proposed controller, each of its numbers with its reason."""
+"""A proposed controller, with a reason for each of its numbers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Reason:
 class ProposedController:
     """A controller and the reasons for its numbers.
 
-    controller: stages in series, parameters in SI;  reasons: one for each parameter that was chosen
+    controller: stages in series, parameters in SI;  reasons: one for each chosen parameter
     """
 
     controller: Controller
@@ -34,7 +34,7 @@ class ProposedController:
 
     @property
     def law(self) -> str:
-        """Name of its first law."""
+        """Name of the first law of the controller."""
         return self.controller.stages[0].law.name
 
     def __repr__(self) -> str:

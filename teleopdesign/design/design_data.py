@@ -55,7 +55,7 @@ def design_data(design: Design) -> dict[str, Any]:
 
 
 def _friction(design: Design) -> dict[str, Any] | None:
-    """The friction interval, and half of the travel in bristle lengths."""
+    """The friction interval, and half of the travel in bristle lengths; None without friction."""
     if design.friction is None:
         return None
     lengths = design.friction.bristle_lengths(design.reach.travel)
@@ -63,7 +63,7 @@ def _friction(design: Design) -> dict[str, Any] | None:
 
 
 def _impedance(felt: FeltImpedance) -> dict[str, Any]:
-    """Size (dB) and phase (deg) by case over frequency (Hz), by how they are known."""
+    """Magnitude (dB) and phase (deg) of each case over frequency (Hz), simulated and predicted."""
     data: dict[str, Any] = {"missing": list(felt.missing)}
     for how, one in (("simulated", felt.simulated), ("predicted", felt.predicted)):
         if one is None:

@@ -1,8 +1,9 @@
-"""Does the compensated device release energy? Sought over sinusoids of several sizes and speeds.
+"""Search for energy that the compensated device releases, over sinusoids of many sizes and speeds.
 
-The hand moves the device along a prescribed sinusoid; the energy that it puts in over a steady
-cycle is negative where the device releases energy. All is simulated: identified effects, encoder,
-sampling, delay. It is evidence for the simulated motions, not a proof for others.
+The hand moves the device along a prescribed sinusoid. The energy that the hand puts in over a
+steady cycle is negative where the device releases energy. The simulation has all identified
+effects, encoder, sampling and delay. The result is evidence for the simulated motions, and no proof
+for others.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class CycleEnergy:
 
 
 def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]:
-    """Smaller and faster motions than the stated one, within the recorded speed."""
+    """The stated motion, smaller and faster ones, up to the recorded speed."""
     for size in SIZES:
         for faster in FREQUENCIES:
             one = replace(
@@ -46,7 +47,7 @@ def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]
 
 
 def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> CycleEnergy:
-    """Energy that the hand puts in over a steady cycle, simulated."""
+    """Energy that the hand puts in over a steady cycle, from a simulation."""
     try:
         cycle = steady_cycle(diagram, motion, sampling)
     except ModelError:
@@ -58,7 +59,7 @@ def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
 def energy_claim(
     diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
 ) -> Claim:
-    """Whether the device takes energy in along every simulated motion. Evidence, not proof."""
+    """Evidence, not proof, on whether the device takes energy along every simulated motion."""
     trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
     supplying = [t for t in trials if t.energy < 0]
     # where it releases energy, the slowest such motion says from where on

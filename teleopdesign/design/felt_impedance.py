@@ -1,8 +1,8 @@
 """The impedance that a hand feels of the designed device, predicted and simulated.
 
-Along sinusoids of the stated motion's peak speed, from its frequency up: first harmonic of the
-force error over the motion, Zhat_M, by describing functions and by a simulation of all identified
-effects with sampling and delay.
+The first harmonic of the force error over the motion, Zhat_M, along sinusoids of the stated peak
+speed, at the stated frequency and above: by describing functions, and by a simulation of all
+identified effects with sampling and delay.
 """
 
 from __future__ import annotations
@@ -25,9 +25,11 @@ MULTIPLES, MOST = (1.0, 2.0, 5.0, 10.0), 0.05
 
 @dataclass(frozen=True)
 class FeltImpedance:
-    """Zhat_M of the four cases; None, with the reason, where there is none.
+    """Zhat_M of the four cases; None where it could not be computed.
 
-    simulated: measured in simulation;  predicted: by describing functions, controllers continuous
+    simulated: measured in simulation
+    predicted: by describing functions, with continuous controllers
+    missing: the reason for each None
     """
 
     simulated: ImpedanceMap | None
@@ -35,7 +37,7 @@ class FeltImpedance:
     missing: tuple[str, ...]
 
     def lines(self) -> list[str]:
-        """A table: case by frequency, size and phase, predicted in brackets."""
+        """A table of cases by frequency: magnitude and phase, predicted ones in brackets."""
         impedance = self.simulated or self.predicted
         if impedance is None:
             return [f"  none: {why}" for why in self.missing]
@@ -59,7 +61,7 @@ class FeltImpedance:
 def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> FeltImpedance:
     """Zhat_M of the device without and with compensation at the stated peak speed.
 
-    hybrid: a device with C and H, either may be absent, without a hand
+    hybrid: a device with C and H (either may be absent), without a hand
     """
     cases = four_cases(hybrid)
     wanted = motion.frequency * np.array(MULTIPLES)

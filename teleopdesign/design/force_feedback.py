@@ -1,11 +1,11 @@
-"""The force feedback H that delay allows: a low-pass with a gain that falls with speed.
+"""The force feedback H that the delay allows: a low-pass with a gain that falls with speed.
 
 At rest, where its gain is greatest, the loop of H between device (m) and load (m_H) is
 
     k m_H/(m + m_H) / (tau s + 1) e^(-s T_d)
 
-T_d: computing delay, a sample period of hold (half of it the command's, half that of the error
-which the sampled low-pass takes in), and what the identified actuation adds.
+T_d is the sum of the computing delay, of one sample period for holds (half for the command, half
+for the error at the input of the sampled low-pass), and of the delay of the identified actuation.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ class FeedbackLoop:
 
     @property
     def crossover(self) -> float:
-        """Where the loop gain is 1, rad/s; 0 where it is below 1 everywhere."""
+        """Angular frequency at which the loop gain is 1, rad/s; 0 if it is below 1 everywhere."""
         return 2 * math.pi * self.bandwidth * math.sqrt(max(self.gain**2 - 1.0, 0.0))
 
     @property
     def largest_delay(self) -> float:
-        """Delay with which the loop is at its limit of stability, s; inf where none is."""
+        """Delay at the limit of stability, s; inf if the loop is stable with any delay."""
         w = self.crossover
         if w == 0.0:
             return math.inf
@@ -58,13 +58,13 @@ class FeedbackLoop:
 
     @property
     def phase_margin(self) -> float:
-        """Degrees; inf where the loop gain never reaches 1."""
+        """Phase margin in degrees; inf if the loop gain never reaches 1."""
         margin = (self.largest_delay - self.delay) * self.crossover
         return math.degrees(margin) if self.crossover else math.inf
 
 
 def whole_inertia(body: Body) -> float:
-    """Inertia of the body with what moves behind a compliance or gap, kg or kg m^2."""
+    """Inertia of the body, including the part behind a compliance or gap, kg or kg m^2."""
     for effect in [e for e in body.effects if e.role == "structure"]:
         body = body.without_effect(effect.name)
     return float(body.equation().inertia.subs(body.numbers()))
@@ -78,7 +78,7 @@ def identified_delay(body: Body) -> float:
 
 
 def largest_gain(*, share: float, bandwidth: float, delay: float, factor: float) -> float:
-    """Largest k at which the loop bears `factor` times its delay.
+    """Largest k at which the loop is stable with `factor` times its delay.
 
     share: m_H/(m + m_H);  bandwidth: of the low-pass, Hz;  delay: s
     """
@@ -102,9 +102,9 @@ def force_feedback(
     delay: float,
     smoothing_velocity: float,
 ) -> tuple[ProposedController, FeedbackLoop]:
-    """H for that body and load, and its loop at rest.
+    """H for a body and a load, and its loop at rest.
 
-    load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside it, 0: none
+    load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside H, 0: none
     """
     mass = whole_inertia(body)
     share, bandwidth = load / (mass + load), assumptions.bandwidth

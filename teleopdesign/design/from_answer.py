@@ -1,4 +1,4 @@
-"""What a design starts from: the model that a diagnosis ended with, live or from its answer."""
+"""The starting point of a design: the last model of a diagnosis, in memory or from its answer."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from ..model import Model
 
 @dataclass(frozen=True, eq=False)
 class DiagnosedModel(ByValue):
-    """A model, and how well it stands: verdict and what is left, in noise floors.
+    """A model and its quality.
 
-    verdict: of a diagnosis, such as "model_adequate";  left: its check error over the noise floor,
-        about 1 where only sensor noise is left
+    verdict: of the diagnosis, such as "model_adequate"
+    left: check error of the model over the noise floor, about 1 where only sensor noise is left
     """
 
     experiment: Experiment
@@ -30,9 +30,9 @@ class DiagnosedModel(ByValue):
 
 
 def diagnosed_model(diagnosis: Diagnosis) -> DiagnosedModel:
-    """The model that a diagnosis ends with, its verdict, and what the model leaves.
+    """The last model of a diagnosis, with its verdict and its check error in noise floors.
 
-    The same as `read_answer` takes from the file of that diagnosis.
+    `read_answer` gives the same from the file of that diagnosis.
     """
     return DiagnosedModel(diagnosis.experiment, diagnosis.model, diagnosis.verdict, diagnosis.left)
 
@@ -46,8 +46,7 @@ def read_answer(
 ) -> DiagnosedModel:
     """The model of an answer that `teleopdesign diagnose --json` wrote for that experiment.
 
-    joint: of an arm, which is taken out of it: its verdict, with the arm's last model
-
+    joint: of an arm: the design is for this joint alone, with its verdict and the arm's last model
     raises ExperimentError: no such file, no such answer, one of another experiment, or an effect
         that is not known
     """

@@ -1,8 +1,8 @@
-"""What linear theory says: friction as a damper and a spring of the same first harmonic.
+"""Linear theory of a design: friction as a damper and a spring with the same first harmonic.
 
-Bode plots need linear blocks. Friction becomes the damper, with presliding also the spring, of its
-first harmonic along the stated motion; a Dahl cancellation less of both in the same way; smoothed
-friction and schedules are frozen at the mean speed of the motion.
+Bode plots need linear blocks. Friction is replaced by a damper, and with presliding also by a
+spring, with the same first harmonic along the stated motion. A Dahl cancellation reduces both in
+the same way. Smoothed friction and schedules are frozen at the mean speed of the motion.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FRICTION = ("friction_level", "friction_factor", "friction_speed", "friction_sha
 
 
 def linear_cases(hybrid: Diagram, motion: StatedMotion) -> dict[str, Diagram]:
-    """The four cases with friction, and a Dahl cancellation, as dampers of equal loss."""
+    """The four cases, with friction and a Dahl cancellation as equivalent dampers and springs."""
     return {case: _linear(diagram, motion) for case, diagram in four_cases(hybrid).items()}
 
 
@@ -36,7 +36,7 @@ def mean_speed(motion: StatedMotion) -> float:
 
 
 def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, float], str]:
-    """Rms force error of each case along the motion by abs(Zhat_M) A, and what was left out."""
+    """Rms force error of each case along the motion by abs(Zhat_M) A, and the neglected effects."""
     at = np.array([motion.frequency])
     gains = bode(
         linear_cases(hybrid, motion),
@@ -52,7 +52,7 @@ def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, fl
 
 
 def transparency(hybrid: Diagram, motion: StatedMotion) -> FrequencyResponse:
-    """T, from R_D to R_M, of the four cases; the diagram has a load in the place of the hand."""
+    """T, from R_D to R_M, of the four cases; the diagram has a load in place of the hand."""
     frequency = np.geomspace(0.1, 100.0, 301)
     return bode(linear_cases(hybrid, motion), frequency=frequency, speed=mean_speed(motion))
 
@@ -74,7 +74,7 @@ def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
 
 
 def without_friction(body: Body, *, damping: float = 0.0, stiffness: float = 0.0) -> Body:
-    """The body without friction, with an added damper (N s/m) and spring (N/m), at least 0."""
+    """The body without friction; a damper (N s/m) and spring (N/m) are added, sums at least 0."""
     for effect in [e for e in reversed(body.effects) if e.role in FRICTION]:
         body = body.without_effect(effect.name)
     for name, parameter, more in (
@@ -90,7 +90,7 @@ def without_friction(body: Body, *, damping: float = 0.0, stiffness: float = 0.0
 
 
 def _equal_friction(body: Body, motion: StatedMotion) -> tuple[float, float]:
-    """Damping and stiffness that friction amounts to along a cycle, N s/m and N/m (P16, P18)."""
+    """Damping and stiffness equivalent to friction along a cycle, N s/m and N/m (P16, P18)."""
     _, friction = force_needed(body, motion)
     _, _, velocity, _ = motion.cycle(len(friction))
     if not velocity.any() or not friction.any():

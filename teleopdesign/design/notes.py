@@ -1,4 +1,4 @@
-"""What needs care in a design, in sentences made from its numbers."""
+"""Warnings on a design, as sentences made from its numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CLOSE = 0.1
 
 
 def notes_on(design: Design, answer: DiagnosedModel) -> tuple[str, ...]:
-    """The notes of a design, those on its model first."""
+    """The notes of a design; those on its model come first."""
     makers: tuple[Callable[[Design], list[str]], ...] = (
         _friction,
         _sensors,
@@ -147,7 +147,7 @@ def _list_left_out(design: Design) -> list[str]:
 
 
 def _compare_predictions(design: Design) -> list[str]:
-    """Where the quasi-static prediction and the simulation differ."""
+    """Notes on cases where the quasi-static prediction and the simulation differ."""
     unit, lines = unit_of("force", design.body.axis), list[str]()
     said: list[CasePrediction] = []
     for case, p in design.prediction.cases.items():

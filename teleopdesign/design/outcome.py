@@ -1,4 +1,4 @@
-"""The design that follows from a measurement: what is proposed, predicted and claimed."""
+"""The design that follows from a measurement: its proposals, predictions and claims."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ class Design(ByValue):
     """A compensation for the body at `place` of an experiment.
 
     body: as the diagnosis identified it;  friction: range of its level, None: no friction level
-    cancellation: C; None where no cancellation is sure to be passive
+    cancellation: C; None where no cancellation is certain to be passive
     other: the second-best law for C;  other_left: force error of the hybrid with that law
-    force_feedback: H, with its loop at rest;  prediction: force errors of the four cases
+    force_feedback: H;  loop: its loop at rest;  prediction: force errors of the four cases
     impedance: Zhat_M that a hand feels, simulated and by describing functions
-    residual: friction left in slow steady motion, at the middle of the travel
-    transparency: T of the four cases, by linear theory, with the load in the place of the hand
-    claims: on passivity, each with how it is known;  notes: what needs care, in sentences
+    residual: friction left in slow steady motion, in the middle of the travel
+    transparency: T of the four cases, by linear theory, with the load in place of the hand
+    claims: case -> claims on passivity, each with its proof or evidence;  notes: warnings
     """
 
     experiment: str
@@ -67,17 +67,17 @@ class Design(ByValue):
 
     @property
     def held(self) -> FeedbackLoop:
-        """The loop of H at rest where the device is held rigidly: a load without limit."""
+        """The loop of H at rest while the device is held rigidly: a load without limit."""
         gain = self.force_feedback.controller.names()["velocity_schedule.gain"]
         return replace(self.loop, gain=gain)
 
     @property
     def sampling(self) -> Sampling:
-        """How the controllers are sampled in simulation."""
+        """Sampling of the controllers in simulation."""
         return sampling_of(self.assumptions, self.reach)
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Force error over velocity in the four cases, what is left in slow motion, and T."""
+        """Plot force error over velocity in the four cases, friction left in slow motion, and T."""
         from ..plot.design_from_measurement import plot_design
 
         return plot_design(self)
@@ -92,9 +92,9 @@ class Design(ByValue):
         )
 
     def to_toml(self) -> str:
-        """The diagram as a file that `read_diagram` reads, with the reasons for each number.
+        """The diagram as text for a file that `read_diagram` reads, with reasons for each number.
 
-        A device with effects that no catalogue has is known by its name only there.
+        A device with effects that are in no catalogue is only a name in this file.
         """
         chosen = [c for c in (self.cancellation, self.force_feedback) if c is not None]
         comments = [
@@ -112,7 +112,7 @@ class Design(ByValue):
         return design_data(self)
 
     def to_json(self, path: str | Path) -> None:
-        """Write it as JSON."""
+        """Write the design as JSON."""
         write_json(path, self.as_dict())
 
     def __repr__(self) -> str:
@@ -120,7 +120,7 @@ class Design(ByValue):
 
 
 def _nameless(diagram: Diagram) -> tuple[Block, ...]:
-    """The blocks with bodies known by their name only."""
+    """The blocks, with bodies reduced to their name."""
     return tuple(
         replace(b, body=ANY) if isinstance(b, Moving | Attached) else b for b in diagram.blocks
     )

@@ -1,4 +1,4 @@
-"""Before and after: force error of the four cases, by linear theory, slow motion, simulation."""
+"""Force error of the four cases, by linear theory, for slow motion, and by simulation."""
 
 from __future__ import annotations
 
@@ -36,11 +36,12 @@ class CasePrediction(ByValue):
 
     Forces are in N or N m: rms about their mean over a cycle of the motion.
 
-    linear, quasi_static, simulated: the force error;  at_peak_speed: simulated
-    mean: simulated, what no linear theory holds (gravity, offsets)
+    linear, quasi_static, simulated: the force error by three methods
+    at_peak_speed: mean absolute force error at the peak speed, simulated
+    mean: of the simulated force error, which linear theory does not contain (gravity, offsets)
     energy: that the hand puts in per cycle, J, simulated
-    apart: rms of simulated less quasi-static;  at_reversals: part of its squares near reversals
-    failed: why there is no simulation, "" where there is one
+    apart: rms of simulated minus quasi-static;  at_reversals: part of its squares near reversals
+    failed: reason why there is no simulation; "" if there is one
     """
 
     linear: float
@@ -56,10 +57,11 @@ class CasePrediction(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Prediction(ByValue):
-    """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear.
+    """Predicted force errors.
 
-    hybrid: the diagram as simulated
-    rigid: a structure of the body that could not be simulated and was taken rigid, "" where none
+    cases: by case;  curves: simulated force error over velocity
+    left_out: effects that linear theory neglects;  hybrid: the diagram as simulated
+    rigid: a structure of the body that could not be simulated and was taken as rigid; "" for none
     """
 
     motion: StatedMotion
@@ -73,7 +75,7 @@ class Prediction(ByValue):
 def steady_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> xarray.Dataset:
     """The signals of a steady cycle of a prescribed motion.
 
-    raises ModelError: it cannot be simulated
+    raises ModelError: the diagram cannot be simulated
     """
     data = _simulate_case(diagram, motion, sampling, step=sampling.period / 10).data
     return data.isel(time=data["time"].values >= (CYCLES - 1) / motion.frequency)
@@ -82,16 +84,16 @@ def steady_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
 def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> float:
     """Rms force error of one diagram about its mean over a steady cycle, N or N m.
 
-    raises ModelError: it cannot be simulated
+    raises ModelError: the diagram cannot be simulated
     """
     return float(np.std(steady_cycle(diagram, motion, sampling)["E"].values))
 
 
 def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
-    """Predict the force error of the four cases along a motion that is prescribed.
+    """Predict the force error of the four cases along a prescribed motion.
 
-    hybrid: a device with C and H, either may be absent, without a hand
-    raises ModelError: not even the device alone can be simulated
+    hybrid: a device with C and H (either may be absent), without a hand
+    raises ModelError: not even the device without compensation can be simulated
     """
     linear, left_out = linear_error(hybrid, motion)
     simulated, rigid = _simulable(hybrid, motion, sampling)
@@ -108,7 +110,7 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
 def _simulate_cases(
     hybrid: Diagram, motion: StatedMotion, sampling: Sampling
 ) -> tuple[dict[str, Simulation], dict[str, str]]:
-    """The cases on one grid of time, and why others could not be simulated."""
+    """The simulations of the cases on one time grid, and why others could not be simulated."""
     step = sampling.period / 10
     while True:
         runs: dict[str, Simulation] = {}
@@ -127,7 +129,7 @@ def _simulate_cases(
 
 
 def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tuple[Diagram, str]:
-    """The diagram without structures that cannot be simulated, and their names."""
+    """The diagram without a structure that cannot be simulated, and the name of the structure."""
     (body,) = (b.body for b in hybrid.bodies if b.name == "Z_M")
     assert isinstance(body, Body)
     structure = next((e.name for e in body.effects if e.role == "structure"), "")

@@ -51,7 +51,7 @@ FILTER, FILTER_SHARE = 50.0, 0.1
 
 @dataclass(frozen=True)
 class Trial:
-    """One choice of C with its H, and the predicted force error of both."""
+    """One choice of C with its H, and the force error predicted for both."""
 
     cancellation: ProposedController | None
     force_feedback: ProposedController
@@ -61,7 +61,7 @@ class Trial:
 
     @property
     def left(self) -> float:
-        """Rms force error of the hybrid in simulation; inf where it cannot be simulated."""
+        """Rms force error of the hybrid in simulation; inf if it cannot be simulated."""
         case = self.prediction.cases["hybrid"]
         return float("inf") if case.failed else case.simulated
 
@@ -75,8 +75,9 @@ def design(
     """Propose cancellation C and force feedback H for an identified body; predict their effect.
 
     diagnosis: a diagnosis, or the content of an answer, from `read_answer`
-    place: which body; may be left out where there is one
-    Of the laws of C that are sure to be passive, the one that leaves the smaller force error.
+    place: which body; may be omitted if there is only one
+    Of the laws for C that are certain to be passive, the design has the one with the smaller force
+    error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
     if isinstance(diagnosis, Diagnosis):
@@ -120,7 +121,7 @@ def design(
 
 
 def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> Assumptions:
-    """The assumptions; missing ones are derived from record and body."""
+    """The assumptions, with missing ones derived from the record and the body."""
     period = assumptions.sample_period or reach.sample_period
     mass = whole_inertia(body)
     delay = period if assumptions.delay is None else assumptions.delay
@@ -134,7 +135,7 @@ def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> 
 def cancellations(
     body: Body, friction: FrictionInterval | None, reach: Reach, assumptions: Assumptions
 ) -> list[ProposedController]:
-    """The laws of C that are passive within all intervals; none without a guaranteed level."""
+    """The laws for C that are passive within all intervals; none if no level is certain."""
     if friction is None:
         return []
     gain = acting_gain(body, reach, errors=assumptions.errors)
@@ -195,13 +196,13 @@ def _trial(
 
 
 def _total_delay(body: Body, assumptions: Assumptions) -> float:
-    """Computing delay and what the identified actuation adds, s."""
+    """Computing delay plus the delay of the identified actuation, s."""
     assert assumptions.delay is not None
     return assumptions.delay + identified_delay(body)
 
 
 def _with_load(best: Trial, body: Body, assumptions: Assumptions) -> Diagram:
-    """The diagram with the load in the place of the hand."""
+    """The diagram with the load in place of the hand."""
     assert assumptions.load is not None
     inertia = replace(body.parameters["inertia"], value=assumptions.load)
     return haptic_interface(
@@ -219,7 +220,7 @@ def _claims(
     reach: Reach,
     assumptions: Assumptions,
 ) -> Mapping[str, tuple[Claim, ...]]:
-    """Claims by case."""
+    """The claims on passivity of each case."""
     by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
     if best.cancellation is not None and friction is not None:
         gain = acting_gain(body, reach, errors=assumptions.errors)

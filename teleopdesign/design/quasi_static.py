@@ -1,4 +1,4 @@
-"""What the laws say of slow motion: no filter, no sampling, no presliding, no compliance.
+"""Force error in slow motion by the laws: no filter, sampling, presliding or compliance.
 
     force error = (inertia a + forces + level sgn v - C(v)) / (1 + H(v))
 
@@ -28,7 +28,7 @@ _ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact
 def slow_body(body: Body) -> Body:
     """The body in slow motion: without presliding, memory, compliance, actuation and contact.
 
-    A tip then goes along with the body, and so does its friction.
+    The tip then moves with the body, so that friction of the tip acts on the body.
     """
     body = without_absent(body)
     for effect in [e for e in body.effects if e.role == "tip_level"]:
@@ -41,7 +41,7 @@ def slow_body(body: Body) -> Body:
 
 
 def force_needed(body: Body, motion: StatedMotion, *, rows: int = 2000) -> tuple[Array, Array]:
-    """Force that slow motion needs along a cycle, all of it and its friction, (rows,) each."""
+    """Force that slow motion needs along a cycle: total, and friction alone, (rows,) each."""
     body = slow_body(body)
     equation = body.equation()
     _, position, velocity, acceleration = motion.cycle(rows)
@@ -71,7 +71,7 @@ def _force_along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Ar
 def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
     """Steady output of a controller at an input and a velocity, (n,) each.
 
-    States are where they settle at that velocity: a low-pass passes, a bristle slides.
+    States have their steady value at that velocity; a low-pass passes, a bristle slides.
     """
     signals = {n: CONTROL_SIGNALS[n] for n in CONTROL_SIGNALS}
     equation = controller.equation("slow", signals)
@@ -96,7 +96,7 @@ def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 20
 
 
 def remaining_force(diagram: Diagram, force: Array, velocity: Array) -> Array:
-    """The part, (n,), of a resisting force that C and H leave to the hand in slow motion."""
+    """The part (n,) of a resisting force (n,) that C and H leave to the hand in slow motion."""
     gain = np.zeros_like(force)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)

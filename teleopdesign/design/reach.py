@@ -1,4 +1,4 @@
-"""What the records of an experiment reached: travel, speed, command, sensors, sampling."""
+"""The range of the records of an experiment: travel, speed, command, sensors, sampling."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..realise.reach import Reach
 def reach_of(experiment: Experiment, place: str) -> Reach:
     """The recorded range of one body: travel, speed, command, sensors and sampling.
 
-    raises ExperimentError: the body does not move in them
+    raises ExperimentError: the body does not move in the records
     """
     motions = [s.motion for s in prepare(experiment).stretches if s.motion.body == place]
     position = np.concatenate([m.position for m in motions])

@@ -1,10 +1,10 @@
-"""Search the numbers of C and H that leave the least force error, within what keeps them safe.
+"""Tune the numbers of C and H for the least force error, under the conditions that keep them safe.
 
-What is searched: the velocity a of a smoothed cancellation, or the stiffness of a Dahl one; gain k
-and velocity b of H. What is kept: the cancelled level (passivity), a not below its proposal (one
-encoder count), a stiffness not above it (P43, bristle length), k not above it (delay of the loop),
-and b (1 + k) >= a k (P13). The objective is the simulated force error of the hybrid along the
-stated motion, rms about its mean.
+Free numbers: the velocity a of a smoothed cancellation, or the stiffness of a Dahl cancellation;
+gain k and velocity b of H. Conditions: the cancelled level is kept (passivity), a is not below its
+proposal (one encoder count), the stiffness not above it (P43, bristle length), k not above it
+(delay of the loop), and b (1 + k) >= a k (P13). The objective is the simulated force error of the
+hybrid along the stated motion, rms about its mean.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class TunedControllers(ByValue):
     """C and H after the search.
 
     before, after: force error of the hybrid as proposed and as tuned, N or N m, rms
-    at_bound: numbers that a condition, or the range of the search, holds back
-    simulations: how many the search took
+    at_bound: numbers at the limit of a condition or of the search range
+    simulations: number of simulations that the search took
     """
 
     cancellation: Controller | None
@@ -56,8 +56,8 @@ class TunedControllers(ByValue):
 def refine(design: Design, *, simulations: int = 60) -> TunedControllers:
     """Search for a smaller force error from the numbers of a design; every condition still holds.
 
-    simulations: most that are run
-    raises ModelError: what was proposed cannot be simulated
+    simulations: largest number of simulations
+    raises ModelError: the proposed controllers cannot be simulated
     """
     from scipy.optimize import minimize
 
@@ -116,7 +116,7 @@ def refine(design: Design, *, simulations: int = 60) -> TunedControllers:
 
 
 def _range(design: Design) -> tuple[dict[str, float], dict[str, tuple[float, float]]]:
-    """Start and bounds of what is searched, by names of the diagram."""
+    """Start and bounds of the numbers that are searched, by their names in the diagram."""
     h = design.force_feedback.controller.names()
     k, b = h["velocity_schedule.gain"], h["velocity_schedule.scheduling_velocity"]
     start = {"H.velocity_schedule.gain": k, "H.velocity_schedule.scheduling_velocity": b}
@@ -139,7 +139,7 @@ def _range(design: Design) -> tuple[dict[str, float], dict[str, tuple[float, flo
 
 
 def _raise_corner(values: dict[str, float]) -> dict[str, float]:
-    """The values with b no smaller than P13 asks for: b (1 + k) >= a k."""
+    """The values, with b increased if P13 requires it: b (1 + k) >= a k."""
     smoothing = smoothing_name(values, block="C.")
     a = 0.0 if smoothing is None else values[smoothing]
     k = values["H.velocity_schedule.gain"]

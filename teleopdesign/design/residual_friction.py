@@ -1,4 +1,4 @@
-"""Friction that is left to the hand in slow steady motion, by the laws of friction, C and H."""
+"""Friction left to the hand in slow steady motion, by the laws of friction, C and H."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHARES = np.geomspace(0.01, 1.0, 41)
 
 @dataclass(frozen=True, eq=False)
 class ResidualFriction(ByValue):
-    """Friction that is left at each speed, in each case of compensation.
+    """Friction left at each speed, in each case of compensation.
 
     speeds: (n,), m/s or rad/s;  rows: case -> friction left, (n,), N or N m
     """
@@ -40,7 +40,7 @@ def residual_friction(
     speeds: Array,
     position: float,
 ) -> ResidualFriction:
-    """Residual friction of the four cases, forward, at one position, no load carried.
+    """Residual friction of the four cases, in forward motion at one position, without a load.
 
     speeds: (n,), m/s or rad/s;  position: m or rad
     """

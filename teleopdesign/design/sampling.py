@@ -1,4 +1,4 @@
-"""How the controllers of a design are sampled in simulation."""
+"""Sampling of the controllers of a design in simulation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .assumptions import Assumptions
 
 
 def sampling_of(assumptions: Assumptions, reach: Reach) -> Sampling:
-    """The sampling that assumptions state, with the encoder of the record.
+    """The sampling that the assumptions state, with the encoder of the record.
 
     assumptions: complete: period, delay and velocity filter are numbers
     """

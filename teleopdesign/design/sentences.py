@@ -126,7 +126,7 @@ def _predictions(design: Design) -> list[str]:
 
 
 def _impedance(design: Design) -> list[str]:
-    """Zhat_M of the four cases over frequency, at the stated motion's peak speed."""
+    """Zhat_M of the four cases over frequency, at the peak speed of the stated motion."""
     unit = unit_of("stiffness", design.body.axis)
     head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
     return [f"{head}functions)", *design.impedance.lines()]

@@ -1,4 +1,4 @@
-"""The sinusoid that a design is predicted for, within what the records reached."""
+"""The sinusoid for which a design is predicted, within the range of the records."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SLOWEST = 0.2
 
 @dataclass(frozen=True)
 class StatedMotion:
-    """centre + amplitude sin(2 pi frequency t); m or rad, Hz."""
+    """The motion centre + amplitude sin(2 pi frequency t); m or rad, Hz."""
 
     centre: float
     amplitude: float
@@ -29,12 +29,12 @@ class StatedMotion:
 
     @property
     def omega(self) -> float:
-        """rad/s"""
+        """Angular frequency, rad/s."""
         return 2 * math.pi * self.frequency
 
     @property
     def peak_speed(self) -> float:
-        """m/s or rad/s"""
+        """Peak speed, m/s or rad/s."""
         return self.omega * self.amplitude
 
     @property
@@ -55,9 +55,9 @@ class StatedMotion:
 
 
 def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMotion:
-    """The stated motion; by default a quarter of the travel at the recorded rms speed.
+    """The stated motion; by default at most a quarter of the travel, at the recorded rms speed.
 
-    raises ModelError: it leaves the recorded travel or speed
+    raises ModelError: the motion exceeds the recorded travel or speed
     """
     speed = math.sqrt(2) * reach.rms_speed
     speed = min(speed, 0.95 * reach.peak_speed)

@@ -1,4 +1,4 @@
-"""Is the compensated device passive? Claims, each with how it is known."""
+"""Claims on the passivity of the compensated device, each with its proof or evidence."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ from .linear import without_friction
 def compliant_claim(
     body: Body, chosen: ProposedController, friction: FrictionInterval, *, gain: float
 ) -> Claim | None:
-    """Is the cancellation passive through the identified compliance? None where there is none.
+    """Claim on passivity of the cancellation through the identified compliance; None without one.
 
-    Friction is that of the motor side, as the effect has it; the link's, none, would only help.
+    Friction is that of the motor side, as in the effect; friction of the link is taken as zero and
+    would only help.
     """
     values = {n: v.value for n, v in body.parameters.items()}
     tip = values.get("transmission_compliance.tip_inertia", 0.0)
@@ -77,7 +78,8 @@ def cancellation_claims(
 ) -> list[Claim]:
     """Claims on friction and its cancellation, at the worst ends of all intervals.
 
-    gain: that acts of a command;  late: of the cancellation's force, s;  errors: standard errors
+    gain: acting force per commanded force;  late: delay of the cancellation's force, s
+    errors: half width of the intervals in standard errors
     """
     # what actuation makes of a command is in its gain and in how late it is
     actuation = [e.name for e in body.effects if e.role == "actuation"]
@@ -139,7 +141,7 @@ def _friction_claims(
 
 
 def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
-    """Is the linear part of the device under force feedback passive, neither sampled nor late?"""
+    """Claim on passivity of the device's linear part under continuous, undelayed feedback."""
     plain = without_friction(body)
     for effect in [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]:
         plain = plain.without_effect(effect.name)
@@ -153,7 +155,7 @@ _REVOLUTE = {"N s/m": "N*m*s/rad", "N/m": "N*m/rad", "N": "N*m"}
 
 
 def use_units_of(axis: str, claim: Claim) -> Claim:
-    """The claim with the units of that axis; claims are stated for a prismatic one."""
+    """The claim with the units of an axis; claims are stated for a prismatic axis."""
     if axis == "prismatic":
         return claim
 
@@ -169,5 +171,5 @@ def use_units_of(axis: str, claim: Claim) -> Claim:
 
 
 def _decimal(value: float) -> str:
-    """The number as it is read, so that claims are about that number exactly."""
+    """The number as decimal text, so that a claim holds for exactly the printed number."""
     return f"{value:.12g}"

@@ -1,4 +1,4 @@
-"""Block diagrams: blocks wired by signal names."""
+"""Block diagrams: blocks that are wired by the names of their signals."""
 
 from ..arguments import check_arguments
 from .admittance_device import admittance_device

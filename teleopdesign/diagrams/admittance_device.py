@@ -1,4 +1,4 @@
-"""Admittance-controlled interface: the measured hand force moves a virtual body, which is followed.
+"""Admittance-controlled interface: the measured hand force moves a virtual body that is followed.
 
     Z_d X = F_h + C (X_d - X)        X_d = Y F_h        F_h = F_u - Z_H X
 
@@ -36,10 +36,10 @@ def admittance_device(
 ) -> Diagram:
     """Wire an admittance-controlled interface on one axis.
 
-    device: Z_d;  hand: Z_H, what the user's arm does passively, optional: absent by default
+    device: Z_d;  hand: Z_H, passive impedance of the user's arm; absent by default
     admittance: Y, from force to position, such as `controller("virtual_admittance", ...)`
     position_loop: C, from the position error to a force, such as `proportional_derivative` or
-        `lead`: it sees no velocity but that of its input
+        `lead`; it receives no velocity except that of its input
     """
     blocks: list[Block] = [
         Moving("Z_d", device, "X", "U", {"F_h": 1}, "F_u"),

@@ -1,4 +1,4 @@
-"""A teleoperator of two arms: several joints on each side, coupled where the tips are.
+"""A teleoperator of two arms with several joints on each side, coupled at their tips.
 
     M q'' + ... = tau + J^T F        X = f(q), J = df/dq
     tau_m = -J_m^T F_P + C_m q_m     tau_s = J_s^T F_P + C_s q_s     F_P = P e + D e', e = X_m - X_s
@@ -26,18 +26,20 @@ from .wiring import Diagram
 
 
 def joint(number: int) -> sp.Symbol:
-    """Symbol of a joint's position in an arm's coordinates; numbers from 1."""
+    """Symbol of a joint's position in the coordinates of an arm; numbers from 1."""
     return sp.Symbol(f"q_{number}", real=True)
 
 
 @check_types
 @dataclass(frozen=True)
 class Arm:
-    """The joints of an arm, and the position of the tip that they lead to.
+    """The joints of an arm, and the position of its tip as a function of them.
 
-    joints: a body each;  coordinates: of the tip, expressions on `joint(1)`, ..., as many as are
-    coupled;  cancellations: of each joint (None: none), () for none at all
-    load: impedance that the arm itself has at its tip;  pose: joint positions for linear forms
+    joints: one body each
+    coordinates: of the tip, expressions of `joint(1)`, ..., as many as are coupled
+    cancellations: one for each joint (None: none), or () for none at all
+    load: impedance of the arm itself at its tip;  pose: joint positions for linear forms
+    raises ModelError: an unknown symbol in a coordinate, or a wrong number of entries
     """
 
     joints: tuple[Body, ...]
@@ -61,10 +63,10 @@ class Arm:
 
 
 def tip_coordinates(jacobian: Any) -> tuple[sp.Expr, ...]:
-    """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints).
+    """Coordinates of a tip with a constant Jacobian: X = J q, J (coordinates, joints).
 
     jacobian: m/rad or m/m, nested lists or an array
-    returns: one expression for each coordinate (m), for `Arm`; forces go back by J^T
+    returns: one expression for each coordinate (m), for `Arm`; forces act on joints by J^T
     raises ModelError: no matrix of numbers
     """
     matrix = matrix_of(jacobian, "tip_coordinates: jacobian")
@@ -86,10 +88,11 @@ def teleoperator_of_arms(
     """Wire two arms.
 
     stiffness, damping: P and D (n, n), from the difference of the tips to forces on the slave's
-    tip: a spring only if P is symmetric and not negative;  hand, environment: Z_H, Z_E (n, n) at
-    the tips
-    Signals carry side and number: q_m1 joints, X_m1 tips, F_u1 and F_d1 forces from outside at the
-    tips, F_m1 and F_s1 all forces there, F_P1 the coupling, U_m1 commanded torques.
+        tip; passive only if P is symmetric and positive semidefinite
+    hand, environment: Z_H, Z_E (n, n) at the tips
+    Names of signals end with side and number: q_m1 joints, X_m1 tips, F_u1 and F_d1 forces from
+    outside at the tips, F_m1 and F_s1 total forces there, F_P1 the coupling, U_m1 commanded
+    torques.
     raises ModelError: sizes differ
     """
     size = len(master.coordinates)
@@ -143,7 +146,7 @@ class _Side:
 def _side(
     side: str, arm: Arm, outside: str, sign: int, held: MatrixImpedance | None, name: str
 ) -> _Side:
-    """Everything of one side; outside: forces at its tip;  held: what the tip touches."""
+    """All parts of one side; outside: forces at its tip;  held: impedance that the tip touches."""
     numbers = range(1, len(arm.joints) + 1)
     places = range(1, len(arm.coordinates) + 1)
     motions = tuple(f"q_{side}{n}" for n in numbers)

@@ -1,9 +1,9 @@
-"""A matrix of transfer functions with the fewest states, exactly: common modes are there once.
+"""A matrix of transfer functions with the fewest states, exactly: common modes occur only once.
 
-Each entry with states of its own has a copy of a mode that several entries share. What decays, or
-stays, does no harm twice; of one that grows no loop stabilises more than one copy. The numbers are
-fractions: each column has the companion form of the least common multiple of its denominators, and
-of these states those that no output shows are left out (Kalman).
+If each entry had separate states, each would have a copy of a mode that several entries share. A
+second copy of a mode that decays or stays constant does no harm. Of a mode that grows, no loop can
+stabilise more than one copy. The numbers are fractions: each column has the companion form of the
+least common multiple of its denominators, and states that no output shows are removed (Kalman).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _NEAR = 1e-9
 def with_common_modes(
     system: control.TransferFunction, *, name: str
 ) -> control.TransferFunction | control.StateSpace:
-    """The system as a state space, where entries share a mode that does not decay; else as it is.
+    """The system as a state space if entries share a mode that does not decay; else unchanged.
 
     raises ModelError: a mode that grows is shared, and the matrices are no decimal numbers
     """
@@ -66,14 +66,14 @@ def with_common_modes(
 
 
 def _ratio(above: Sequence[float], below: Sequence[float]) -> tuple[sp.Poly, sp.Poly]:
-    """Coprime, the denominator monic."""
+    """Coprime numerator and denominator; the denominator is monic."""
     p, q = (sp.Poly([exact_decimal(x) for x in side], _S, domain="QQ") for side in (above, below))
     p, q = p.cancel(q, include=True)
     return p.quo_ground(q.LC()), q.monic()
 
 
 def _shared_poles(denominators: Sequence[sp.Poly]) -> np.ndarray:
-    """Roots that more than one of the denominators has."""
+    """Roots that at least two of the denominators share."""
     every = [
         sp.gcd(p, q) for k, p in enumerate(denominators) for q in denominators[k + 1 :]
     ]  # fmt: skip
@@ -84,7 +84,7 @@ def _shared_poles(denominators: Sequence[sp.Poly]) -> np.ndarray:
 def _realise_columns(
     ratios: Sequence[Sequence[tuple[sp.Poly, sp.Poly]]],
 ) -> tuple[Fractions, Fractions, Fractions, Fractions]:
-    """A, B, C, D: for each input the companion form of its column's common denominator."""
+    """A, B, C, D: the companion form of each column's common denominator, one for each input."""
     columns = len(ratios[0])
     below = [reduce(sp.lcm, (row[j][1] for row in ratios)).monic() for j in range(columns)]
     starts = np.cumsum([0, *(q.degree() for q in below)])
@@ -111,7 +111,7 @@ def _realise_columns(
 def _drop_unobserved(
     a: Fractions, b: Fractions, c: Fractions, d: Fractions
 ) -> tuple[Fractions, Fractions, Fractions, Fractions]:
-    """Without the states that no output shows: in the rows of C, C A, C A^2 .. as coordinates."""
+    """The system without states that no output shows, in the coordinates C, C A, C A^2 ..."""
     rows: Fractions = []
     pivots: list[int] = []
     waiting = [list(row) for row in c]
@@ -156,5 +156,5 @@ def _coefficient(p: sp.Poly, power: int) -> Fraction:
 
 
 def _is_decimal(x: Fraction) -> bool:
-    """Whether a float, read as it is written, is that number."""
+    """Whether the float nearest to a fraction, read as decimal text, equals the fraction."""
     return bool(exact_decimal(float(x)) == sp.Rational(x.numerator, x.denominator))

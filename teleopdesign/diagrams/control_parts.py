@@ -1,6 +1,6 @@
 """Systems of python-control with several inputs and outputs, and plants, as parts of a diagram.
 
-Every form follows from these parts: derivation, Bode plots, claims, simulation, python-control.
+Derivation, Bode plots, claims, simulation and python-control all use these parts.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def code_parts(
     analog: bool = True,
     is_plant: bool = False,
 ) -> tuple[Control, ...]:
-    """Blocks of a system that is known as code only, each of which reads all inputs and states."""
+    """Blocks of a system that is only code; each block reads all inputs and states."""
     states, laws = opaque_laws(name, system, is_plant=is_plant)
     made = [f"{name}_state_{i + 1}" for i in range(len(states))]
     signals = [f"{state}_out" for state in made]
@@ -103,7 +103,10 @@ def code_parts(
 
 
 def entry_of(system: control.InputOutputSystem, row: int, column: int, name: str) -> control.LTI:
-    """One entry of a system, row and column from 0, in the numbers as they came."""
+    """One entry of a system, with the numbers unchanged; row and column from 0.
+
+    raises ModelError: neither transfer function, state space nor measured frequency response
+    """
     import control
 
     if isinstance(system, control.TransferFunction):
@@ -127,16 +130,17 @@ def plant_parts(
     driver: str,
     loads: Mapping[str, float] | None = None,
 ) -> tuple[tuple[Moving | Control, ...], tuple[Junction, ...]]:
-    """A plant of python-control, from force (N) to position (m), as a body with the rest beside it.
+    """A plant of python-control, from force (N) to position (m), as a body and the rest beside it.
 
     1/P(s) = m s^2 + b s + k + R(s): the body has inertia m and damping b; k + R, proper, is an
-    analog block "name_rest" beside the command, their sum "name_command". Exact in the numbers as
-    they came, with the states of P.
-    A measured response (`control.frd`) gives m as the mass of its highest frequencies, and the rest
-    as what was measured less m s^2: responses and margins, within its frequencies; no proof.
-    A nonlinear system (`control.nlsys`) is code, and no body: its motion is a signal that
-    simulations compute and sensors read. No hand holds it, and no law takes its velocity.
-    driver: outside force on it, as of `Moving`;  loads: other forces on it, signal -> sign
+    analog block "name_rest" beside the command, and their sum is "name_command". The numbers are
+    exact, and the states are those of P. For a measured response (`control.frd`), m is the mass at
+    its highest frequencies, and the rest is the measured response less m s^2: responses and margins
+    within its frequencies, but no proof. A nonlinear system (`control.nlsys`) is code, and no body:
+    its motion is a signal that simulations compute and sensors read. No hand can hold it, and no
+    law can use its velocity.
+
+    driver: outside force on the body, as in `Moving`;  loads: other forces on it, signal -> sign
     raises ModelError: discrete time, several axes, not two more poles than zeros, m <= 0 or b < 0
     """
     import control
@@ -182,7 +186,7 @@ def _with_rest(
     signals: tuple[str, str, str],
     forces: Mapping[str, float],
 ) -> tuple[tuple[Moving | Control, ...], tuple[Junction, ...]]:
-    """A body, and what resists its motion beside it;  signals: motion, command and driver."""
+    """A body, and the block that resists its motion;  signals: motion, command and driver."""
     motion, command, driver = signals
     body = Body("prismatic", {"inertia": Value(inertia)})
     if damping is not None:
@@ -197,7 +201,7 @@ def _with_rest(
 
 
 def _check_plant(system: control.InputOutputSystem, name: str) -> None:
-    """ModelError unless it is a system of one axis in continuous time."""
+    """Raise ModelError unless the system has one axis and continuous time."""
     if (system.ninputs, system.noutputs) != (1, 1) or system.isdtime(strict=True):
         raise ModelError(
             f"{name}: expected a plant of one input and output in continuous time: see "

@@ -38,16 +38,16 @@ def coupled_plant_parts(
     commands: Sequence[str],
     drivers: Sequence[str],
 ) -> tuple[tuple[Moving | Linked | Control, ...], tuple[Junction, ...]]:
-    """A plant from n forces (N) to n positions (m) as n bodies, and what joins them.
+    """A plant from n forces (N) to n positions (m) as n bodies, and the parts that couple them.
 
-    system: transfer functions or state space, as many inputs as outputs. Continuous, exact in the
-        numbers as they came; or in discrete time, a plant of 2 n states behind a zero-order hold,
-        whose matrices in continuous time follow from a logarithm. Or nonlinear
-        (`control.nlsys`), in continuous time: code, for simulations alone, see `plant_parts`
-    commands, drivers: signals of each axis, as of `Moving`
-    Bodies are called "name_1", "name_2" ..., the impedance "name_link", blocks "name_rest_1_2".
+    system: transfer functions or state space, with as many inputs as outputs. In continuous time
+        the numbers are exact. In discrete time: a plant of 2 n states behind a zero-order hold,
+        whose matrices in continuous time follow from a logarithm. A nonlinear system
+        (`control.nlsys`) in continuous time is code, for simulations only, see `plant_parts`
+    commands, drivers: signals of each axis, as in `Moving`
+    Bodies have the names "name_1", "name_2" ..., the impedance "name_link", blocks "name_rest_1_2".
     raises ModelError: numbers of signals do not fit, no regular matrix, a mass that is not positive
-        definite, zeros of the plant that do not decay: their states would be doubled
+        definite, zeros of the plant that do not decay, because their states would be doubled
     """
     import control
 
@@ -79,7 +79,7 @@ def _bodies(
     commands: Sequence[str],
     drivers: Sequence[str],
 ) -> tuple[tuple[Moving | Linked | Control, ...], tuple[Junction, ...]]:
-    """Bodies, what joins them, and the rest beside their commands; continuous time."""
+    """Bodies, their coupling, and the rest beside their commands; continuous time."""
     size = len(motions)
     m, b, k, rest = _split(system, name)
     apart = np.diag(np.diag(m))
@@ -116,7 +116,7 @@ def _rows(matrix: np.ndarray) -> tuple[tuple[float, ...], ...]:
 def _split(
     system: control.LTI, name: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[list[control.LTI | None]]]:
-    """M, B, K, and the entries of R: None where there is none."""
+    """M, B, K, and the entries of R; None for an entry that is zero."""
     import control
 
     size = range(system.ninputs)
@@ -162,13 +162,13 @@ def _form(system: control.LTI, i: int, j: int, name: str) -> sp.Expr:
 
 
 def _symmetric(matrix: np.ndarray) -> np.ndarray:
-    """The matrix, symmetric where it is so within the rounding of its computation."""
+    """The matrix, made symmetric if its asymmetry is only rounding."""
     mean = (matrix + matrix.T) / 2
     return mean if np.abs(matrix - mean).max() <= _ROUNDING * np.abs(matrix).max() else matrix
 
 
 def _undo_hold(system: control.LTI, name: str) -> control.StateSpace:
-    """The plant in continuous time whose samples behind a zero-order hold these are."""
+    """The plant in continuous time that has these samples behind a zero-order hold."""
     import control
     from scipy.linalg import logm
 

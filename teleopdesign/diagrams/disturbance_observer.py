@@ -1,4 +1,4 @@
-"""Disturbance observer: what acts on a body beside its command, estimated and taken off it.
+"""Disturbance observer: it estimates all forces on a body besides its command, and cancels them.
 
     d = Q (M_n dv/dt + B_n v) - Q u,   u = u_0 - d,   Q = g/(s + g)
 
@@ -31,11 +31,11 @@ def disturbance_observer(
 ) -> Diagram:
     """The diagram with a disturbance observer around a body, such as "Z_s".
 
-    inertia, damping: M_n and B_n of the nominal body, kg and N s/m (revolute axes: theirs)
+    inertia, damping: M_n and B_n of the nominal body, kg and N s/m (kg m^2 and N m s/rad)
     bandwidth: cut-off g/(2 pi) of Q, Hz
-    Blocks are "N_" and "Q_" with the body's name: nominal force and low-passed command; signals
-    "F_N_", "F_Q_" and "d_": the estimate, subtracted from the command, positive along the motion.
-    raises ModelError: no body of that name that forces move, or it has such an observer
+    Blocks are "N_" and "Q_" with the body's name: nominal force and low-passed command. Signals are
+    "F_N_", "F_Q_" and "d_": the estimate, positive along the motion, subtracted from the command.
+    raises ModelError: no body of that name that forces move, or it has such an observer already
     """
     moving = diagram.block(body)
     if not isinstance(moving, Moving):

@@ -1,4 +1,4 @@
-"""Energy tanks at both ends of a channel: neither end releases what the other has not taken in.
+"""Energy tanks at both ends of a channel: no end releases energy that the other has not taken in.
 
     E_b = E_0 + arrived(taken at the other end) - given at b,   abs(U_b) <= E_b/d
 
@@ -48,11 +48,12 @@ def energy_tanks(
 ) -> Diagram:
     """The diagram with an energy tank before the actuators of two bodies.
 
-    reserve: E_0, J, in each tank at the start;  travel: d, m or rad, largest of any sample
-    ends: names of the bodies;  to_first, to_second: channels of the counts, such as a "delay" then
-        a "lossy_hold": delays, holds and losses only; None: at once
+    reserve: E_0, J, in each tank at the start;  travel: d, m or rad, largest travel of any sample
+    ends: names of the bodies
+    to_first, to_second: channels of the counts, such as a "delay" then a "lossy_hold": only delays,
+        holds and losses; None: no delay
     Signals are "wanted_", "given_", "taken_", "arrived_", "tank_" and "limit_" with a body's name.
-    raises ModelError: no such body that forces move, or it has a tank
+    raises ModelError: no such body that forces move, or it has a tank already
     """
     blocks, sums = list(diagram.blocks), list(diagram.junctions)
     texts, motions = dict(diagram.texts), []
@@ -90,7 +91,7 @@ def energy_tanks(
 
 
 def _counters(name: str, command: str, motion: str) -> list[Block]:
-    """What the command has supplied to the body, and taken from it."""
+    """Blocks that count the energy that a command supplies to the body, and takes from it."""
     return [
         Control(
             f"{letter}_{name}",
@@ -104,7 +105,7 @@ def _counters(name: str, command: str, motion: str) -> list[Block]:
 
 
 def _limit_parts(name: str, command: str, limit: Controller) -> tuple[list[Block], list[Junction]]:
-    """The wanted command within the limit: (abs(w + l) - abs(w - l))/2."""
+    """The wanted command w within the limit l: (abs(w + l) - abs(w - l))/2."""
     half = controller("magnitude", {"gain": 0.5})
     blocks: list[Block] = [
         Control(f"L_{name}", limit, f"tank_{name}", f"limit_{name}"),

@@ -1,7 +1,7 @@
 """Bounds on expressions of positions: functions, values and sizes that a text may have.
 
-Every number that a part has is computed in floating point before sympy sees it, and the size of
-every part is bounded: what would take sympy for ever, or fill the memory, is refused.
+Every number in a part is computed in floating point before sympy receives it, and the size of every
+part is bounded: expressions that would occupy sympy without end, or fill the memory, are refused.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..errors import ModelError
 
 
 class _Function(NamedTuple):
-    """What sympy makes of it, its value, its number of arguments."""
+    """The sympy form of a function, its value, and its number of arguments."""
 
     symbolic: Callable[..., sp.Expr]
     value: Callable[..., float]
@@ -95,7 +95,7 @@ class BoundedParts:
         self.roots: set[sp.Expr] = set()
 
     def check(self, expression: sp.Expr) -> sp.Expr:
-        """The expression if its numbers, its powers and its size are moderate."""
+        """The expression; raises ModelError: its numbers, powers or size are too large."""
         if expression in (sp.nan, sp.oo, -sp.oo, sp.zoo):
             raise ModelError(NO_VALUE)
         for part in (expression, *expression.args):
@@ -108,7 +108,7 @@ class BoundedParts:
         return expression
 
     def value(self, expression: sp.Expr) -> float | None:
-        """The number that it is, None where it holds a position; ModelError where it is none."""
+        """The value of a number, None with a position in it; raises ModelError: no real number."""
         if expression not in self.values:
             self.values[expression] = self._compute(expression)
         return self.values[expression]
@@ -147,7 +147,7 @@ class BoundedParts:
         return None  # of other functions that sympy may make of these, only the arguments are known
 
     def size(self, expression: sp.Expr) -> int:
-        """Terms that it has once it is multiplied out, at least one."""
+        """Number of terms after multiplication, at least one."""
         if not expression.args or expression.is_number:
             return 1
         if expression not in self.sizes:
@@ -169,7 +169,7 @@ class BoundedParts:
 
 
 def compute_finite(call: Callable[..., float], *values: object) -> float | None:
-    """call(*values), None where one is not known; ModelError where it is no finite real number."""
+    """call(*values), None if a value is unknown; raises ModelError: no finite real number."""
     if any(v is None for v in values):
         return None
     try:
@@ -186,7 +186,7 @@ def raise_power(base: float, exponent: float) -> float:
 
 
 def count_terms(terms: int, power: int) -> int:
-    """Terms of a sum of so many to that power."""
+    """Number of terms of a sum of `terms` terms to a power."""
     return comb(terms + power - 1, power) if terms > 1 else 1
 
 

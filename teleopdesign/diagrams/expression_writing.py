@@ -10,7 +10,7 @@ from .expressions import read_expression
 
 
 class _Printer(StrPrinter):
-    """As sympy prints, but floats with all their digits."""
+    """Prints like sympy, but floats with all their digits."""
 
     def _print_Float(self, expr: sp.Float) -> str:
         return repr(float(expr))
@@ -25,8 +25,8 @@ class _Printer(StrPrinter):
 def expression_text(expression: sp.Expr, *, name: str) -> str:
     """Text that `read_expression` reads as the same expression.
 
-    name: of what it belongs to, for the message
-    raises ModelError: it has no such text, for it holds other functions or odd names
+    name: of the part, for the message
+    raises ModelError: there is no such text, because of other functions or unusual names
     """
     text = str(_Printer().doprint(expression))
     try:

@@ -1,4 +1,4 @@
-"""Expressions of positions as text: lever arms and kinematics, read without running anything.
+"""Expressions of positions as text: lever arms and kinematics, read without running any code.
 
 "0.3*cos(q_1) + 0.2*cos(q_1 + q_2)"
 
@@ -50,11 +50,11 @@ _OPERATORS: Mapping[type, Callable[[sp.Expr, sp.Expr], sp.Expr]] = MappingProxyT
 
 
 def read_expression(text: str, *, where: str) -> sp.Expr:
-    """The expression on `position_symbol`s.
+    """The expression of `position_symbol`s that a text states.
 
     where: beginning of a message
-    raises ExperimentError: what is no expression of those, has no finite real value, or is larger
-        than `expression_bounds.py` allows
+    raises ExperimentError: no such expression, no finite real value, or larger than
+        `expression_bounds.py` allows
     """
     if len(text) > LONGEST:
         raise ExperimentError(f"{where}: found {len(text)} characters, at most {LONGEST}")
@@ -79,7 +79,7 @@ def read_expression(text: str, *, where: str) -> sp.Expr:
 
 
 class _Reader:
-    """Reads one text;  count: of its numbers, names and signs so far."""
+    """Reads one text;  count: of numbers, names and signs so far."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -118,7 +118,7 @@ class _Reader:
         )
 
     def _build_chain(self, node: ast.BinOp, depth: int) -> sp.Expr:
-        """a + b - c, or a * b / c: from left to right, however long; numbers are kept apart."""
+        """Build a + b - c, or a * b / c, of any length, from left to right; numbers are apart."""
         whole: type[sp.Expr] = sp.Add if isinstance(node.op, ast.Add | ast.Sub) else sp.Mul
         number: sp.Expr = whole.identity
         rest = []
@@ -160,7 +160,7 @@ class _Reader:
 
 
 def _list_links(node: ast.BinOp) -> Iterator[tuple[type, ast.expr]]:
-    """The parts of a chain of one kind of operator, from left to right, each with its operator."""
+    """The operands of a chain of sums or of products, from left to right, with their operators."""
     pair = (ast.Add, ast.Sub) if isinstance(node.op, ast.Add | ast.Sub) else (ast.Mult, ast.Div)
     links: list[tuple[type, ast.expr]] = []
     left: ast.expr = node

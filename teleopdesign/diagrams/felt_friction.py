@@ -1,4 +1,4 @@
-"""Coulomb friction of parallel rods as the hand feels it: a zonotope.
+"""Coulomb friction of parallel rods at the hand: the possible forces form a zonotope.
 
 With motion L = G X of the rods, friction between -F_C and F_C on each of them pushes the hand with
 
@@ -36,20 +36,20 @@ class FeltFriction(ByValue):
     def along(self, directions: np.ndarray) -> np.ndarray:
         """Friction against a motion along each direction, N: the support function.
 
-        directions: (..., n), any length: it is felt per unit of it
+        directions: (..., n), of any length; friction is per unit of this length
         """
         return np.asarray(np.abs(directions @ self.geometry.T) @ self.levels)
 
     def force(self, directions: np.ndarray) -> np.ndarray:
         """Force of friction on a hand that moves along each direction (..., n), N: minus a corner.
 
-        Rods that this motion does not move add nothing.
+        Rods that do not move in this motion contribute nothing.
         """
         sliding = np.sign(directions @ self.geometry.T)
         return np.asarray(-(sliding * self.levels) @ self.geometry)
 
     def holds(self, forces: np.ndarray, *, tolerance: float = 1e-9) -> np.ndarray:
-        """Whether friction can make each of these forces on the hand (..., n), N.
+        """Whether friction can balance each of these forces on the hand (..., n), N.
 
         tolerance: of each rod's level, relative;  returns: (...,)
         """
@@ -58,7 +58,7 @@ class FeltFriction(ByValue):
 
     @property
     def largest(self) -> tuple[float, np.ndarray]:
-        """Level (N) and unit direction (n,) in which most friction is felt: the farthest corner."""
+        """Level (N) and unit direction (n,) of the largest friction: the farthest corner."""
         n = len(self.levels)
         signs = np.array([(1.0, *rest) for rest in product((-1.0, 1.0), repeat=n - 1)])
         corners = (signs * self.levels) @ self.geometry
@@ -69,7 +69,7 @@ class FeltFriction(ByValue):
 
     @property
     def smallest(self) -> tuple[float, np.ndarray]:
-        """Level (N) and unit direction (n,) in which least is felt: across the nearest facet."""
+        """Level (N) and unit direction (n,) of the smallest friction: across the nearest facet."""
         alone = np.linalg.inv(self.geometry).T  # row k: the motion of the hand that moves rod k
         lengths = np.linalg.norm(alone, axis=1)
         nearest = int(np.argmin(self.levels / lengths))
@@ -81,10 +81,10 @@ class FeltFriction(ByValue):
 
 
 def felt_friction(geometry: np.ndarray, levels: Sequence[float]) -> FeltFriction:
-    """Friction that a hand feels of rods in parallel.
+    """Friction that a hand feels from parallel rods.
 
-    geometry: G (n, n), as for `parallel_rods`;  levels: Coulomb level of each rod, or what a
-        cancellation leaves of it, N
+    geometry: G (n, n), as for `parallel_rods`
+    levels: Coulomb level of each rod, or the part that a cancellation leaves, N
     raises ModelError: G is no regular n x n matrix, a level is negative, more than 16 rods
     """
     g, f = np.asarray(geometry, dtype=float), np.asarray(levels, dtype=float)

@@ -1,4 +1,4 @@
-"""Lawrence's four channels: motion and force of either side go to the other, scaled and late.
+"""Lawrence's four channels: motion and force of each side go to the other, scaled and delayed.
 
     Z_m X_m = F_m - C_m X_m + C_2 K_2 e^(-s T_2) F_s + C_4 K_4 e^(-s T_4) X_s
     Z_s X_s = F_s - C_s X_s + C_1 K_1 e^(-s T_1) X_m + C_3 K_3 e^(-s T_3) F_m
@@ -47,15 +47,15 @@ def four_channel(
     hand: Body | AnyBlock | None = None,
     environment: Body | AnyBlock | None = None,
 ) -> Diagram:
-    """Wire a teleoperator of up to four channels; only the blocks named are in the diagram.
+    """Wire a teleoperator of up to four channels; the diagram has only the blocks that are stated.
 
-    master, slave, hand, environment: as of `teleoperator`
+    master, slave, hand, environment: as in `teleoperator`
     master_control, slave_control: C_m and C_s, from each side's motion, subtracted
-    channels: "C_1" to "C_4", those that are there; default: all four. A law of a channel sees no
-        velocity but that of its input (`proportional_derivative`, not `spring_damper`)
-    delay: of every channel, or of each by name, s: delay blocks T_1 to T_4; none where it is 0
-    position_scale: X_s for X_m;  force_scale: force at the master for that at the slave: blocks
-        K_1 = position_scale, K_4 = 1/K_1, K_2 = force_scale, K_3 = 1/K_2; none where both are 1
+    channels: "C_1" to "C_4", those that exist; default: all four. The law of a channel receives no
+        velocity except that of its input (`proportional_derivative`, not `spring_damper`)
+    delay: of every channel, or of each by name, s: delay blocks T_1 to T_4; no block if it is 0
+    position_scale: X_s over X_m;  force_scale: force at the master over that at the slave: blocks
+        K_1 = position_scale, K_4 = 1/K_1, K_2 = force_scale, K_3 = 1/K_2; no blocks if both are 1
     raises ModelError: a channel of another name, a scale that is not positive
     """
     laws = dict.fromkeys(CHANNELS, ANY) if channels is None else dict(channels)
@@ -95,7 +95,7 @@ def four_channel(
 
 
 def _scales(position: float, force: float) -> dict[str, float]:
-    """Channel -> its scale; empty where both are 1."""
+    """Channel -> its scale; empty if both scales are 1."""
     if not (0 < position < float("inf") and 0 < force < float("inf")):
         raise ModelError(f"four_channel: found scales {position:g} and {force:g}, expected > 0")
     if position == force == 1:

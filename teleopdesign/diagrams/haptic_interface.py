@@ -46,17 +46,18 @@ def haptic_interface(
     passivity: Controller | AnyBlock | None = None,
     analog: Collection[str] = (),
 ) -> Diagram:
-    """Wire a haptic interface; only the blocks named are in the diagram.
+    """Wire a haptic interface; the diagram has only the blocks that are stated.
 
-    device, hand: Z_M and Z_H, impedances relative to position;  cancellation: C, from the motion
-    to a force;  force_feedback: H, from the force error R_D - R_M to a force;
-    position_loop: K, from the position error to R_D: a law that takes no velocity but the rate of
-    its input (`lead`, `proportional_derivative`), for that of the device has the other sign;
-    passivity: P, from R_M to a force, such as
-    `passivity_controller`
+    device, hand: Z_M and Z_H, impedances relative to position
+    cancellation: C, from the motion to a force;  force_feedback: H, from the force error R_D - R_M
+        to a force
+    position_loop: K, from the position error to R_D: a law that uses no velocity except the rate of
+        its input (`lead`, `proportional_derivative`), because the velocity of the device has the
+        other sign
+    passivity: P, from R_M to a force, such as `passivity_controller`
     analog: controllers among "C", "H", "K" that no computer samples
-    ANY stands for a block of which nothing but its place is known.
-    raises ModelError: `analog` names no controller, or the position loop takes a velocity
+    ANY stands for a block of which only the place is known.
+    raises ModelError: `analog` names no controller, or the position loop uses a velocity
     """
     for name in analog:
         if name not in ("C", "H", "K"):
@@ -97,7 +98,7 @@ def haptic_interface(
 
 
 def _check_position_loop(law: Controller | AnyBlock) -> None:
-    """ModelError where a damper would act along the device's velocity, with the error's sign."""
+    """Raise ModelError if a damper would act on the device's velocity with the error's sign."""
     if isinstance(law, Controller) and law.sees_velocity:
         laws = ", ".join(stage.law.name for stage in law.stages)
         raise ModelError(

@@ -1,4 +1,4 @@
-"""Sums of signals and positions that others determine; weights that may depend on positions."""
+"""Sums of signals, and positions that depend on others; weights may depend on positions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def position_symbol(name: str) -> sp.Symbol:
 
 
 def as_expression(weight: Weight, *, where: str) -> sp.Expr:
-    """A weight as sympy expression; text is none: `read_expression` reads text.
+    """A weight as sympy expression; a text is refused, because `read_expression` reads texts.
 
     raises ModelError: neither a number nor an expression
     """
@@ -46,7 +46,7 @@ def check_names(where: str, *names: str) -> None:
 @check_types
 @dataclass(frozen=True)
 class Junction:
-    """A summing junction:  output = sum of weight * signal.
+    """A summing junction: output = sum of weight * signal.
 
     A weight may depend on positions: torque = lever arm(angle) * force.
     """
@@ -72,7 +72,7 @@ class Junction:
 
     @property
     def arms(self) -> tuple[str, ...]:
-        """Positions that the weights depend on."""
+        """Positions on which the weights depend."""
         return tuple(sorted({x for w in self.terms.values() for x in _symbol_names(w)}))
 
     @property
@@ -83,7 +83,7 @@ class Junction:
 @check_types
 @dataclass(frozen=True)
 class Kinematics:
-    """A position that others determine:  output = expression of positions (`position_symbol`).
+    """A position that depends on others: output = expression of positions (`position_symbol`).
 
     axis: of the output, "prismatic" or "revolute"
     """

@@ -1,4 +1,4 @@
-"""A haptic interface of several rods that hold one hand: figure 3 with matrices for blocks.
+"""A haptic interface of several rods that hold one hand: figure 3 with matrices as blocks.
 
     R_A = R_D + H (R_D - R_M) + C L        Z_M L = R_A - R_M        L = G X
     G^T R_M = -(F_H + F_V)                 F_H = -Z_H X             felt: G^T Zhat_M G
@@ -40,10 +40,12 @@ def parallel_rods(
 ) -> Diagram:
     """Wire rods in parallel.
 
-    rods: n bodies, the diagonal of Z_M;  geometry: G (n, n), motion of each rod for each coordinate
-    of the hand;  hand: Z_H (n, n) in the hand's coordinates;  mechanism: what joins the rods beside
-    the hand, added to Z_M (n, n);  cancellation: C;  force_feedback: H
-    analog: "C", "H" where no computer samples them
+    rods: n bodies, the diagonal of Z_M
+    geometry: G (n, n), motion of each rod for each coordinate of the hand
+    hand: Z_H (n, n) in the hand's coordinates
+    mechanism: impedance that couples the rods besides the hand, added to Z_M (n, n)
+    cancellation: C;  force_feedback: H
+    analog: "C", "H" if no computer samples them
     Signals carry their number: R_D1, R_A1, R_M1, L1, ... of the rods; X1, F_H1, F_V1 of the hand.
     raises ModelError: G is no regular n x n matrix, or another block has another size
     """
@@ -88,7 +90,7 @@ def parallel_rods(
 
 
 def _inverse(geometry: Any, size: int) -> np.ndarray:
-    """The inverse of G; ModelError where G is no regular matrix of that size."""
+    """The inverse of G; raises ModelError: G is no regular matrix of that size."""
     g = matrix_of(geometry, "parallel_rods: geometry")
     if g.shape != (size, size):
         raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
@@ -102,7 +104,7 @@ def _rod_names(signal: str, numbers: range) -> tuple[str, ...]:
 
 
 def _row(weights: np.ndarray, signal: str) -> dict[str, float]:
-    """Weights of numbered signals, those that are zero left out."""
+    """Weights of numbered signals, without those that are zero."""
     return {f"{signal}{k + 1}": float(w) for k, w in enumerate(weights) if abs(w) > 1e-15}
 
 

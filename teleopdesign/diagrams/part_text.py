@@ -1,4 +1,4 @@
-"""Parts of a diagram as text: the equation of each, and the laws that it holds."""
+"""Parts of a diagram as text: the equation of each part, and its laws."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def write_equation(part: Part) -> str:
 
 
 def list_laws(part: Part) -> str:
-    """Names of the laws or effects that a block holds; nothing for sums and kinematics."""
+    """Names of the laws or effects in a block; "" for sums and kinematics."""
     if isinstance(part, Control):
         stages = part.controller.stages if isinstance(part.controller, Controller) else ()
         return ", ".join(stage.name for stage in stages)

@@ -1,4 +1,4 @@
-"""Blocks of a diagram, each with the signals that it wires; with junctions, all its parts."""
+"""Blocks of a diagram, each with its signals; blocks and junctions are the parts of a diagram."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .junctions import Junction, Kinematics, as_expression, check_names
 
 @dataclass(frozen=True)
 class AnyBlock:
-    """A block known by its name only: enough to derive transfer functions, not to simulate."""
+    """A block that is only a name: enough to derive transfer functions, not to simulate."""
 
     def __repr__(self) -> str:
         return "ANY"
@@ -28,11 +28,11 @@ ANY = AnyBlock()
 @check_types
 @dataclass(frozen=True)
 class Moving:
-    """A body that forces move:  Z motion = command + loads.
+    """A body that forces move: Z motion = command + loads.
 
-    command: force commanded to its actuator (its actuation effects stand between)
-    loads: other forces on it, signal -> sign
-    driver: outside force that is whatever it must be where the motion is prescribed instead
+    command: force commanded to its actuator (its actuation effects act between both)
+    loads: other forces on the body, signal -> sign
+    driver: outside force that becomes a result if the motion is prescribed
     """
 
     name: str
@@ -63,10 +63,10 @@ class Moving:
 @check_types
 @dataclass(frozen=True)
 class Attached:
-    """A body on a motion, which the body resists:  force = sign Z motion.
+    """A body that is attached to a motion and resists it: force = sign Z motion.
 
-    motion: name of the motion that it follows;  force: name of the force that it makes, N or N m
-    sign: -1: the force is counted along the motion, so that it opposes it;  1: against the motion
+    motion: name of the motion;  force: name of the force, N or N m
+    sign: -1: the force is positive along the motion, so that it opposes it;  1: positive against it
     """
 
     name: str
@@ -91,10 +91,10 @@ class Attached:
 @check_types
 @dataclass(frozen=True)
 class Linked:
-    """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix.
+    """Bodies coupled by a linear impedance: forces = sign Z motions, Z a matrix.
 
-    motions, forces: names of signals, one of each for a row of Z;  sign: as of `Attached`
-    raises ModelError: another number of rows than of motions or forces
+    motions, forces: names of signals, one of each for a row of Z;  sign: as in `Attached`
+    raises ModelError: the number of rows differs from that of motions or forces
     """
 
     name: str
@@ -114,12 +114,12 @@ class Linked:
 
     @property
     def entries(self) -> tuple[tuple[int, int], ...]:
-        """Rows and columns, from 0, of what is not zero."""
+        """Row and column, from 0, of each entry that is not zero."""
         indices = {tuple(name.split("_")[1:]) for name in self.body.parameters}
         return tuple(sorted((int(i) - 1, int(j) - 1) for i, j in indices))
 
     def entry_name(self, row: int, column: int) -> str:
-        """Name of an entry as a separate block, such as "Z_H_1_2"; row and column from 0."""
+        """Name of one entry as a block, such as "Z_H_1_2"; row and column from 0."""
         return f"{self.name}_{row + 1}_{column + 1}"
 
     @property
@@ -135,7 +135,7 @@ class Linked:
 class Entry:
     """Place of a controller in a state space whose entries share their states.
 
-    of: name of the system;  row, column: from 0;  entries: places of all that are blocks
+    of: name of the system;  row, column: from 0;  entries: places of all entries that are blocks
     """
 
     of: str
@@ -147,12 +147,12 @@ class Entry:
 @check_types
 @dataclass(frozen=True)
 class Control:
-    """A controller:  output = controller(input), along the velocity of `motion`.
+    """A controller: output = controller(input), along the velocity of `motion`.
 
-    motion: of a body, or a junction or kinematics of motions; blank: its law sees no velocity
-    analog: realised by electronics that no computer samples
-    entry: its place in a system of several inputs and outputs whose states it shares
-    others: further signals that a law known as code alone reads
+    motion: of a body, or a junction or kinematics of motions; blank: the law receives no velocity
+    analog: realised by electronics, so that no computer samples it
+    entry: place in a system of several inputs and outputs whose states it shares
+    others: further signals that a law reads which is only code
     """
 
     name: str
@@ -183,18 +183,18 @@ class Control:
 
     @property
     def dead_time(self) -> float | None:
-        """Time (s) by which the block is late, where it is a delay and nothing else; else None."""
+        """Delay (s) of the block if it is a delay and nothing else; else None."""
         return self.controller.dead_time if isinstance(self.controller, Controller) else None
 
     @property
     def is_code(self) -> bool:
-        """Whether a stage of it is a nonlinear python-control system, known as code only."""
+        """Whether a stage is a nonlinear python-control system, which is only code."""
         stages = self.controller.stages if isinstance(self.controller, Controller) else ()
         return any(stage.law.system is not None for stage in stages)
 
     @property
     def is_measured(self) -> bool:
-        """Whether a stage of it is a measured frequency response, known at its frequencies only."""
+        """Whether a stage is a measured frequency response, known only at its frequencies."""
         stages = self.controller.stages if isinstance(self.controller, Controller) else ()
         return any(stage.law.response is not None for stage in stages)
 

@@ -1,4 +1,4 @@
-"""Controllers that read one signal and act along the velocity of another one."""
+"""Controllers that read one signal and act along the velocity of another signal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .wiring import Diagram
 
 
 def acts_along_another(diagram: Diagram, part: Control) -> bool:
-    """Whether the law takes the velocity of a motion that is not its input.
+    """Whether the law uses the velocity of a motion that is not its input.
 
     Its linear form then has two transfer functions: from the input, and from that motion.
     """
@@ -26,7 +26,7 @@ def acts_along_another(diagram: Diagram, part: Control) -> bool:
 
 
 def without_motion(where: str) -> ModelError:
-    """The error of a law that takes a velocity, where no motion says which."""
+    """The error for a law that uses a velocity when no motion is wired to it."""
     return ModelError(
         f'{where}: its law sees a velocity, and no motion is wired: motion="X" says along which'
     )

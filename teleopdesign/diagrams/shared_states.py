@@ -27,10 +27,10 @@ _ROUNDING = 1e-9
 
 
 def with_shared_states(diagram: Diagram) -> Diagram:
-    """The diagram with each state of such systems once, in the place of their entries.
+    """The diagram in which each state of such systems occurs once, in place of their entries.
 
-    raises ModelError: entries of one system are gone or changed by themselves, so that no states
-        are common to them; a signal of an entry is taken apart from those of its row
+    raises ModelError: entries of one system are missing or changed separately, so that they share
+        no states; a signal of an entry is used apart from the others of its row
     """
     systems: dict[str, dict[_Place, Control]] = {}
     for part in diagram.controls:
@@ -79,7 +79,7 @@ def _join_entries(diagram: Diagram, name: str, entries: Mapping[_Place, Control]
 def _matrices(
     where: str, entries: Mapping[_Place, Control]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float | None]:
-    """A, B, C, D as they came, from the values of the entries, and the period of a discrete one."""
+    """A, B, C, D unchanged, from the values of the entries, and the period of a discrete system."""
     expected = set(next(iter(entries.values())).entry.entries)  # type: ignore[union-attr]
     if missing := sorted(expected - set(entries)):
         i, j = missing[0]
@@ -117,7 +117,7 @@ def _is_same(values: np.ndarray, expected: np.ndarray) -> bool:
 def _terms(
     states: Sequence[str], of_states: np.ndarray, inputs: Mapping[int, str], of_inputs: np.ndarray
 ) -> dict[str, float]:
-    """Weights that are not zero, by signal: two inputs may be one signal."""
+    """Weights that are not zero, by signal; weights of equal input signals are added."""
     terms: dict[str, float] = {}
     pairs = [*zip(states, of_states, strict=True), *((s, of_inputs[j]) for j, s in inputs.items())]
     for signal, weight in pairs:
@@ -127,7 +127,7 @@ def _terms(
 
 
 def _row_signal(name: str, row: int, entries: Mapping[_Place, Control]) -> str:
-    """Name of an output of the system; that of its entry where it has but one."""
+    """Name of an output of the system; the entry's signal if the row has only one entry."""
     of_row = [part.output for (i, _), part in entries.items() if i == row]
     return of_row[0] if len(of_row) == 1 else f"{name}_{row + 1}_out"
 
@@ -145,7 +145,7 @@ def _check_takers(
 
 
 def _read_by_row(where: str, junction: Junction, rows: Mapping[str, str]) -> Junction:
-    """The junction with what a row makes in the place of what its entries make."""
+    """The junction with the output of a row in place of the outputs of its entries."""
     weights: dict[str, set[object]] = {}
     for signal, row in rows.items():
         weights.setdefault(row, set()).add(junction.terms.get(signal, 0))

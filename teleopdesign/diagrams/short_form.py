@@ -1,4 +1,4 @@
-"""Kinds of diagram whose wiring the package knows: a file states the blocks only."""
+"""Kinds of diagram whose wiring the package knows, so that a file states only the blocks."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ Content = Body | MatrixImpedance | Controller | AnyBlock
 
 @dataclass(frozen=True)
 class ShortForm:
-    """What wires a kind of diagram, and which of its arguments each block is.
+    """The function that wires a kind of diagram, and its argument for each block.
 
-    has_analog: whether a file can say which controllers no computer samples
+    has_analog: whether a file can state which controllers no computer samples
     """
 
     make: Callable[..., Diagram]
@@ -58,7 +58,7 @@ KINDS: Mapping[str, ShortForm] = MappingProxyType(
 
 
 def kind_of(diagram: Diagram) -> str | None:
-    """The kind whose wiring of the blocks of this diagram is this diagram; None if none."""
+    """The kind that wires the blocks of a diagram to this diagram; None if there is none."""
     contents: dict[str, Content] = {
         b.name: b.controller if isinstance(b, Control) else b.body for b in diagram.blocks
     }

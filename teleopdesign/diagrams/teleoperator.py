@@ -1,4 +1,4 @@
-"""The teleoperator: a master held by a hand, a slave that meets an environment, and their coupling.
+"""The teleoperator: a master held by a hand, a slave that meets an environment, and a coupling.
 
     Z_m X_m = F_m - P (X_m - X_s) + C_m X_m        F_m = F_u - Z_H X_m
     Z_s X_s = F_s + P (X_m - X_s) + C_s X_s        F_s = F_d - Z_E X_s
@@ -46,14 +46,15 @@ def teleoperator(
     master_cancellation: Controller | AnyBlock | None = None,
     slave_cancellation: Controller | AnyBlock | None = None,
 ) -> Diagram:
-    """Wire a teleoperator on one axis; only the blocks named are in the diagram.
+    """Wire a teleoperator on one axis; the diagram has only the blocks that are stated.
 
-    master, slave: Z_m and Z_s, impedances relative to position;  coupling: P, from the position
-    error X_m - X_s to a force, such as `controller("spring_damper", ...)`;  hand: Z_H, what the
-    user's arm does passively;  environment: Z_E, such as a body without inertia with the contact
-    `CONTACT` on it
-    master_cancellation, slave_cancellation: C_m and C_s, each on its side's motion
-    ANY stands for a block of which nothing but its place is known.
+    master, slave: Z_m and Z_s, impedances relative to position
+    coupling: P, from the position error X_m - X_s to a force, such as `controller("spring_damper",
+        ...)`
+    hand: Z_H, passive impedance of the user's arm
+    environment: Z_E, such as a body without inertia with the contact `CONTACT`
+    master_cancellation, slave_cancellation: C_m and C_s, each on the motion of its side
+    ANY stands for a block of which only the place is known.
     """
     blocks: list[Block] = [
         Moving("Z_m", master, "X_m", "U_m", {"F_m": 1}, "F_u"),

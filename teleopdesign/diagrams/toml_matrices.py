@@ -13,9 +13,9 @@ MATRICES = ("mass", "damping", "stiffness")
 
 
 def read_matrices(table: Table, size: int) -> MatrixImpedance:
-    """The impedance between `size` motions; a matrix that is not there is zero.
+    """The impedance between `size` motions; an absent matrix is zero.
 
-    raises ExperimentError: a matrix of another size, or something in it that is no finite number
+    raises ExperimentError: a matrix of another size, or an entry that is no finite number
     """
     if not size:
         raise ExperimentError(f"{table.where('motions')}: found none, expected one or more")

@@ -1,8 +1,8 @@
 """A diagram from a TOML file: blocks with their values, wired by the names of their signals.
 
-SI throughout; a body's value may carry a unit, { value = 150, unit = "g" }. A block without laws
-or inertia is known by its name only. Weights and kinematics may be expressions of positions, as
-text. Everything unknown is refused, in one line.
+Values are in SI; the value of a body may have a unit, { value = 150, unit = "g" }. A block without
+laws or inertia is only a name. Weights and kinematics may be expressions of positions, as text.
+Unknown keys are refused, in one line.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ WIRING = {
 
 
 def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> Diagram:
-    """The diagram that a file describes; the format is on the page "Diagrams" of the documentation.
+    """The diagram that a file describes; the page "Diagrams" of the documentation has the format.
 
-    effects: the effects by name, for those who add effects (`effects.catalogue`); those of
-        blocks, such as "environment", are known too
-    raises ExperimentError: what cannot be read or has no meaning
+    effects: known effects by name, for users who add effects (`effects.catalogue`); the effects of
+        blocks, such as "environment", are known as well
+    raises ExperimentError: the file cannot be read, or an entry has no meaning
     """
     path = Path(path)
     root, effects = read_toml(path, path.name), with_block_effects(effects)
@@ -57,7 +57,7 @@ def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -
 
 
 def _read_short_form(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
-    """The wiring is that of the package: blocks only."""
+    """Read a diagram whose wiring the package knows: the file states only blocks."""
     root.allow(("diagram", "blocks"))
     head.allow(("kind", "name"))
     kind = _one_of(head, "kind", KINDS)
@@ -79,7 +79,7 @@ def _read_short_form(root: Table, head: Table, effects: Mapping[str, Effect]) ->
 
 
 def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
-    """Blocks, junctions and what comes from outside, all written out."""
+    """Read a diagram with all its blocks, junctions and outside signals."""
     root.allow(("diagram", "outside", "blocks", "kinematics", "junctions", "pose", "texts"))
     head.allow(("name", "measured", "kind"))
     outside, tables = root.table("outside"), root.table("blocks")
@@ -100,7 +100,7 @@ def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) 
 
 
 def _refuse_ambiguous_pi(expressions: Table, blocks: Table) -> None:
-    """In an expression a position called "pi" would be the number, in silence."""
+    """Refuse "pi" in an expression if a position has this name: the number would be used."""
     if not any("pi" in _motions(blocks.table(name)) for name in blocks.content):
         return
     for name, terms in expressions.content.items():
@@ -162,7 +162,7 @@ def _number(table: Table, key: str) -> float:
 
 
 def _kinematics(table: Table, name: str) -> Kinematics:
-    """An expression, or { expression = "...", axis = "revolute" }."""
+    """Read an expression, or { expression = "...", axis = "revolute" }."""
     if isinstance(table.content[name], str):
         return Kinematics(name, read_expression(table.content[name], where=table.where(name)))
     entry = table.table(name)
@@ -218,7 +218,7 @@ def _one_of(table: Table, key: str, known: Any) -> str:
 
 
 def _string(table: Table, key: str) -> str:
-    """As `Table.text`, but it may be blank."""
+    """As `Table.text`, but the text may be blank."""
     text = table.content.get(key)
     return text if isinstance(text, str) else table.text(key)
 

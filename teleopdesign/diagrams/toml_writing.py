@@ -1,4 +1,4 @@
-"""A diagram as a TOML file that `read_diagram` reads back as the same diagram."""
+"""A diagram as a TOML file, from which `read_diagram` reads the same diagram."""
 
 from __future__ import annotations
 
@@ -28,17 +28,18 @@ def write_diagram(
 ) -> None:
     """Write a diagram as a TOML file, in SI units.
 
-    A diagram of a kind that the package wires is written in short, by its blocks alone.
-    effects: those that a reader of the file will know, as in `read_diagram`
-    raises ModelError: an effect of a body is another than the one known by that name, a law is none
-        of the package's, an expression holds other functions than a file may
+    If the package knows the wiring, the file states only the blocks.
+
+    effects: effects that the reader of the file will know, as in `read_diagram`
+    raises ModelError: an effect of a body differs from the known one of that name, a law is not
+        from the package, an expression has functions that a file must not have
     """
     text = diagram_text(diagram, effects=effects)
     write_text(path, text)
 
 
 def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -> str:
-    """The content of the file."""
+    """The text of the file that `write_diagram` writes."""
     kind, known = kind_of(diagram), with_block_effects(effects)
     lines = ["[diagram]"]
     if kind is not None:
@@ -115,7 +116,10 @@ def _body(name: str, body: Body | AnyBlock, known: Mapping[str, Effect]) -> list
 
 
 def body_lines(table: str, body: Body) -> list[str]:
-    """What stands under [table] for a body, in SI: `model.device`, or `blocks.M` of a diagram."""
+    """The lines of a body below [table], in SI.
+
+    table: name of the table: `model.device`, or `blocks.M` of a diagram
+    """
     lines = [f"axis = {string_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
     for effect in body.effects:
         lines += [f"[{table}.effects.{key_text(effect.name)}]"]

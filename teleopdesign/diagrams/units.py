@@ -9,13 +9,13 @@ from .wiring import Diagram
 
 
 def first_axis(diagram: Diagram) -> str:
-    """Axis of the first body: blocks without an axis are stated on it."""
+    """Axis of the first body, which also applies to blocks without an axis."""
     bodies = (b.body for b in diagram.bodies if isinstance(b.body, Body))
     return next((b.axis for b in bodies), "prismatic")
 
 
 def unit_of_value(diagram: Diagram, name: str) -> str:
-    """SI unit of a value of `diagram.values`; "1" where it has none."""
+    """SI unit of a value of `diagram.values`; "1" if it has none."""
     block_name, _, rest = name.partition(".")
     block = diagram.block(block_name)
     if not isinstance(block, Control):

@@ -52,10 +52,10 @@ def wave_variables(
 ) -> Diagram:
     """Wire a teleoperator of wave variables.
 
-    master, slave, hand, environment: as of `teleoperator`
+    master, slave, hand, environment: as in `teleoperator`
     wave_impedance: b, N s/m, > 0, the same at both sides: blocks b_m and b_s; None: not known
     coupling: P, such as `controller("proportional_integral", ...)`
-    delay: each way, s, or of "T_1" (to the slave) and "T_2" (to the master); no block where it is 0
+    delay: each way, s, or of "T_1" (to the slave) and "T_2" (to the master); no block if it is 0
     raises ModelError: a wave impedance that is not positive, a way of another name
     """
     if wave_impedance is not None and not 0 < wave_impedance < float("inf"):

@@ -1,7 +1,7 @@
 """A diagram: named blocks, wired by the names of their signals; data, no computation.
 
-Every form (symbolic transfer functions, LTI systems, interconnected python-control system, compiled
-simulation) is read off this one wiring.
+All uses (symbolic transfer functions, LTI systems, interconnected python-control system, compiled
+simulation) follow from this one wiring.
 """
 
 from __future__ import annotations
@@ -31,11 +31,13 @@ from .parts import AnyBlock, Attached, Block, Control, Linked, Moving, Part
 class Diagram:
     """Blocks and junctions wired by signal names.
 
-    outside: signals that come from outside, name -> quantity
-    measured: signals of the sensors to the computer; what controllers make of them is sampled
-    texts: what each signal is, with sign
+    outside: signals from outside, name -> quantity
+    measured: signals from the sensors to the computer; signals of sampled controllers follow from
+        them
+    texts: meaning of each signal, with its sign
     kinematics: positions computed from those of bodies
     pose: position of each motion (default 0) at which weights and kinematics are linearised
+    raises ModelError: a signal that nothing makes, or that two parts make
     """
 
     name: str
@@ -88,7 +90,7 @@ class Diagram:
 
     @check_types
     def position(self, name: str) -> sp.Expr:
-        """A motion, or a junction or kinematics of motions, on the positions of moving bodies.
+        """A motion, or a junction or kinematics of motions, as a function of the bodies' positions.
 
         raises ModelError: the signal is no position that bodies determine
         """
@@ -121,7 +123,7 @@ class Diagram:
         return sp.sympify(whole, strict=True).xreplace(placed)
 
     def here(self, weight: Weight) -> sp.Expr:
-        """A weight (or derivative of kinematics) at the diagram's pose."""
+        """A weight (or a derivative of kinematics) at the pose of the diagram."""
         expression = sp.sympify(weight, strict=True)
         pose = {
             s: self.position(s.name).subs(
@@ -133,7 +135,7 @@ class Diagram:
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """Names of all signals: those from outside first."""
+        """Names of all signals, those from outside first."""
         return (*self.outside, *(s for part in self.parts for s in part.outputs))
 
     @property
@@ -146,7 +148,7 @@ class Diagram:
 
     @check_types
     def block(self, name: str) -> Block:
-        """The block of that name; ModelError with the nearest one."""
+        """The block of that name; raises ModelError with the nearest name: no such block."""
         for block in self.blocks:
             if block.name == name:
                 return block
@@ -161,7 +163,7 @@ class Diagram:
 
     @check_types
     def signal(self, name: str) -> str:
-        """The name itself; ModelError with the nearest signal where there is none of that name."""
+        """The name itself; raises ModelError with the nearest name: no such signal."""
         if name not in self.signals:
             raise ModelError(
                 f'{self.name}: no signal "{name}", has {", ".join(self.signals)}'
@@ -170,7 +172,7 @@ class Diagram:
         return name
 
     def without(self, *names: str) -> Diagram:
-        """The diagram without these blocks: their outputs are zero. Unknown names are ignored."""
+        """The diagram without these blocks; their outputs are zero. Unknown names are ignored."""
         gone = {s for n in names if self.has(n) for s in self.block(n).outputs}
         junctions = tuple(
             replace(j, terms={s: g for s, g in j.terms.items() if s not in gone})
@@ -193,9 +195,9 @@ class Diagram:
         )
 
     def open_at(self, *names: str) -> Diagram:
-        """The diagram with its loops open at these controllers: their outputs come from outside.
+        """The diagram with its loops open at these controllers, whose outputs come from outside.
 
-        What only these controllers used is left out. Unknown names are ignored.
+        Signals that only these controllers used are left out. Unknown names are ignored.
         """
         free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
         kept = tuple(b for b in self.blocks if b.name not in names)
@@ -203,7 +205,10 @@ class Diagram:
 
     @check_types
     def with_block(self, name: str, block: Body | MatrixImpedance | Controller) -> Diagram:
-        """The diagram with another body or controller in the place of that name."""
+        """The diagram with another body or controller in place of the named block.
+
+        raises ModelError: no such block, or content of another kind
+        """
         old = self.block(name)
         if isinstance(old, Control):
             if not isinstance(block, Controller):
@@ -235,9 +240,9 @@ class Diagram:
 
     @check_types
     def with_values(self, values: Mapping[str, float]) -> Diagram:
-        """The diagram with other parameter values (SI), by the names in `values`.
+        """The diagram with other parameter values (SI), by the names of `Diagram.values`.
 
-        raises ModelError: no parameter of that name; the message has the nearest one
+        raises ModelError: no parameter of that name, with the nearest one
         """
         known, diagram = self.values, self
         for name in values:
@@ -265,12 +270,12 @@ class Diagram:
 
 
 def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
-    """Whether it takes one signal that may be zero for good: a command, or a controller's input."""
+    """Whether the block needs one input signal, which may be zero: a command or an input."""
     return isinstance(part, Moving | Control)
 
 
 def _prune(diagram: Diagram) -> Diagram:
-    """Without outside signals and junctions that only a block taken out had used."""
+    """The diagram without outside signals that no part uses; forces are kept."""
     used = {s for part in diagram.parts for s in part.inputs} | set(diagram.measured)
     # forces stay: what drives a motion that is prescribed is no input of its body
     outside = {s: q for s, q in diagram.outside.items() if s in used or q == "force"}

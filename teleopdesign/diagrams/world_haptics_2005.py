@@ -1,8 +1,8 @@
 """Numbers of Bernstein, Lawrence, Pao, World Haptics 2005, as far as they can be read.
 
-The text of the paper that is in circulation lost its digits 0 and 1. Every number below says which
-readings fit what is left, which one is used, and how sure that is. No test compares with a number
-of low confidence.
+The text of the paper that is in circulation lost its digits 0 and 1. Every number below has the
+readings that fit the rest, the reading that is used, and a confidence. No test compares with a
+number of low confidence.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .wiring import Diagram
 
 @dataclass(frozen=True)
 class Reading:
-    """A number (SI) that a paper leaves open: the value used, other readings, and the reason.
+    """A number (SI) that the paper does not show clearly: used value, other readings, and reason.
 
     readings: values that the print allows;  confidence: 0 to 1, that the value is the authors'
     """
@@ -72,7 +72,7 @@ READINGS: Mapping[str, Reading] = Catalogue(
 
 
 def read_open_number(name: str) -> float:
-    """The value (SI) used for a number that the paper leaves open, by its name in `READINGS`.
+    """The value (SI) that is used for an unclear number of the paper, by its name in `READINGS`.
 
     raises ModelError: no reading of that name, with the nearest one
     """
@@ -80,7 +80,7 @@ def read_open_number(name: str) -> float:
 
 
 def world_haptics_2005(*, position_loop: bool = False) -> Diagram:
-    """The haptic interface with hybrid compensation, at the readings used.
+    """The haptic interface with hybrid compensation, with the readings that are used.
 
     Force feedback H is analog, the cancellation C sampled; `position_loop` adds K and the load.
     """

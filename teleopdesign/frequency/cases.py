@@ -9,7 +9,7 @@ from ..errors import ModelError
 
 
 def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
-    """Case -> diagram; of one diagram its name. ModelError: there is none."""
+    """Case -> diagram; a single diagram has its name as case. Raises ModelError: no diagram."""
     if isinstance(diagrams, Diagram):
         return {diagrams.name: diagrams}
     if not diagrams:

@@ -31,19 +31,20 @@ def smoothed_coulomb(
 
 
 def smoothed_share(r: sp.Expr, reciprocal: sp.Expr | float) -> sp.Expr:
-    """First harmonic of smoothed over that of bare Coulomb friction, r = a/V; see `reciprocals`."""
+    """Ratio of first harmonics, smoothed to Coulomb friction, r = a/V; see `reciprocals`."""
     return 1 - sp.pi * r / 2 + r**2 * reciprocal
 
 
 def reciprocals(r: sp.Expr) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """J, the integral of 1/(r + cos phi) over a quarter turn: for r < 1, r = 1, r > 1."""
+    """J, the integral of 1/(r + cos phi) over a quarter turn, for r < 1, r = 1 and r > 1."""
     below = sp.acosh(1 / r) / sp.sqrt(1 - r**2)
     return below, sp.S(1), sp.acos(1 / r) / sp.sqrt(r**2 - 1)
 
 
 def dahl(level: sp.Expr | float, stiffness: sp.Expr | float, amplitude: sp.Expr | float) -> sp.Expr:
-    """P18: Dahl friction; u = sigma A/f bristle lengths: a spring at first, then Coulomb friction
-    with a spring part that decays only as 1/sqrt(u).
+    """P18: Dahl friction, from a spring in small motion to Coulomb friction in large motion.
+
+    With u = sigma A/f bristle lengths, the spring part decays only as 1/sqrt(u).
     """
     u = sp.sympify(stiffness) * amplitude / level
     return (dahl_spring(level, u) + sp.I * dahl_friction(level, u)) / amplitude

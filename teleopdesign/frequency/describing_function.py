@@ -1,7 +1,7 @@
-"""Describing functions: what a nonlinear law is to the first harmonic of a sinusoidal motion.
+"""Describing functions: the gain of a nonlinear law for the first harmonic of a sinusoidal motion.
 
-N(A, omega) = phasor of the force over A, for the position A sin(omega t); from the law itself, by
-quadrature over a cycle. Closed forms of the simplest are in `closed_forms`.
+N(A, omega) = phasor of the force over A, for the position A sin(omega t), computed from the law
+itself by quadrature over a cycle. Closed forms for simple laws are in `closed_forms`.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ def describing_function(
 ) -> complex | np.ndarray:
     """Impedance relative to position of a body, or of a controller driven by the motion, N/m.
 
-    of: a body: the force that opposes its motion, inertia and all effects except actuation, at rest
-        its command; a controller: its force
+    of: a body: the force that opposes its motion, from inertia and all effects except actuation,
+        with a command of zero; a controller: its force
     amplitude: of the position, m or rad;  frequency: Hz; arrays are broadcast
-    returns: complex, spring real, friction and damper +j, mass negative; of the shape of the grid
+    returns: complex, spring real, friction and damper +j, mass negative; in the shape of the grid
     raises ModelError: a law of the hand's force or of time, or states that never repeat
     """
     sizes, f = np.broadcast_arrays(np.asarray(amplitude, float), np.asarray(frequency, float))
@@ -60,11 +60,11 @@ def _parts(size: int, at_once: int) -> Iterator[slice]:
 def driven_gain(
     of: Controller, *, amplitude: float, frequency: float
 ) -> Callable[[complex], complex]:
-    """Gain of a controller for the first harmonic of what drives it, while a motion goes on.
+    """Gain of a controller for the first harmonic of its input, while a motion goes on.
 
-    amplitude, frequency: of that motion, which sets the controller's speed
-    returns: phasor of the drive (1: in phase with position) -> complex gain. Where the gain follows
-        speed, drives of another phase meet another gain; size matters only to nonlinear laws
+    amplitude, frequency: of that motion, which determines the speed in the controller
+    returns: phasor of the input (1: in phase with position) -> complex gain. If the gain depends on
+        speed, inputs of another phase have another gain; size matters only to nonlinear laws
     """
     law, motion, phase = controller_law(of), cycle_values(amplitude, frequency), middles()
 
@@ -83,7 +83,7 @@ def driven_gain(
 def cycle_values(
     amplitude: float | np.ndarray, frequency: float | np.ndarray
 ) -> dict[sp.Symbol, np.ndarray]:
-    """Position and its derivatives in the middle of each step of a cycle; no force acts.
+    """Position and its derivatives in the middle of each step of a cycle, with all forces zero.
 
     amplitude, frequency: numbers, or (m, 1);  returns: values (STEPS,) or (m, STEPS)
     """
@@ -100,7 +100,7 @@ def cycle_values(
 
 
 def controller_signals(motion: Mapping[sp.Symbol, np.ndarray]) -> dict[sp.Symbol, np.ndarray]:
-    """What a controller wired to the motion sees."""
+    """The signals of a controller whose input is the motion."""
     velocity = motion[SIGNALS["velocity"]]
     return {
         CONTROL_SIGNALS["input"]: motion[SIGNALS["position"]],
@@ -111,7 +111,7 @@ def controller_signals(motion: Mapping[sp.Symbol, np.ndarray]) -> dict[sp.Symbol
 
 
 def body_law(body: Body) -> LawExpressions:
-    """Force that opposes the motion of a body, its values in place."""
+    """Force that opposes the motion of a body, with its values inserted."""
     body = without_absent(body)
     equation, numbers = body.equation(), body.numbers()
     total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
@@ -120,7 +120,7 @@ def body_law(body: Body) -> LawExpressions:
 
 
 def controller_law(of: Controller) -> LawExpressions:
-    """Output of a controller, its values in place."""
+    """Output of a controller, with its values inserted."""
     equation = of.equation("controller", {**CONTROL_SIGNALS, "period": sp.S(0)})
     numbers = {parameter_symbol("controller", n): v for n, v in of.names().items()}
     rates = {s: r.subs(numbers) for s, r in equation.rates.items()}

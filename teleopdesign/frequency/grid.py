@@ -1,4 +1,4 @@
-"""Where an impedance is measured or predicted: frequencies and amplitudes."""
+"""Points at which an impedance is measured or predicted: frequencies and amplitudes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def falling_profile(
 
 @dataclass(frozen=True)
 class Grid:
-    """Points of a map: each amplitude with each frequency, or amplitude as a profile over it."""
+    """Points of a map: each amplitude with each frequency, or an amplitude for each frequency."""
 
     frequency: np.ndarray
     amplitude: np.ndarray
@@ -36,7 +36,7 @@ class Grid:
 
     @staticmethod
     def of(amplitude: Amplitude, frequency: float | Sequence[float] | np.ndarray) -> Grid:
-        """From a user's numbers; raises ModelError: not positive numbers."""
+        """The grid for a user's numbers; raises ModelError: numbers that are not positive."""
         f = _positive("frequency", frequency)
         if callable(amplitude):
             return Grid(f, _positive("amplitude", amplitude(f)), True)
@@ -61,7 +61,7 @@ class Grid:
     def label(
         self, values: Mapping[str, tuple[np.ndarray, str]], *, cases: Sequence[str], length: str
     ) -> xarray.Dataset:
-        """Values (cases, ...) with their units as a dataset; length: unit of amplitude."""
+        """Values (cases, ...) with their units as a data set; length: unit of amplitude."""
         import xarray
 
         dims = ("case", *self.dims)

@@ -1,4 +1,4 @@
-"""What lies between two samples, for inputs that are held and late: its matrices, in many digits.
+"""The plant between two samples, for held and delayed inputs: its matrices, with many digits.
 
     x' = A x + sum_k B_k u(t - T_k),   y = C x + sum_k D_k u(t - T_k)
 
@@ -17,7 +17,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class HeldPlant:
-    """The part between two samples in `mpmath`: matrices of one sample, in units of it."""
+    """The plant between two samples in `mpmath`: matrices of one sample, time in samples."""
 
     step: mpmath.matrix  # e^(A h)
     grown: mpmath.matrix  # e^(A h) - I, as A times its integral
@@ -32,7 +32,10 @@ class HeldPlant:
         below: Sequence[Fraction],
         above: Sequence[tuple[Fraction, Sequence[Fraction]]],
     ) -> HeldPlant:
-        """Of numerators, each with its dead time (s), over one denominator, highest power first."""
+        """The plant of several numerators, each with its dead time (s), over one denominator.
+
+        Coefficients begin with the highest power.
+        """
         lead, n = below[0], len(below) - 1
         # time in samples: s h = q, so that the coefficient of q^k is that of s^k over h^k
         monic = [c / lead * period**k for k, c in enumerate(below)]
@@ -65,7 +68,7 @@ class HeldPlant:
     def polynomials(
         self,
     ) -> tuple[list[mpmath.mpf], list[tuple[int, list[mpmath.mpf], list[mpmath.mpf]]]]:
-        """det(z I - e^(A h)), and m, C adj B0, C adj B1 + D det of each input, highest first."""
+        """det(z I - e^(A h)); for each input m, C adj B0, C adj B1 + D det, highest power first."""
         n, f = self.step.rows, self.step
         below, adjoint = [mpmath.mpf(1)], list[mpmath.matrix]()
         power = mpmath.eye(n) if n else f
@@ -105,7 +108,7 @@ class HeldPlant:
 
 
 def _integral(a: mpmath.matrix, time: mpmath.mpf) -> mpmath.matrix:
-    """Of e^(A t) from 0 to that time: a corner of the exponential of a larger matrix."""
+    """Integral of e^(A t) from 0 to `time`: a block of the exponential of a larger matrix."""
     n = a.rows
     if not n:
         return a
@@ -119,19 +122,19 @@ def _integral(a: mpmath.matrix, time: mpmath.mpf) -> mpmath.matrix:
 
 
 def as_mpf(value: Fraction) -> mpmath.mpf:
-    """With the digits that are set."""
+    """The fraction in `mpmath`, with the present number of digits."""
     return mpmath.mpf(value.numerator) / value.denominator
 
 
 def add(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
-    """The sum of polynomials, highest first."""
+    """The sum of polynomials, highest power first."""
     n = max(len(p), len(q))
     p, q = ([mpmath.mpf(0)] * (n - len(x)) + x for x in (p, q))
     return [a + b for a, b in zip(p, q, strict=True)]
 
 
 def multiply(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
-    """The product of polynomials, highest first."""
+    """The product of polynomials, highest power first."""
     out = [mpmath.mpf(0)] * (len(p) + len(q) - 1)
     for i, a in enumerate(p):
         for j, b in enumerate(q):

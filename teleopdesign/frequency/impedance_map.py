@@ -1,4 +1,4 @@
-"""An impedance over case, frequency and amplitude, and how far from linear it is."""
+"""An impedance over case, frequency and amplitude, and its deviation from a linear one."""
 
 from __future__ import annotations
 
@@ -23,48 +23,48 @@ class ImpedanceMap(ByValue):
     """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
 
     data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg
-        Coordinate `amplitude` (of the drive) stands over `frequency` where it follows a profile.
-        Where it was measured also
-        `distortion` of the force: rms of its higher harmonics over that of the first
-        `unsettled`: how far first harmonics still differ from cycle to cycle, relative
-        `motion_amplitude` (m or rad), that of the motion itself
+
+    The coordinate `amplitude` (of the drive) depends on `frequency` if it follows a profile. A
+    measured map also has `distortion` of the force, the rms of its higher harmonics over that of
+    the first; `unsettled`, the relative difference of the first harmonics of successive cycles; and
+    `motion_amplitude` (m or rad) of the motion itself.
     """
 
     data: xarray.Dataset
 
     @property
     def on_profile(self) -> bool:
-        """Whether amplitude follows frequency instead of being varied by itself."""
+        """Whether the amplitude depends on the frequency instead of being varied separately."""
         return "amplitude" not in self.data["impedance"].dims
 
     @property
     def decibel(self) -> xarray.DataArray:
-        """20 log10 of the size, dB re 1 N/m (N m/rad on a revolute axis)."""
+        """20 log10 of the magnitude, dB re 1 N/m (N m/rad on a revolute axis)."""
         z = self.data["impedance"]
         size = 20 * np.log10(np.abs(z.values))
         return z.copy(data=size).assign_attrs(units=f"dB re 1 {z.attrs['units']}")
 
     @property
     def phase(self) -> xarray.DataArray:
-        """Degrees in 0 .. 360."""
+        """Phase in degrees, 0 to 360."""
         angle = np.degrees(np.angle(self.data["impedance"])) % 360
         return self.data["impedance"].copy(data=angle).assign_attrs(units="deg")
 
     @property
     def measured(self) -> bool:
-        """Whether it was measured, in simulation or on a device; else predicted."""
+        """Whether the map was measured, in simulation or on a device; else it was predicted."""
         return "distortion" in self.data
 
     def up_to(self, largest: Callable[[np.ndarray], np.ndarray]) -> ImpedanceMap:
-        """The map where the amplitude is at most largest(frequency in Hz); not a number beyond."""
+        """The map where the amplitude is at most largest(frequency in Hz); NaN elsewhere."""
         limit = self.data["frequency"].copy(data=largest(self.data["frequency"].values))
         return ImpedanceMap(self.data.where(self.data["amplitude"] <= limit))
 
     def spread(self) -> xarray.Dataset:
-        """How far from linear: largest less smallest size (dB) and phase (deg) over amplitude.
+        """Deviation from a linear system: range of magnitude (dB) and phase (deg) over amplitude.
 
         0 for a linear system;  over `case` and `frequency`
-        raises ModelError: amplitude follows a profile, and thereby frequency
+        raises ModelError: the amplitude follows a profile over frequency
         """
         import xarray
 
@@ -87,10 +87,10 @@ class ImpedanceMap(ByValue):
         model: ImpedanceMap | None = None,
         columns: Literal[1, 2] = 1,
     ) -> matplotlib.figure.Figure:
-        """Size and phase, one line a case; of the other variable a shade for each value.
+        """Magnitude and phase, one line for each case, in shades for the other variable.
 
-        against: default: amplitude where there are more of them than frequencies
-        model: drawn as lines, this map then as points
+        against: "frequency" or "amplitude"; default: amplitude if it has more values
+        model: drawn as lines; this map is then drawn as points
         columns: of the page, 3.5 in or 7.16 in wide
         """
         from ..plot.frequency_impedance import plot_impedance
@@ -100,13 +100,13 @@ class ImpedanceMap(ByValue):
         return plot_impedance(self, against=against or chosen, model=model, columns=columns)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write everything with units to a netCDF file, the impedance as two real parts."""
+        """Write all data with units to a netCDF file, the impedance as real and imaginary part."""
         z = self.data["impedance"]
         parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in _parts(z).items()}
         write_netcdf(path, self.data.drop_vars("impedance").assign(parts))
 
     def to_json(self, path: str | Path) -> None:
-        """Write size, phase, distortion and settling of every point to a JSON file, with units."""
+        """Write magnitude, phase, distortion and settling of all points to JSON, with units."""
         written = {
             "unit": self.decibel.attrs["units"],
             "frequency_Hz": self.data["frequency"].values.tolist(),
@@ -146,7 +146,7 @@ def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
 
 
 def _round_values(values: np.ndarray) -> list[object]:
-    """Five digits, more than any figure shows and the same on every machine; None: no number."""
+    """Values with five digits, the same on every machine; None for a value that is no number."""
     numbers = [float(f"{x:.5g}") if np.isfinite(x) else None for x in values.reshape(-1)]
     entries: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()
     return entries

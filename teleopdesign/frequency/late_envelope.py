@@ -1,4 +1,4 @@
-"""What dead times can make of a ratio of late sums between two frequencies, so that none is missed.
+"""Bounds of a ratio of delayed sums between two frequencies, so that no crossing is missed.
 
     |p_0| - |p_1| - ...  <=  |sum_k p_k(j w) e^(-j w T_k)|  <=  |p_0| + |p_1| + ...
 
@@ -26,13 +26,14 @@ _MOST = 2_000_000
 
 
 class Envelope(NamedTuple):
-    """What dead times can make of a ratio at each frequency, (n,).
+    """Bounds of a ratio for any phases of its delayed terms, at each frequency, (n,).
 
-    value: as it is
-    least, most: logarithms of its size, whatever the phases of late terms
-    clear: rad, from -180 degrees to the nearest phase that late terms make, < 0 on the side from
-        below; 0: they reach them
-    rate: s, change of its phase or of the logarithm of its size by dead times over a step of w
+    value: of the ratio itself
+    least, most: logarithms of its magnitude, for any phases of the delayed terms
+    clear: rad, from -180 degrees to the nearest phase that delayed terms can give, < 0 on the side
+        below; 0: they reach -180 degrees
+    rate: s, change of its phase, or of the logarithm of its magnitude, by dead times per change of
+        w
     """
 
     value: np.ndarray
@@ -43,7 +44,7 @@ class Envelope(NamedTuple):
 
 
 def envelope(ratio: LateRatio, w: np.ndarray) -> Envelope:
-    """Of the ratio at these frequencies, rad/s."""
+    """The bounds of a ratio at frequencies (n,), rad/s."""
     above, below = (_terms_at(terms, w) for terms in (ratio.above, ratio.below))
     phase = np.angle(-above.at_once * below.at_once.conj())
     turn = above.turn + below.turn
@@ -58,7 +59,7 @@ def envelope(ratio: LateRatio, w: np.ndarray) -> Envelope:
 
 
 def least_between(values: np.ndarray) -> np.ndarray:
-    """The least between neighbours: below the smaller one as far as the larger one above it."""
+    """Lower bound between neighbours: below the smaller value by their difference."""
     low, high = np.minimum(values[1:], values[:-1]), np.maximum(values[1:], values[:-1])
     with np.errstate(invalid="ignore"):  # without a bound on one side: not a number
         return np.asarray(low - (high - low))
@@ -67,9 +68,10 @@ def least_between(values: np.ndarray) -> np.ndarray:
 def is_followed(
     change: np.ndarray, left: np.ndarray, rate: np.ndarray, w: np.ndarray
 ) -> np.ndarray:
-    """Whether steps of a phase, or of the logarithm of a size, are short enough to be followed.
+    """Whether steps of a phase, or of the logarithm of a magnitude, are short enough.
 
-    change: of each step, (n - 1,);  left: to what is looked for, (n,);  rate: as in `Envelope`
+    change: of each step, (n - 1,);  left: distance to the searched value, (n,);  rate: see
+        `Envelope`
     """
     steps = change + np.maximum(rate[1:], rate[:-1]) * np.diff(w)
     return np.asarray(steps <= np.clip(left[1:] + left[:-1], FINEST, STEP))
@@ -81,10 +83,10 @@ def halve_steps(
     wide: np.ndarray,
     at: Callable[[np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(w, points, steps that were halved): with the middle of each wide step.
+    """Insert the middle of each wide step: w, points, and the steps that were halved.
 
     points: (k, n), of `at` at w;  wide: indices of steps, in order
-    raises ModelError: there are too many
+    raises ModelError: too many points
     """
     middle = (w[wide] + w[wide + 1]) / 2
     steps, middle = (x[(middle > w[wide]) & (middle < w[wide + 1])] for x in (wide, middle))
@@ -95,7 +97,7 @@ def halve_steps(
 
 
 def unity_grid(ratio: LateRatio, w: np.ndarray) -> np.ndarray:
-    """The grid (rad/s) with points between which the size goes through 1 once, or not at all."""
+    """The grid (rad/s) with points between which the magnitude crosses 1 once, or not at all."""
 
     def at(w: np.ndarray) -> np.ndarray:
         here = envelope(ratio, w)
@@ -114,11 +116,11 @@ def unity_grid(ratio: LateRatio, w: np.ndarray) -> np.ndarray:
 
 
 def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[float, int]:
-    """Of a ratio that stays level at high frequency: the factor by which it misses -1 there, at
-    least 1, and how many of the frequencies come before it is level within that share.
+    """Gain factor to -1 at high frequency, at least 1, for a ratio that stays level there.
 
-    sum_k (d_k + g n_k) e^(-j w T_k) is 0 at the least change of dead times where the largest of the
-    terms is no more than the others together. That is linear in g from one corner to the next.
+    Also the number of frequencies before the ratio is level within `share`. sum_k (d_k + g n_k)
+    e^(-j w T_k) can be 0, at a very small change of dead times, if the largest term is no more than
+    the sum of the others. This is linear in g from one corner to the next.
     """
     degree = max(map(len, ratio.below.values()))
     times = sorted({*ratio.above, *ratio.below})
@@ -151,9 +153,9 @@ def _pad(p: np.ndarray | None, degree: int) -> np.ndarray:
 
 
 def _first_zero(left: Callable[[float], float], points: Sequence[float]) -> float:
-    """Where a line from point to point first comes down to 0, the last one going on; else inf.
+    """First zero of the polygon through the points, whose last line continues; inf if none.
 
-    One term alone only touches 0 at its corner, within 1e-12 of rounding.
+    A single term only touches 0 at its corner, within 1e-12 of rounding.
     """
     for k, (a, b) in enumerate(pairwise(points)):
         high, low = left(a), left(b)
@@ -163,7 +165,7 @@ def _first_zero(left: Callable[[float], float], points: Sequence[float]) -> floa
 
 
 class _TermsAt(NamedTuple):
-    """A sum of late terms at each frequency, (n,): see `Envelope`; turn: inf for all phases."""
+    """A sum of delayed terms at each frequency, (n,): see `Envelope`; turn: inf for all phases."""
 
     value: np.ndarray
     at_once: np.ndarray

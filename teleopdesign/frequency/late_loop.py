@@ -1,4 +1,4 @@
-"""A gain round a loop as sums of polynomials in s, each late: poles of the loop, where it is 1.
+"""A loop gain as sums of polynomials in s, each delayed: poles of the loop, crossings of 1.
 
     1 + L(s) = 0  where  f(s) = sum_k p_k(s) e^(-s T_k) = 0,   T_0 = 0
 
@@ -34,21 +34,21 @@ _MOST = 2_000_000
 
 @dataclass(frozen=True)
 class LateRatio:
-    """above/below; each: dead time (s) -> coefficients in s, highest power first."""
+    """above/below; each a mapping from dead time (s) to coefficients in s, highest power first."""
 
     above: Terms
     below: Terms
 
     @property
     def closed(self) -> Terms:
-        """above + below: zero at the poles of the closed loop."""
+        """above + below, which is zero at the poles of the closed loop."""
         times = sorted({*self.above, *self.below})
         none = np.zeros(1)
         sums = {t: np.polyadd(self.above.get(t, none), self.below.get(t, none)) for t in times}
         return {t: p for t, p in ((t, np.trim_zeros(p, "f")) for t, p in sums.items()) if len(p)}
 
     def fades(self) -> bool:
-        """Whether its size is below 1 at all high frequencies, whatever its dead times."""
+        """Whether the magnitude is below 1 at all high frequencies, for any dead times."""
         degree = _degree(self.below)
         if _degree(self.above) > degree:
             return False
@@ -56,11 +56,11 @@ class LateRatio:
         return sum(abs(_coefficient(p, degree)) for p in self.above.values()) < first - sum(others)
 
     def passes(self) -> bool:
-        """Whether its size does not go to 0 at high frequency."""
+        """Whether the magnitude does not go to 0 at high frequency."""
         return _degree(self.above) >= _degree(self.below)
 
     def corners(self) -> np.ndarray:
-        """Sizes of all roots of its polynomials, with points across narrow resonances, rad/s."""
+        """Magnitudes of the roots of all polynomials, and points across resonances, rad/s."""
         polynomials = (p for terms in (self.above, self.below, self.closed) for p in terms.values())
         roots = np.concatenate([np.zeros(0), *(_roots(p) for p in polynomials)])
         roots = roots[np.abs(roots) > 0]
@@ -73,9 +73,9 @@ class LateRatio:
 
 
 def late_ratio(expression: sp.Expr) -> LateRatio:
-    """The expression in `S` and e^(-s T) as such a ratio.
+    """The expression in `S` and e^(-s T) as a LateRatio.
 
-    raises ModelError: it is none
+    raises ModelError: it is no ratio of polynomials in s and dead times
     """
     powers = sorted(expression.atoms(sp.exp), key=str)
     marks = [sp.Dummy(f"late_{k}") for k in range(len(powers))]
@@ -98,10 +98,12 @@ def late_ratio(expression: sp.Expr) -> LateRatio:
 
 
 def count_growing(terms: Terms) -> int:
-    """Zeros of f with a positive real part, at least 1 where there are any.
+    """Number of zeros of f with a positive real part, or at least 1 if there are any.
 
-    Those on the axis within rounding count as well. So does a late term that is as strong as the
-    first one at high frequency: at the least change of dead times there are zeros without number.
+    Zeros on the axis within rounding count as well. A delayed term that is as strong as the first
+    one at high frequency counts too: at a very small change of dead times there are infinitely many
+    zeros.
+
     raises ModelError: the dead times turn the phase more often than can be followed
     """
     if not terms:
@@ -144,7 +146,7 @@ def count_growing(terms: Terms) -> int:
 
 
 def _turn(at: Callable[[np.ndarray], np.ndarray], w: np.ndarray) -> float | None:
-    """Change of phase along these frequencies, rad; None: it jumps, at a zero on the axis."""
+    """Change of phase along these frequencies, rad; None: a zero on the axis makes it jump."""
     values = at(w)
     while (values != 0).all():
         steps = np.angle(values[1:] / values[:-1])
@@ -159,7 +161,7 @@ def _turn(at: Callable[[np.ndarray], np.ndarray], w: np.ndarray) -> float | None
 
 
 def _find_lead(first: np.ndarray, others: Sequence[np.ndarray], start: float) -> float:
-    """A frequency, at least `start`, beyond which the others are less than the first, rad/s."""
+    """A frequency of at least `start` above which the first term exceeds all others, rad/s."""
     degree, w = len(first) - 1, start
     far = sum(abs(_coefficient(p, degree)) for p in others) / abs(first[0])
     for _ in range(200):
@@ -192,7 +194,7 @@ def crossings(above: np.ndarray, below: np.ndarray) -> np.ndarray:
 
 
 def _halves(p: np.ndarray) -> tuple[list[Fraction], list[Fraction]]:
-    """(a, b) in w^2, lowest first, with p(j w) = a + j w b."""
+    """(a, b), polynomials in w^2, lowest power first, with p(j w) = a + j w b."""
     exact = [Fraction(float(c)) for c in p[::-1]]
     turned = [c * (-1) ** (k // 2) for k, c in enumerate(exact)]
     return turned[::2], turned[1::2]
@@ -212,7 +214,7 @@ def _add(p: list[Fraction], q: list[Fraction]) -> list[Fraction]:
 
 
 def _roots(p: np.ndarray) -> np.ndarray:
-    """Roots of a polynomial whose coefficients may lie decades apart: computed near size 1."""
+    """Roots of a polynomial with coefficients of very different size, computed near size 1."""
     p = np.trim_zeros(np.asarray(p, dtype=float), "f")
     kept = np.trim_zeros(p, "b")
     zeros = np.zeros(len(p) - len(kept), dtype=complex)

@@ -1,4 +1,4 @@
-"""Lock-in: the first harmonic of a periodic signal and what is beside it."""
+"""Lock-in: the first harmonic of a periodic signal, and the harmonics above it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Harmonic:
-    """A periodic signal, seen over the last cycles of a record.
+    """First harmonic of a periodic signal, from the last cycles of a record.
 
-    phasor: of the first harmonic, mean of the last two cycles, unit of the signal; sin is 1 and
-        cos is j
-    distortion: rms of all higher harmonics over that of the first; inf where there is no first
-    unsettled: largest difference between the last cycle and any other of the second half of the
-        record, relative: a slow transient may turn, so that two cycles alone can agree by chance
+    phasor: mean over the last two cycles, unit of the signal; sin is 1 and cos is j
+    distortion: rms of all higher harmonics over that of the first; inf if the first is zero
+    unsettled: largest relative difference between the last cycle and any other of the second half
+        of the record; a slow transient may turn, so that two cycles alone can agree by chance
     """
 
     phasor: complex
@@ -26,7 +25,7 @@ class Harmonic:
 def phasors(cycles: np.ndarray) -> np.ndarray:
     """First harmonic of each cycle, complex, shape (...); sin(phase) is 1, cos(phase) is j.
 
-    cycles: (..., n), one period on a uniform grid, its end left out
+    cycles: (..., n), one period on a uniform grid, without its end
     """
     n = cycles.shape[-1]
     angle = 2 * np.pi * np.arange(n) / n
@@ -47,8 +46,8 @@ def distortion(cycles: np.ndarray) -> np.ndarray:
 def whole_cycles(values: np.ndarray, *, step: float, frequency: float, points: int) -> np.ndarray:
     """All whole cycles of a record that starts at t = 0, shape (cycles, points).
 
-    values: (n,) at times 0, step, ...; between them linear, so that a cycle need not be a whole
-    number of steps.  Every cycle begins where sin(2 pi frequency t) goes up through zero.
+    values: (n,) at times 0, step, ...; linear between these, so that a cycle need not be a whole
+        number of steps. Every cycle begins where sin(2 pi frequency t) rises through zero
     """
     count = int(np.floor(step * (len(values) - 1) * frequency + 1e-9))
     time = np.arange(count * points) / points / frequency

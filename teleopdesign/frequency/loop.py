@@ -1,4 +1,4 @@
-"""The loop that a controller closes: its gain at each frequency, and the delay that it bears."""
+"""The loop of a controller: its gain at each frequency, and the delay that it tolerates."""
 
 from __future__ import annotations
 
@@ -60,13 +60,14 @@ class LoopGain:
 
     @property
     def has_delay(self) -> bool:
-        """Whether a dead time or a hold is in it, so that it is no rational function."""
+        """Whether the gain contains a dead time or a hold, so that it is no rational function."""
         return bool(self.expression.has(sp.exp))
 
     def transfer_function(self, *, delay_order: int = 4) -> control.TransferFunction:
-        """As python-control system, N/N; dead times and holds by Pade approximation of that order.
+        """The gain as a python-control system; dead times and holds by Pade approximation.
 
-        Up to delay_order/delay (rad/s) the phase is right within 0.4 degrees at order 4, 4.2 at 1.
+        Up to delay_order/delay (rad/s) the phase error is at most 0.4 degrees at order 4, 4.2 at
+        order 1.
         """
         return as_transfer_function(self.expression, delay_order=delay_order)
 
@@ -82,6 +83,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
 
     All other blocks at work, linear forms with smoothed friction and schedules frozen at `speed`.
     A controller in discrete time counts as it samples and holds.
+
     raises ModelError: no such controller, or one without linear form
     """
     part = next((c for c in diagram.controls if c.name == controller), None)
@@ -106,7 +108,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
 
 
 def _count_growing_poles(form: sp.Expr) -> int:
-    """Poles in the right half plane of a rational form; of others, 0."""
+    """Number of poles of a rational form in the right half plane; 0 for other forms."""
     if form.atoms(AppliedUndef) or form.has(sp.exp):
         return 0
     below = sp.Poly(sp.fraction(sp.cancel(sp.together(form)))[1], S)
@@ -120,6 +122,7 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     grow, the faster the shorter. A loop with a measured response is judged between its frequencies,
     see `measured_crossings`. A controller that alone samples is in it as it is, in discrete time;
     where others sample too, by their response over frequency (`LoopGain.sampled`).
+
     raises ModelError: the loop is unstable without any delay (`UnstableLoop`); a controller was
         left out of it; its gain is above 1 where its samples no longer tell a frequency from
         others, or at the highest frequency that was measured
@@ -133,9 +136,9 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
 def unity_crossings(
     loop: LoopGain | control.TransferFunction,
 ) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Of a stable loop: where its gain is 1, and whether it stays below 1 at high frequency.
+    """Crossings of a stable loop: where its gain is 1, and whether it fades at high frequency.
 
-    phase ahead of -180 degrees and frequency (rad/s), shape (crossings,)
+    returns: phase above -180 degrees and frequency (rad/s), shape (crossings,), and the flag
     raises ModelError: as for `delay_margin`
     """
     if isinstance(loop, LoopGain):
@@ -180,7 +183,7 @@ def _ratio_of(system: control.TransferFunction) -> LateRatio:
 
 
 def _grows_by_pade(loop: LoopGain) -> bool:
-    """Of what is held: its samples tell no frequency beyond half their rate, as Pade does not."""
+    """Stability of a held loop by Pade: below half the sampling rate the approximation is good."""
     import control
 
     whole = loop.transfer_function(delay_order=_PADE)
@@ -194,9 +197,9 @@ def _smallest_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
 
 
 def _crossings(loop: LoopGain, ratio: LateRatio | None) -> tuple[np.ndarray, np.ndarray]:
-    """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1.
+    """Phase above -180 degrees, and frequency (rad/s), where the gain is 1.
 
-    ratio: of a loop that is one, whose late terms a grid alone may pass over
+    ratio: of a loop that is one; a grid alone might miss crossings of its delayed terms
     """
     from scipy.optimize import brentq
 

@@ -1,4 +1,4 @@
-"""Gain margin and phase margin of the loop of a controller, dead times exact."""
+"""Gain margin and phase margin of the loop of a controller, with exact dead times."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ _LEVEL = 1e-3
 
 
 def phase_margin(loop: LoopGain) -> float:
-    """Degrees by which the phase may turn, either way, where the gain is 1; inf: it never is.
+    """Degrees by which the phase may turn, in either direction, at gain 1; inf: no crossing.
 
-    raises ModelError: as `delay_margin`; of an unstable loop `UnstableLoop`
+    raises ModelError: as `delay_margin`; for an unstable loop `UnstableLoop`
     """
     phase, *_ = unity_crossings(loop)
     turned = np.abs((phase + 180) % 360 - 180)
@@ -35,11 +35,12 @@ def phase_margin(loop: LoopGain) -> float:
 
 
 def gain_margin(loop: LoopGain) -> float:
-    """Factor, at least 1, by which the gain may rise or fall; inf where none limits it.
+    """Factor, at least 1, by which the gain may rise or fall; inf if nothing limits it.
 
-    The smallest one: where the phase is -180 degrees, the gain or one over it. Of a loop with a
-    dead time this happens at frequencies without number; those whose factor is larger are skipped.
-    raises ModelError: as `delay_margin`; a response that was measured is part of the loop
+    The smallest of the gain and its reciprocal where the phase is -180 degrees. A loop with a dead
+    time has infinitely many such frequencies; those with larger factors are skipped.
+
+    raises ModelError: as `delay_margin`; a measured response is part of the loop
     """
     from scipy.optimize import brentq
 
@@ -91,7 +92,7 @@ def gain_margin(loop: LoopGain) -> float:
 
 
 def _grid(loop: LoopGain, corners: np.ndarray) -> np.ndarray:
-    """Frequencies to begin with, rad/s, corners and narrow resonances among them."""
+    """Frequencies of the first grid, rad/s, with corners and narrow resonances."""
     slowest, fastest = _SLOWEST, min(loop.fastest, _FASTEST)
     if len(corners):
         slowest, fastest = min(slowest, corners.min() / 1e4), max(fastest, corners.max() * 1e4)
@@ -103,7 +104,7 @@ def _factor(gain: complex) -> float:
 
 
 def _factor_at_rest(gain: np.ndarray) -> float:
-    """Of a gain that is level at the slowest point, and turns it by 180 degrees; else inf."""
+    """Factor of a gain that is level at the slowest point with a phase of 180 degrees; else inf."""
     if abs(abs(gain[1] / gain[0]) - 1) <= _LEVEL and abs(np.angle(-gain[0])) <= _LEVEL:
         return _factor(gain[0])
     return float("inf")

@@ -1,6 +1,6 @@
 """Frequency responses from several inputs to several outputs, solved at each frequency.
 
-The same equations as the symbolic transfer functions, with numbers in the place of blocks: for
+The equations are those of the symbolic transfer functions, with numbers in place of blocks: for
 diagrams of many axes, whose symbolic forms would fill pages.
 """
 
@@ -30,19 +30,18 @@ if TYPE_CHECKING:
 class MatrixResponse(ByValue):
     """Response of several outputs to several inputs.
 
-    data: complex, over frequency (Hz), output and input
-    left_out: names of what has no linear form
+    data: complex, over frequency (Hz), output and input;  left_out: names without linear form
     """
 
     data: xarray.DataArray
     left_out: tuple[str, ...]
 
     def singular_values(self) -> np.ndarray:
-        """(frequencies, smaller of the two sizes): gain over all directions, largest first."""
+        """Gains over all directions, (frequencies, min(outputs, inputs)), largest first."""
         return np.linalg.svd(self.data.values, compute_uv=False)
 
     def frd(self) -> control.FRD:
-        """As a python-control frequency response."""
+        """The response as a python-control frequency response."""
         import control
 
         values = np.moveaxis(self.data.values, 0, -1)
@@ -64,12 +63,13 @@ def matrix_response(
     given: Sequence[str] = (),
     speed: float = 0.0,
 ) -> MatrixResponse:
-    """Response of each output to each input, all others zero.
+    """Response of each output to each input, with all other inputs zero.
 
-    frequency: (n,), Hz;  given: prescribed motions, in place of the forces that drive
-    them; the tip's of a body with a compliant transmission
+    frequency: (n,), Hz
+    given: prescribed motions, in place of the forces that drive them; for a body with a compliant
+        transmission, the motion of its tip
     speed: at which smoothed friction and schedules are frozen, m/s or rad/s
-    raises ModelError: a signal is not there, an input is not free, a loop has no solution
+    raises ModelError: an unknown signal, an input that is not free, a loop without a solution
     """
     import xarray
 

@@ -1,8 +1,8 @@
 """The apparent impedance of a mechanism, measured in simulation as on the device.
 
-The motion is a sinusoid, prescribed or tracked by a position loop; once cycles repeat, the first
-harmonic of the force error R_D - R_M over that of the motion is Zhat_M at that frequency and
-amplitude. Bernstein, Lawrence, Pao, World Haptics 2005, section 6 and figures 6 and 7.
+The motion is a sinusoid, prescribed or tracked by a position loop. Once cycles repeat, Zhat_M at
+that frequency and amplitude is the first harmonic of the force error R_D - R_M over that of the
+motion. Bernstein, Lawrence, Pao, World Haptics 2005, section 6 and figures 6 and 7.
 """
 
 from __future__ import annotations
@@ -38,16 +38,17 @@ def measured_impedance(
     """Impedance Zhat_M that a hand feels, by simulation, over frequency and amplitude.
 
     amplitude: of the drive, m or rad: each with each frequency, or a function of frequency (a
-        profile, such as `falling(0.01)`);  frequency: Hz
-    drive: signal that is the sinusoid; default the motion itself, prescribed; "L_D": the reference
-        of a position loop, which the motion then follows as well as the loop can
-    motion, force: signals whose first harmonics are divided; a motion that is prescribed is that of
-        the tip where the body has a compliant transmission or backlash
+        profile, such as `falling_profile(0.01)`);  frequency: Hz
+    drive: signal that is the sinusoid; default: the motion itself, prescribed; "L_D": the reference
+        of a position loop, which the motion follows as well as the loop can
+    motion, force: signals whose first harmonics are divided; for a body with a compliant
+        transmission or backlash, a prescribed motion is that of the tip
     computer: how controllers are sampled, or "continuous"
-    give: share of the amplitude by which ideal Coulomb friction deflects before it slides;
-        sqrt(give) sets the error (1e-5: 0.2 degrees of its phase), 1/sqrt(give) the time
-    raises ModelError: a frequency or amplitude that is not positive, a signal that is not there, or
-        a loop that is unstable
+    give: share of the amplitude by which ideal Coulomb friction deflects before it slides; the
+        error is proportional to sqrt(give) (1e-5: 0.2 degrees of its phase), the time to
+        1/sqrt(give)
+    raises ModelError: a frequency or amplitude that is not positive, an unknown signal, or a loop
+        that is unstable
     """
     cases = cases_of(diagrams)
     grid = Grid.of(amplitude, frequency)

@@ -1,10 +1,9 @@
-"""A loop gain that holds a measured response: stable or not, and where its gain is 1.
+"""A loop gain with a measured response: its stability, and where its gain is 1.
 
-Nyquist's criterion, from the lowest frequency that was measured to the highest. What lies outside
-was not measured, and is taken for this: above, the gain stays below 1; below, the phase goes on to
-0 at rest from between -270 and +90 degrees there, for plants lag and controllers lead by less than
-a quarter turn. With the loop opened at the controller's output the rest is taken as stable, as it
-was when it was measured.
+Nyquist's criterion, from the lowest measured frequency to the highest. Outside this range it is
+assumed that the gain stays below 1 above it, and that below it the phase goes to 0 at rest from
+between -270 and +90 degrees: plants lag, and controllers lead by less than a quarter turn. With the
+loop opened at the controller's output, the rest is assumed stable, as it was when it was measured.
 """
 
 from __future__ import annotations
@@ -25,11 +24,11 @@ _SURE = np.pi / 2
 
 
 def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1.
+    """Phase above -180 degrees, and frequency (rad/s), where the gain is 1.
 
-    expression: gain once round the loop, stable feedback > 0
+    expression: loop gain, stable feedback > 0
     growing: poles of the controller itself in the right half plane
-    raises ModelError: the loop is unstable (`UnstableLoop`), or what was measured does not tell
+    raises ModelError: the loop is unstable (`UnstableLoop`), or the measurement does not decide
     """
     from scipy.optimize import brentq
 
@@ -65,7 +64,7 @@ def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.nda
 
 
 def _frequencies(expression: sp.Expr) -> np.ndarray:
-    """Those that all responses have been measured over, and some between neighbours."""
+    """Frequencies that all measured responses cover, with points between neighbours, rad/s."""
     every = measured_frequencies(expression)
     low, high = max(w[0] for w in every), min(w[-1] for w in every)
     if low >= high:

@@ -28,10 +28,10 @@ def measured_response(
     unit: str = "1",
     case: str = "measured",
 ) -> FrequencyResponse:
-    """A measured response, to be drawn as points in the plots of the model.
+    """A measured response, drawn as points in the plots of the model.
 
     values: `control.FRD` of one input and one output, or complex numbers (n,) at `frequency` in Hz
-    output, input: what it relates;  unit: of output per input
+    output, input: signals;  unit: of output per input
     raises ModelError: another shape, or frequency missing, not rising or not positive
     """
     if not isinstance(values, np.ndarray | Sequence):
@@ -65,10 +65,11 @@ def simulated_response(
     computer: Sampling | Literal["continuous"] = SAMPLED,
     give: float = BRISTLE_SHARE,
 ) -> FrequencyResponse:
-    """First harmonic of `output` over that of `input`, simulated with a sinusoid of that amplitude.
+    """First harmonic of `output` over that of `input`, from a simulation with a sinusoid.
 
-    amplitude: of `input`, its unit: a nonlinear system answers each amplitude otherwise
-    Where an effect has a linear form, `bode` finds the same; arguments as in `measured_impedance`.
+    amplitude: of `input`, in its unit; the response of a nonlinear system depends on it
+    If all effects have a linear form, `bode` gives the same. Other arguments are those of
+    `measured_impedance`.
     """
     cases = cases_of(diagrams)
     f = np.asarray(frequency, dtype=float)

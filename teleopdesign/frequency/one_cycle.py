@@ -1,8 +1,8 @@
-"""A law along one cycle of a sinusoidal motion, its hidden states such that they repeat.
+"""A law along one cycle of a sinusoidal motion, with hidden states that repeat.
 
-Rates that are affine in their state, A z + B, are stepped exactly over a step in which the rest
-is held at its middle (second order); the start from which a cycle closes follows from the decay of
-each state over it.
+Rates that are affine in their state, A z + B, are integrated exactly over each step with A and B at
+its middle (second order). The start from which a cycle closes follows from the decay of each state
+over the cycle.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _Call = Callable[..., list[float]]
 class LawExpressions:
     """An output and its hidden states, as expressions of signals.
 
-    rates: state -> its rate;  where: what it is, in messages
+    rates: state -> its rate;  where: name of the law, in messages
     """
 
     output: sp.Expr
@@ -39,7 +39,7 @@ class LawExpressions:
 
     @cached_property
     def force(self) -> tuple[tuple[sp.Symbol, ...], Callable[..., np.ndarray]]:
-        """Symbols that the output depends on, and the output as a function of their arrays."""
+        """Symbols on which the output depends, and the output as a function of their arrays."""
         used = tuple(sorted(self.output.free_symbols, key=str))
         return used, sp.lambdify(used, self.output, "numpy", cse=True)
 
@@ -47,10 +47,10 @@ class LawExpressions:
 def first_harmonic(
     law: LawExpressions, signals: Mapping[sp.Symbol, np.ndarray], *, frequency: float | np.ndarray
 ) -> np.ndarray:
-    """First harmonic of the law's output over a cycle that closes, (...); sin is 1, cos is j.
+    """First harmonic of the law's output over a closed cycle, (...); sin is 1, cos is j.
 
     signals: symbol -> values (..., STEPS) in the middle of equal steps of one cycle from phase 0
-    frequency: Hz, a number where the law has hidden states
+    frequency: Hz, a number if the law has hidden states
     raises ModelError: the law needs another signal, or its states do not repeat
     """
     needed = law.output.free_symbols.union(*(r.free_symbols for r in law.rates.values()))
@@ -113,7 +113,7 @@ def _slopes_and_rest(law: LawExpressions, signals: list[sp.Symbol]) -> _Call:
 def _cycle(
     call: _Call, rows: list[list[float]], start: np.ndarray, step: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States in the middles, what is left of each state's start, states at the end."""
+    """States in the middle of the steps, decay of each initial state, and states at the end."""
     state = start.tolist()
     n = len(state)
     values, exponent = [], [0.0] * n

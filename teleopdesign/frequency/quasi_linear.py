@@ -1,8 +1,8 @@
 """The apparent impedance of an interface from describing functions instead of simulation.
 
-Zhat_M = Gamma^-1 (Z_M - C) holds for linear blocks; here each nonlinear one is its describing
-function at the amplitude of the motion. What a controller driven by a force sees is taken for its
-first harmonic, so that this is the approximation which simulation is compared with.
+Zhat_M = Gamma^-1 (Z_M - C) holds for linear blocks; here each nonlinear block is its describing
+function at the amplitude of the motion. The input of a controller driven by a force is reduced to
+its first harmonic. This is the approximation with which the simulation is compared.
 """
 
 from __future__ import annotations
@@ -42,7 +42,9 @@ def quasi_linear_impedance(
 ) -> ImpedanceMap:
     """Impedance Zhat_M that a hand feels over frequency and amplitude, without simulation.
 
-    Arguments as in `measured_impedance`, the motion prescribed; controllers count as continuous.
+    Arguments are those of `measured_impedance`, with a prescribed motion; controllers are
+    continuous.
+
     raises ModelError: a block without laws or without describing function
     """
     cases = cases_of(diagrams)
@@ -60,7 +62,7 @@ def quasi_linear_impedance(
 
 
 class _Form:
-    """The transfer function from motion to force, blocks to be put in place."""
+    """The transfer function from motion to force, into which blocks are inserted."""
 
     def __init__(self, diagram: Diagram, motion: str, force: str) -> None:
         self.diagram, self.motion = diagram, motion
@@ -78,7 +80,7 @@ class _Form:
             self.controls[part.name] = (part.controller, self._drive(part))
 
     def _check_speed(self, part: Control) -> None:
-        """ModelError where the linear form of a law on two signals changes with speed."""
+        """Raise ModelError if the linear form of a law on two signals changes with speed."""
         assert isinstance(part.controller, Controller)
         speed = sp.Symbol("speed", positive=True)
         forms = part.controller.linear_parts(part.name, S, speed) or ()
@@ -89,7 +91,7 @@ class _Form:
             )
 
     def _drive(self, part: Control) -> sp.Expr | None:
-        """What drives a controller, per motion; None: the motion itself."""
+        """Input of a controller per motion; None: the input is the motion itself."""
         if part.input == self.motion:
             return None
         transfers = transfer(self.diagram, part.input, (self.motion,), given=self.motion)

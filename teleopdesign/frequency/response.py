@@ -1,4 +1,4 @@
-"""Frequency response between signals: the symbolic transfer function with values in place."""
+"""Frequency response between signals: the symbolic transfer function with values inserted."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 class FrequencyResponse(ByValue):
     """Magnitude and phase (degrees, unwrapped) over `case` and `frequency` (Hz).
 
-    left_out: what has no linear form, by case;  output, input: signals
+    left_out: case -> names without linear form;  output, input: signals
     """
 
     data: xarray.Dataset
@@ -38,7 +38,7 @@ class FrequencyResponse(ByValue):
 
     @property
     def measured(self) -> bool:
-        """Whether it was measured: drawn as points instead of lines."""
+        """Whether the response was measured: it is drawn as points instead of lines."""
         return bool(self.data.attrs.get("measured", 0))
 
     def values(self, case: str = "") -> np.ndarray:
@@ -67,9 +67,9 @@ class FrequencyResponse(ByValue):
     def plot(
         self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
     ) -> matplotlib.figure.Figure:
-        """Bode plot, one line a case.
+        """Bode plot, one line for each case.
 
-        measured: drawn as points beside it;  columns: of the page, 3.5 in or 7.16 in wide
+        measured: drawn as points in the same plot;  columns: of the page, 3.5 in or 7.16 in wide
         """
         from ..plot.frequency import plot_bode
 
@@ -78,7 +78,7 @@ class FrequencyResponse(ByValue):
     def plot_nyquist(
         self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
     ) -> matplotlib.figure.Figure:
-        """Imaginary against real part, one line a case; arguments as in `plot`."""
+        """Plot the imaginary against the real part, one line for each case; see `plot`."""
         from ..plot.frequency import plot_nyquist
 
         return plot_nyquist(self, measured=measured, columns=columns)
@@ -110,10 +110,12 @@ def bode(
 ) -> FrequencyResponse:
     """Frequency response from one signal to another, for one diagram or several cases.
 
-    A controller in discrete time counts as it samples and holds, up to half its sampling rate.
-    given: prescribed motions; output "E", input and given "L" is the apparent mechanism
-        impedance Zhat_M. Of a body with a compliant transmission the tip's motion is prescribed
-    frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
+    A controller in discrete time is sampled and held, up to half its sampling rate.
+
+    given: prescribed motions; output "E", input and given "L" give the apparent mechanism impedance
+        Zhat_M. For a body with a compliant transmission, the motion of the tip is prescribed
+    frequency: Hz, default 0.1 to 1000
+    speed: m/s or rad/s, at which smoothed friction and schedules are frozen
     """
     cases = cases_of(diagrams)
     f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
@@ -152,7 +154,7 @@ def label_response(
 
 
 def ratio_unit(diagram: Diagram, output: str, source: str) -> str:
-    """Unit of one signal over another; "1" where they have the same."""
+    """Unit of one signal over another; "1" if their units are equal."""
     from ..simulate.units import signal_units
 
     units = signal_units(diagram)

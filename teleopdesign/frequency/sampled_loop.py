@@ -2,15 +2,15 @@
 
     x' = A x + sum_k B_k u(t - T_k),   y = C x + sum_k D_k u(t - T_k),   u held over each sample h
 
-A dead time T = m h + d, 0 <= d < h, takes the held value of m + 1 samples before for its first part
-d of each sample, and that of m before for the rest (Astrom and Wittenmark, Computer-Controlled
-Systems, 3.2). A sample is read just before the output that it gives: what passes straight through
-is that of the sample before. So y = P(z) u with
+With a dead time T = m h + d, 0 <= d < h, the input is the value held m + 1 samples before in the
+first part d of each sample, and the value held m samples before in the rest (Astrom and Wittenmark,
+Computer-Controlled Systems, 3.2). A sample is read just before the output changes, so that the part
+D of the response is delayed by one sample. So y = P(z) u with
 
     P(z) = sum_k z^-m_k (C (z I - e^(A h))^-1 (B0_k + B1_k/z) + D_k/z)
 
-Whether the closed loop grows is decided by its characteristic polynomial, in fifty digits. Values
-on the unit circle are computed in floats about z = 1, where slow poles crowd.
+The characteristic polynomial decides, in fifty digits, whether the closed loop grows. Values on the
+unit circle are computed in floats as functions of z - 1, since slow poles lie close to z = 1.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ MOST_SAMPLES = 1000
 
 @dataclass(frozen=True)
 class SampledLoop:
-    """Stable feedback is > 0, as in `LoopGain`: u = -(law) y.
+    """A loop in discrete time; stable feedback is > 0, as in `LoopGain`: u = -(law) y.
 
     period: h, s;  law: numerator and denominator in z
-    below: denominator of what lies between, in s;  above: dead time (s) -> its numerators
+    below: denominator of the path from u to y, in s;  above: dead time (s) -> its numerators
     """
 
     period: Fraction
@@ -55,25 +55,25 @@ class SampledLoop:
     above: tuple[tuple[Fraction, Coefficients], ...]
 
     def with_delay(self, time: float) -> SampledLoop:
-        """The loop with so much more dead time (s) in it."""
+        """The loop with an additional dead time (s)."""
         more = Fraction(time)
         return SampledLoop(
             self.period, self.law, self.below, tuple((t + more, p) for t, p in self.above)
         )
 
     def with_gain(self, factor: float) -> SampledLoop:
-        """The loop with its gain times a factor."""
+        """The loop with its gain multiplied by a factor."""
         above, below = self.law
         law = tuple(c * Fraction(factor) for c in above), below
         return SampledLoop(self.period, law, self.below, self.above)
 
     @property
     def samples(self) -> int:
-        """Whole samples of its longest dead time."""
+        """Whole samples in the longest dead time of the loop."""
         return max((int(t // self.period) for t, _ in self.above), default=0)
 
     def corners(self) -> np.ndarray:
-        """Angles w h at which a pole or a zero turns the phase, narrow resonances among them."""
+        """Angles w h at which poles and zeros turn the phase, and points across resonances."""
         numerators = {float(t): _floats(p) for t, p in self.above}
         slow = LateRatio(numerators, {0.0: _floats(self.below)}).corners() * float(self.period)
         roots = np.concatenate([_roots_in_z(p) for p in self.law])
@@ -97,7 +97,7 @@ class SampledLoop:
             return not _decays(self._characteristic())
 
     def _characteristic(self) -> list[mpmath.mpf]:
-        """The closed loop's polynomial in z, highest first, in `_DIGITS` digits."""
+        """Characteristic polynomial of the closed loop in z, highest first, `_DIGITS` digits."""
         plant = HeldPlant.of(self.period, self.below, self.above)
         below, shares = plant.polynomials()
         most = max((m for m, *_ in shares), default=0) + 1
@@ -111,12 +111,12 @@ class SampledLoop:
 
     @cached_property
     def _floats(self) -> tuple[np.ndarray, ...]:
-        """A h/h of the states in floats and what the inputs do, with e^(A h) - I kept small."""
+        """Matrices of states and inputs over one sample in floats; e^(A h) - I is kept small."""
         with mpmath.workdps(_DIGITS):
             return HeldPlant.of(self.period, self.below, self.above).as_floats()
 
     def __call__(self, angle: np.ndarray) -> np.ndarray:
-        """Gain once round the loop at z = e^(j angle), (n,)."""
+        """Loop gain at z = e^(j angle), (n,)."""
         step, now, before, straight, whole, c = self._floats
         less = np.expm1(1j * np.asarray(angle, dtype=float))  # z - 1
         z = 1 + less
@@ -133,10 +133,11 @@ class SampledLoop:
 
 
 def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> SampledLoop | None:
-    """The loop opened at a controller that samples and holds, everything else linear.
+    """The loop opened at a controller that samples and holds, with everything else linear.
 
-    None where it is no such system: another controller samples too, laws in continuous time stand
-    beside the discrete one in the controller, or a dead time lies within another loop
+    None if the loop has another form: another controller samples too, laws in continuous time stand
+    beside the discrete one in the controller, or a dead time lies within another loop.
+
     diagram: bodies with a structure apart;  linear: its blocks
     """
     law = part.controller
@@ -165,7 +166,7 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
 def _plant(
     path: sp.Expr,
 ) -> tuple[Coefficients, tuple[tuple[Fraction, Coefficients], ...]] | None:
-    """Denominator and numerators by their dead time; None: no such sum, or one that is improper."""
+    """Denominator, and numerators by their dead time; None: not of this form, or improper."""
     powers = sorted(path.atoms(sp.exp), key=str)
     marks = [sp.Dummy(f"late_{k}") for k in range(len(powers))]
     times = [-power.args[0].coeff(S) for power in powers]
@@ -199,7 +200,7 @@ def _rationals(polynomial: sp.Expr, variable: sp.Symbol) -> Coefficients:
 
 
 def _decays(polynomial: list[mpmath.mpf]) -> bool:
-    """Whether all roots lie within the unit circle (Schur, Cohn, Jury)."""
+    """Whether all roots are inside the unit circle (Schur, Cohn, Jury)."""
     p = list(polynomial)
     while p and p[0] == 0:
         p = p[1:]

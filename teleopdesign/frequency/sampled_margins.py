@@ -1,8 +1,8 @@
 """Margins of a loop that samples and holds, from its gain on the unit circle.
 
-A dead time changes with every part of a sample what the loop lets pass between two samples. So the
-delay margin is sought over the part d of a sample: where the gain is 1 at the angle a and its phase
-lies p ahead of -180 degrees, m = p/a samples more turn it there, and m is to be whole.
+A dead time that is a part of a sample changes the response between two samples. So the delay margin
+is searched over the part d of a sample: where the gain is 1 at the angle a and its phase is p above
+-180 degrees, m = p/a more samples turn the phase there, and m must be a whole number.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _LEVEL = 1e-3
 
 
 def grid_of(loop: SampledLoop) -> np.ndarray:
-    """Angles w h up to half the sampling rate, corners and narrow resonances among them."""
+    """Angles w h up to half the sampling rate, with corners and narrow resonances."""
     number = int(np.pi * (loop.samples + 2) / _STEP) + 2
     angles = np.concatenate(
         [np.geomspace(_SLOWEST, np.pi, _POINTS), np.linspace(0, np.pi, number), loop.corners()]
@@ -41,14 +41,14 @@ def grid_of(loop: SampledLoop) -> np.ndarray:
 
 
 def unity_crossings(loop: SampledLoop) -> tuple[np.ndarray, np.ndarray]:
-    """Phase ahead of -180 degrees and angle w h where the gain is 1."""
+    """Phase above -180 degrees, and angle w h, where the gain is 1."""
     angles = grid_of(loop)
     at = _zeros(lambda a: np.log(np.abs(loop(a))), angles, np.abs(loop(angles)) > 1)
     return np.degrees(np.angle(loop(at))) + 180, at
 
 
 def gain_margin(loop: SampledLoop) -> float:
-    """Factor, at least 1, by which the gain of a stable loop may rise or fall; inf: none limits."""
+    """Factor, at least 1, by which the gain of a stable loop may rise or fall; inf: no limit."""
     angles = grid_of(loop)
     gain = loop(angles)
     at = _zeros(lambda a: loop(a).imag, angles, gain.imag > 0)
@@ -65,10 +65,10 @@ def gain_margin(loop: SampledLoop) -> float:
 
 
 def delay_margin(loop: SampledLoop) -> float:
-    """Dead time (s) from which on a stable loop grows; inf: none was found.
+    """Dead time (s) at which a stable loop begins to grow; inf if the search reaches none.
 
-    Where something passes straight through, the loop changes by steps, from one whole sample of
-    dead time to the next. What is found is held against the modes at a few shorter dead times.
+    If the path has a direct feedthrough, the loop changes by steps from one whole sample of dead
+    time to the next. The result is checked by the modes at a few shorter dead times.
     """
     period = float(loop.period)
     longest = MOST_SAMPLES * period
@@ -91,7 +91,7 @@ def delay_margin(loop: SampledLoop) -> float:
 
 
 def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
-    """Dead times (s) at which a mode is on the circle, and whole samples later than it would be."""
+    """Dead times (s) with a mode on the unit circle, and the next whole samples after them."""
     period = float(loop.period)
     exact, near = _crossings_at_half_the_rate(loop), set[float]()
     for part in np.arange(_PARTS) / _PARTS:
@@ -107,8 +107,10 @@ def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
 
 
 def _looked_at(loop: SampledLoop) -> set[float]:
-    """Short dead times (s) at which a loop may grow and decay again a hair further: parts of a
-    sample, and where a dead time of the loop is whole samples, as what it lets pass bends there.
+    """Short dead times (s) at which a loop may grow and then decay again at a slightly longer one.
+
+    Parts of a sample, and those that make a dead time of the loop whole samples: the response has a
+    kink there.
     """
     period = float(loop.period)
     bends = {float(-t % loop.period) for t, _ in loop.above}
@@ -117,9 +119,9 @@ def _looked_at(loop: SampledLoop) -> set[float]:
 
 
 def _crossings_at_half_the_rate(loop: SampledLoop) -> set[float]:
-    """Dead times (s) at which a mode is at z = -1: there the gain is real, whatever the dead time.
+    """Dead times (s) with a mode at z = -1, where the gain is real for any dead time.
 
-    Each whole sample turns its sign; only the part of a sample changes its size.
+    Each whole sample changes its sign; only the part of a sample changes its magnitude.
     """
     from scipy.optimize import brentq
 
@@ -139,7 +141,7 @@ def _crossings_at_half_the_rate(loop: SampledLoop) -> set[float]:
 
 
 def _bisect(loop: SampledLoop, low: float, high: float) -> float:
-    """A dead time at which a loop that decays at `low` begins to grow."""
+    """A dead time above `low` at which the loop begins to grow; it decays at `low`."""
     while high - low > 1e-9 * high:
         middle = (low + high) / 2
         low, high = (low, middle) if loop.with_delay(middle).grows() else (middle, high)
@@ -147,7 +149,7 @@ def _bisect(loop: SampledLoop, low: float, high: float) -> float:
 
 
 def _follow(loop: SampledLoop, angle: float, time: float) -> float | None:
-    """The dead time near this one at which 1 + gain is 0 on the circle, by Newton's method."""
+    """The dead time near `time` at which 1 + gain is 0 on the circle, by Newton's method."""
     period = float(loop.period)
 
     def wrong(time: float, angle: float) -> complex:
@@ -178,7 +180,7 @@ def _follow(loop: SampledLoop, angle: float, time: float) -> float | None:
 def _zeros(
     function: Callable[[np.ndarray], np.ndarray], angles: np.ndarray, above: np.ndarray
 ) -> np.ndarray:
-    """Where a function changes sign between two angles, by bisection and secants."""
+    """Angles at which a function changes sign between grid points, by bisection and secants."""
     from scipy.optimize import brentq
 
     def one(angle: float) -> float:

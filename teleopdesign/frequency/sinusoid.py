@@ -27,13 +27,13 @@ _CYCLES, _MOST_LONGER = 4, 32
 
 @dataclass(frozen=True)
 class Sinusoid:
-    """How a diagram is driven.
+    """The sinusoid that drives a diagram.
 
-    drive: a motion (prescribed), or a signal from outside;  amplitude: its unit;  frequency: Hz
+    drive: a motion (prescribed), or a signal from outside;  amplitude: in its unit;  frequency: Hz
     computer: how controllers are sampled, see `simulate`
     give: share of the amplitude (of the motion) by which ideal Coulomb friction deflects
-    tolerance: difference of cycles, relative, at which a first harmonic counts as steady; what a
-        transient that loses a quarter over half the run has still to come is three times that
+    tolerance: relative difference of cycles at which a first harmonic counts as steady; the
+        remaining change by a transient that loses a quarter over half the run is three times that
     """
 
     drive: str
@@ -49,10 +49,10 @@ def steady_harmonics(
 ) -> dict[str, Harmonic]:
     """First harmonics of signals once their cycles repeat; phases relative to the drive.
 
-    Runs four cycles, then twice as many, up to 128, until the last ones agree. What has not
-    settled then says so: `unsettled`.
+    Runs four cycles, then twice as many, up to 128, until the last cycles agree. `unsettled` of a
+    harmonic shows the remaining difference.
 
-    raises ModelError: drive is no motion and not from outside, or an unknown signal
+    raises ModelError: drive is neither a motion nor from outside, or an unknown signal
     """
     for name in signals:
         diagram.signal(name)
@@ -103,7 +103,7 @@ def _set_up(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Setup:
 
 
 def _length(diagram: Diagram, drive: Sinusoid) -> float:
-    """Amplitude of the motion, m or rad, as far as it is known; 1 mm under a force."""
+    """Amplitude of the motion, m or rad; 1 mm if a force drives the diagram."""
     return 1e-3 if diagram.outside.get(drive.drive) == "force" else drive.amplitude
 
 
@@ -120,7 +120,7 @@ def _outside_signals(
 
 
 def _signal(diagram: Diagram, columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """A signal at the nodes; sums anew, for the computer's hold the last sample."""
+    """A signal at the nodes; a sum is computed again from its terms."""
     for part in diagram.parts:
         if isinstance(part, Junction) and part.output == name:
             shape = np.zeros_like(next(iter(columns.values())))

@@ -1,4 +1,4 @@
-"""Identification as the papers do it: by hand-made experiments, one number at a time.
+"""Identification as in the papers: by special experiments, one parameter at a time.
 
     from teleopdesign.identify import coulomb_level, largest_stiffness_without_oscillation
 

@@ -1,9 +1,9 @@
 """The Coulomb level from runs at constant speed, as the papers identify it.
 
 Half the difference of the forces that move a body forward and backward at one speed is its friction
-at that speed: gravity, offsets and whatever depends on the position alone cancel where both runs
-cover the same travel. Over speed it is the force-velocity curve; its value at rest, by a straight
-line through the speeds, is the Coulomb level, its slope the viscous damping.
+at that speed: gravity, offsets and all forces that depend on position alone cancel if both runs
+cover the same travel. A straight line through friction over speed gives the Coulomb level at rest,
+and the viscous damping as its slope.
 
 Bernstein, Lawrence, Pao, World Haptics 2005, section 5; Mahvash, Okamura, ICRA 2006, figure 2.
 """
@@ -41,6 +41,7 @@ class LevelAtSpeed(ByValue):
     """Friction at one speed, from pairs of runs in both directions; SI, with standard errors.
 
     friction: half the difference of forward and backward force;  middle: half their sum
+    pairs: number of pairs
     """
 
     speed: float
@@ -53,9 +54,9 @@ class LevelAtSpeed(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Line(ByValue):
-    """force = level + damping speed, with standard errors; SI.
+    """A straight line, force = level + damping speed, with standard errors; SI.
 
-    chi_squared: per degree of freedom; NaN where there is none
+    chi_squared: per degree of freedom; NaN without a degree of freedom
     """
 
     level: float
@@ -69,11 +70,11 @@ class Line(ByValue):
 class CoulombLevel(ByValue):
     """Friction over speed, from runs at constant speed.
 
-    runs: all in the recording;  speeds: friction at each speed that was run both ways
-    line: friction over speed: its level is the Coulomb level; None where not two speeds were run
-        both ways
-    forward, backward: force over speed of the runs that way; their level is that of friction and
-        whatever force is constant; None where not two speeds were run that way
+    runs: all runs in the recording;  speeds: friction at each speed with runs in both directions
+    line: friction over speed, whose level is the Coulomb level; None without two speeds in both
+        directions
+    forward, backward: force over speed in one direction, whose level is that of friction and
+        constant forces; None without two speeds in that direction
     """
 
     experiment: str
@@ -85,7 +86,7 @@ class CoulombLevel(ByValue):
     backward: Line | None
 
     def plot(self) -> Figure:
-        """Force against velocity: every run, and the line with the level at rest."""
+        """Plot force against velocity: every run, and the line with the level at rest."""
         from ..plot.force_velocity_curve import plot_force_velocity_curve
 
         return plot_force_velocity_curve(self)
@@ -112,15 +113,15 @@ class CoulombLevel(ByValue):
         return content
 
     def to_json(self, path: str | Path) -> None:
-        """Write it as JSON."""
+        """Write the result as JSON."""
         write_json(path, self.as_dict())
 
     @property
     def level(self) -> tuple[float, float] | None:
-        """Coulomb level and its standard error; None where runs go one way only.
+        """Coulomb level and its standard error; None with runs in one direction only.
 
-        Of the line through speeds run both ways, else the mean of the lines of each way: that needs
-        no common speeds, but that constant forces are the same along all runs.
+        From the line through speeds in both directions; else the mean of the lines of each
+        direction, which need no common speeds, but the same constant forces along all runs.
         """
         if self.line is not None:
             return self.line.level, self.line.level_error
@@ -131,7 +132,7 @@ class CoulombLevel(ByValue):
 
     @property
     def lines(self) -> dict[str, Line | None]:
-        """The three lines by name."""
+        """The three lines by name: "both ways", "forward", "backward"."""
         return {"both ways": self.line, "forward": self.forward, "backward": self.backward}
 
     def __repr__(self) -> str:
@@ -171,7 +172,7 @@ def coulomb_level(
     """Friction over speed, and the Coulomb level, from runs at constant speed both ways.
 
     tolerance, shortest: of runs, see `steady_runs`
-    raises ExperimentError: there is no such run
+    raises ExperimentError: no run at constant speed
     """
     runs = steady_runs(experiment, body=body, tolerance=tolerance, shortest=shortest)
     if not runs:
@@ -205,7 +206,7 @@ def coulomb_level(
 
 @dataclass(frozen=True)
 class _Pair:
-    """A run forward and one backward at one speed, over their common travel."""
+    """A forward and a backward run at one speed, over their common travel."""
 
     speed: float
     forward: float
@@ -214,7 +215,7 @@ class _Pair:
 
 
 def _pairs(runs: Sequence[SteadyRun]) -> list[_Pair]:
-    """Each forward run with the backward run nearest in time that fits it; each taken once."""
+    """Each forward run with the matching backward run nearest in time; each is used once."""
     free = [r for r in runs if r.direction < 0]
     pairs = []
     for run in (r for r in runs if r.direction > 0):
@@ -248,7 +249,7 @@ def _pair(forward: SteadyRun, backward: SteadyRun) -> _Pair:
 
 
 def _group_by_speed(pairs: Sequence[_Pair]) -> tuple[LevelAtSpeed, ...]:
-    """Pairs of one speed together; their scatter counts where it is larger than their errors."""
+    """Pairs of one speed together; their scatter is used if it exceeds their errors."""
     groups: list[list[_Pair]] = []
     for pair in sorted(pairs, key=lambda p: p.speed):
         if groups and pair.speed <= (1 + SAME_SPEED) * groups[-1][0].speed:
@@ -275,7 +276,7 @@ def _level(group: Sequence[_Pair]) -> LevelAtSpeed:
 
 
 def _line(speed: Array, force: Array, error: Array) -> Line | None:
-    """Weighted line through forces with these standard errors, (n,) each; None below two speeds."""
+    """Weighted line through forces with standard errors, (n,) each; None below two speeds."""
     if len(speed) < 2 or speed.max() <= (1 + SAME_SPEED) * speed.min():
         return None
     # an error of 0 (noise-free data) must not take all the weight

@@ -1,10 +1,10 @@
 """The largest stiffness of a Dahl cancellation that does not oscillate, by simulation of the loop.
 
-Mahvash and Okamura (ICRA 2006) raise sigma_D until the joint oscillates; so does this, by bisection
-in simulation. The loop is kicked and left alone. It oscillates where the rms speed of the last
-quarter of the time is more than `decay` of that of the second quarter, and more than `rest` of the
-kick; friction that stops the body, or damping, makes it fall below. A simulation that grows beyond
-all bounds oscillates too.
+Mahvash and Okamura (ICRA 2006) raise sigma_D until the joint oscillates; this module does so in
+simulation, by bisection. The loop gets an initial speed (kick) and no other input. It oscillates if
+the rms speed of the last quarter of the time exceeds `decay` times that of the second quarter, and
+`rest` times the kick; friction that stops the body, or damping, makes it fall below. A simulation
+that grows without bound oscillates as well.
 """
 
 from __future__ import annotations
@@ -26,11 +26,10 @@ from ..simulate import Sampling, Simulation, simulate
 class LargestStiffness(ByValue):
     """The largest stiffness without oscillation, N/m.
 
-    stiffness: inf where the largest one simulated does not oscillate, 0 where the smallest does
-    oscillates: the smallest that was seen to oscillate, inf where none was;
-    simulations: their number
-    kick: initial speed, m/s;  decay: of the criterion
-    axis: of the device; on a revolute one N m/rad and rad/s
+    stiffness: inf if the largest simulated one does not oscillate, 0 if the smallest does
+    oscillates: the smallest that oscillated, inf if none did
+    simulations: number of simulations;  kick: initial speed, m/s;  decay: of the criterion
+    axis: of the device; on a revolute axis the units are N m/rad and rad/s
     """
 
     stiffness: float
@@ -67,7 +66,8 @@ def largest_stiffness_without_oscillation(
     """Raise the stiffness of the block C, a `dahl` cancellation, until the loop oscillates.
 
     diagram: a haptic interface with a hand and a Dahl cancellation C
-    smallest, largest: stiffness simulated, N/m;  kick: initial speed, m/s;  duration: s
+    smallest, largest: range of the stiffness, N/m;  kick: initial speed, m/s;  duration: s
+    decay, rest: of the criterion, see the module
     precision: relative, of the result;  step, give: of the simulation, see `simulate`
     raises ModelError: the diagram has no Dahl cancellation, or the range is empty
     """
@@ -103,7 +103,7 @@ def largest_stiffness_without_oscillation(
 
 
 def keeps_moving(run: Simulation, *, decay: float, floor: float) -> bool:
-    """Whether the rms speed of the last quarter is above `decay` of the second's, and `floor`."""
+    """Whether the last quarter's rms speed exceeds `decay` times the second's, and `floor`."""
     speed = run["L_velocity"].values
     quarters = np.array_split(speed, 4)
     second, last = (float(np.sqrt(np.mean(quarters[k] ** 2))) for k in (1, 3))
@@ -115,7 +115,7 @@ def _bisect(
 ) -> tuple[float, float]:
     """(largest that does not oscillate, smallest that does), to a relative precision.
 
-    As the papers' experiment does it, from below: doubled until it oscillates, then bisected.
+    As in the papers' experiment, from below: doubled until it oscillates, then bisected.
     """
     if oscillates(smallest):
         return 0.0, smallest

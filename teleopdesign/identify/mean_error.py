@@ -8,7 +8,7 @@ from ..measurement.filtering import Array
 
 
 def correlation_length(samples: Array) -> float:
-    """Samples that count as one: 1 + 2 sum of autocorrelations, up to the first below zero."""
+    """Number of samples per independent one: 1 + 2 sum of autocorrelations, to the first < 0."""
     x = samples - samples.mean()
     size = 2 ** int(np.ceil(np.log2(2 * len(x))))
     spectrum = np.fft.rfft(x, size)
@@ -25,7 +25,7 @@ def correlation_length(samples: Array) -> float:
 def mean_error(samples: Array) -> float:
     """Standard error of the mean of samples (n,), in their unit.
 
-    Neighbouring samples may be correlated: fewer of them then count as independent.
+    Neighbouring samples may be correlated; then fewer samples count as independent.
     """
     independent = min(max(len(samples) / correlation_length(samples), 1.0), float(len(samples)))
     return float(np.std(samples) / np.sqrt(max(independent - 1.0, 1.0)))

@@ -1,7 +1,7 @@
-"""Stretches of a record in which a body moves at one speed.
+"""Stretches of a record in which a body moves at constant speed.
 
-A run is a stretch over which the smoothed velocity keeps its sign and stays within a tolerance,
-less its two ends, where the speed is still settling.
+A run is a stretch in which the smoothed velocity keeps its sign and stays within a tolerance,
+without its two ends, where the speed still settles.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ STEPS = 20
 
 @dataclass(frozen=True, eq=False)
 class SteadyRun(ByValue):
-    """One run; SI.
+    """One run at constant speed; SI.
 
-    velocity: mean, signed;  start: s, in its record;  position, force: along the run, (n,) each,
+    velocity: mean, signed;  start: s, in its record;  time, position, force: along the run, (n,)
     force: that moves the body: actuator and interaction force, less inertia times acceleration
     """
 
@@ -40,12 +40,12 @@ class SteadyRun(ByValue):
 
     @property
     def direction(self) -> int:
-        """+1 or -1"""
+        """Direction of the motion, +1 or -1."""
         return 1 if self.velocity > 0 else -1
 
     @property
     def duration(self) -> float:
-        """s"""
+        """Duration, s."""
         return float(self.time[-1] - self.time[0])
 
 
@@ -59,7 +59,7 @@ def steady_runs(
 ) -> tuple[SteadyRun, ...]:
     """The runs at constant speed of one body, in all records, in order of time.
 
-    tolerance: relative departure of the speed from its middle, either way
+    tolerance: relative deviation of the speed from the middle of its range, in either direction
     shortest: of a run, s, without its ends;  settling: s left out at each end
     """
     inertia = Model.from_experiment(experiment).body(body).parameters["inertia"].value
@@ -90,7 +90,7 @@ def _run(motion: Motion, rows: slice, inertia: float) -> SteadyRun:
 
 
 def _steady(velocity: Array, tolerance: float, least: int) -> list[tuple[int, int]]:
-    """Disjoint ranges of at least so many rows over which velocity is steady, longest first kept.
+    """Disjoint ranges of at least `least` rows with steady velocity; longer ranges go first.
 
     returns: (first, last + 1) in order of time
     """
@@ -109,7 +109,7 @@ def _steady(velocity: Array, tolerance: float, least: int) -> list[tuple[int, in
 
 
 def _earliest(velocity: Array, tolerance: float) -> np.ndarray:
-    """For each row the earliest one from which velocity has stayed within the tolerance."""
+    """For each row, the earliest row from which velocity has stayed within the tolerance."""
     values = velocity.tolist()
     high: deque[int] = deque()
     low: deque[int] = deque()

@@ -1,10 +1,12 @@
-"""Measurements: read an experiment's folder, with signals in SI units on a uniform time.
+"""Measurements: read an experiment's folder into signals in SI units on a uniform time grid.
 
     from teleopdesign.measurement import load_experiment
-    experiment = load_experiment("rod")
-    experiment.fit_records[0].signals["device.position"]    # m, shape (n,)
 
-`fetch` (in `recordings`) obtains public recordings of real devices in the same form.
+    experiment = load_experiment("rod")
+    experiment.fit_records[0].signals["device.position"]  # m, shape (n,)
+
+`fetch` (in `recordings`) downloads public recordings of real devices and converts them to the same
+form.
 """
 
 from ..arguments import check_arguments

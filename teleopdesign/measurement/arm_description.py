@@ -1,4 +1,4 @@
-"""The arm of an experiment as written: [model.arm], from a URDF or with its links."""
+"""Description of an arm in an experiment: the table [model.arm], with a URDF file or links."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ _TAKEN = (
 class ArmDescription(ByValue):
     """The links that couple the joints of an experiment.
 
-    arm: its joints in the order of the bodies of the experiment
-    estimate: "base parameters" are estimated, or inertial parameters are taken "as given"
+    arm: the kinematic chain; its joints have the order of the bodies of the experiment
+    estimate: "base parameters" (estimate the inertial parameters) or "as given" (take them from the
+        description)
     """
 
     arm: Chain
@@ -46,7 +47,7 @@ class ArmDescription(ByValue):
 
 
 def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, BodyDescription]]:
-    """[model.arm], and its joints as bodies.
+    """Read [model.arm]: the arm, and its joints as bodies.
 
     folder: of the experiment, where its URDF lies
     raises ExperimentError: unknown key, joint or file, links that make no chain
@@ -83,7 +84,7 @@ def _require_name(name: str, where: str) -> None:
 
 
 def joints_from(model: Table) -> dict[str, BodyDescription]:
-    """The joints of an identified arm, each a body as an answer writes it."""
+    """Read the joints of an identified arm, each a body in the form that an answer writes."""
     joints = {}
     for name in model.content:
         _require_name(name, model.where())
@@ -94,7 +95,7 @@ def joints_from(model: Table) -> dict[str, BodyDescription]:
 
 
 def _joint(name: str, table: Table, link: Link) -> BodyDescription:
-    """A joint as a body: its inertia is that of its motor."""
+    """A joint as a body. The inertia of the body is the inertia of the motor."""
     inertia = None
     if "motor_inertia" in table.content:
         inertia = value_from(table, "motor_inertia")
@@ -130,7 +131,7 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chai
 
 
 def _chain_of_links(table: Table, joints: tuple[str, ...]) -> Chain:
-    """Kinematics of [[model.arm.links]]: one link a joint, from the base to the tip."""
+    """Kinematic chain from [[model.arm.links]]: one link per joint, from the base to the tip."""
     links = tuple(_link(entry) for entry in table.tables("links"))
     order = tuple(link.joint for link in links)
     if order != joints:
@@ -173,7 +174,7 @@ def _gravity(table: Table) -> tuple[float, float, float]:
 
 
 def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...]) -> Array:
-    """A list of finite numbers under `key`."""
+    """Read a list of `count` finite numbers under `key`; `default` if the key is absent."""
     if key not in table.content:
         return np.array(default)
     entry = table.content[key]

@@ -1,4 +1,4 @@
-"""Usable bandwidth of a record: up to which frequency its position shows a motion."""
+"""Usable bandwidth of a record: the frequency up to which the position shows the motion."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ ABOVE = 10.0
 
 
 def default_bandwidth(experiment: Experiment) -> float:
-    """Default bandwidth (Hz): how far up positions still show acceleration, and tell a motion.
+    """Default bandwidth in Hz: the positions still show acceleration and motion up to it.
 
-    The highest frequency below a tenth of the sample rate at which the acceleration's spectrum
-    stands 10 dB above what white reading noise would leave there. Steps of an encoder are no white
-    noise: while they hide most of the motion, the bandwidth is halved.
+    The highest frequency below a tenth of the sample rate at which the spectrum of the acceleration
+    is 10 dB above white reading noise. The steps of an encoder are not white noise: while they hide
+    most of the motion, the bandwidth is halved.
     """
     chosen = _highest_acceleration(experiment)
     while any(hides_motion(experiment, body, chosen) for body in experiment.bodies):
@@ -37,11 +37,10 @@ def default_bandwidth(experiment: Experiment) -> float:
 
 
 def share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> float:
-    """Share of the fitted rows in which the position tells a direction of motion, at this Hz.
+    """Share (0 to 1) of the fitted rows in which the position shows a direction of motion.
 
-    The wider the band, the more of the readings' error is left in the velocity. Where a velocity
-    cannot be distinguished from rest, friction takes up whatever force acts: no model fails there,
-    and none is tested.
+    bandwidth: Hz. A wider band leaves more reading error in the velocity. Where a velocity cannot
+        be distinguished from rest, friction balances any force, so no model can be rejected there.
     """
     resolution = experiment.channels[f"{body}.position"].resolution
     directions = [
@@ -54,7 +53,7 @@ def share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> floa
 
 
 def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
-    """Whether far fewer rows tell a motion at this bandwidth (Hz) than two octaves lower."""
+    """Whether far fewer rows show a motion at this bandwidth (Hz) than at one two octaves lower."""
     lower = bandwidth / 4.0
     if lower < LOWEST:
         return False
@@ -63,10 +62,10 @@ def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
 
 
 def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
-    """Up to which frequency (Hz) the motion goes on beyond a bandwidth that was chosen.
+    """The frequency (Hz) up to which the motion continues above the chosen bandwidth.
 
-    None: less acceleration lies beyond it than below, in some record; positions do not tell the
-    motion there; or the experiment states its bandwidth
+    None: in some record, less acceleration lies above the bandwidth than below it; the positions do
+        not show a motion there; or the experiment states its bandwidth
     """
     if experiment.bandwidth is not None:
         return None
@@ -96,16 +95,16 @@ def _highest_acceleration(experiment: Experiment) -> float:
 
 
 def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:
-    """Each record with the name of each position in it."""
+    """Each record with the name of each position channel in it."""
     for record in experiment.records:
         for body in experiment.bodies:
             yield f"{body}.position", record
 
 
 def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Array, Array, float]:
-    """Frequencies (Hz), density of a signal there, and what white reading noise has of it.
+    """Frequencies (Hz), spectral density of a signal, and the density of its white noise.
 
-    even_out: without the even motion of each window, whose ends look like high frequencies
+    even_out: subtract a straight line from each window; its ends would look like high frequencies
     """
     from scipy.signal import detrend
 

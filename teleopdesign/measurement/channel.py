@@ -1,4 +1,4 @@
-"""Channels: which column of a record is which quantity of which body, its unit, how exact."""
+"""Channels: which column of a record is which quantity of which body, its unit and its accuracy."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,14 +28,15 @@ _OF_THE_RECORD = ("time", "segment")
 class Channel:
     """One measured signal.
 
-    quantity: "position", "velocity", "actuator_force", "interaction_force", "time" or "segment"
+    quantity: a key of `BODY_QUANTITIES` such as "position" or "actuator_force", or "time" or
+        "segment"
     body: None for time and segment
-    column: header, variable or dataset name in the record files ("i_1 + i_2" of a sum)
-    unit: the unit it is written in
+    column: header, variable or dataset name in the record files ("i_1 + i_2" for a sum)
+    unit: the unit in which the file holds the values
     resolution: step of the encoder or converter, SI; None: not stated
     noise: rms, SI; None: not stated
-    conversion: how the columns become the signal; None: one column times the unit's factor
-    measured: of an actuator's force: fed back, as by a motor's current, not commanded
+    conversion: how the columns become the signal; None: one column times the factor of the unit
+    measured: an actuator force that is measured (for example by the motor current), not commanded
     """
 
     quantity: str
@@ -49,17 +50,19 @@ class Channel:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The columns that the signal is made of."""
+        """The columns from which the signal is computed."""
         return (self.column,) if self.conversion is None else self.conversion.columns
 
     @property
     def delay(self) -> float:
-        """By how much the log has the signal late, s."""
+        """Delay of the signal in the log, s; positive if the log has the signal late."""
         return 0.0 if self.conversion is None else self.conversion.delay
 
 
 def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:
-    """[channels] -> "device.position" and the like (always with the body), "time", "segment".
+    """Read [channels]: a dict from names ("device.position", "time", "segment") to channels.
+
+    The name of a body's channel always contains the body.
 
     raises ExperimentError: unknown or missing channel, wrong kind of unit, a column used twice
     """
@@ -97,16 +100,16 @@ def factor_of(channel: Channel, bodies: Mapping[str, BodyDescription], where: st
 def conversion_to_si(
     channel: Channel, bodies: Mapping[str, BodyDescription], where: str
 ) -> Conversion:
-    """How the channel's columns become its signal in SI; errors of `factor_of`."""
+    """How the columns of a channel become its signal in SI; raises the errors of `factor_of`."""
     if channel.conversion is not None:
         return channel.conversion
     return Conversion((channel.column,), (1.0,), factor=factor_of(channel, bodies, where))
 
 
 def sample_rate_from(experiment: Table, channels: Table) -> float | None:
-    """`sample_rate` in Hz, written under [channels] or at the top of the file; None if absent.
+    """Read `sample_rate` in Hz, under [channels] or at the top of the file; None if absent.
 
-    Exactly one of it and the channel `time` must be there.
+    raises ExperimentError: both or neither of `sample_rate` and the channel `time`
     """
     tables = [table for table in (channels, experiment) if "sample_rate" in table.content]
     if "time" in channels.content and tables:
@@ -126,7 +129,7 @@ def sample_rate_from(experiment: Table, channels: Table) -> float | None:
 
 
 def frequency_from(table: Table, key: str) -> float:
-    """{ value, unit } under `key` as a positive frequency in Hz."""
+    """Read { value, unit } under `key` as a positive frequency in Hz."""
     entry = table.table(key)
     entry.allow(("value", "unit"))
     value = entry.number("value", above=0)
@@ -135,7 +138,7 @@ def frequency_from(table: Table, key: str) -> float:
 
 
 def _flatten(table: Table, bodies: Mapping[str, BodyDescription]) -> Table:
-    """To TOML, "master.position" without quotes is a table in a table: make it one key again."""
+    """Join nested keys: TOML reads an unquoted "master.position" as a table within a table."""
     content: dict[str, Any] = {}
     for key, value in table.content.items():
         if key in bodies and isinstance(value, dict):

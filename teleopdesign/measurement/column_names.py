@@ -1,4 +1,4 @@
-"""What the name of a column says: its unit ("Pos (deg)", "i_A", "t [ms]") and what it may be."""
+"""Unit and quantity from the name of a column: "Pos (deg)", "i_A", "t [ms]"."""
 
 from __future__ import annotations
 
@@ -114,16 +114,17 @@ WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consig
 
 
 def bare_name(name: str) -> str:
-    """A name without the unit in brackets at its end."""
+    """The name of a column without the unit at its end ("Pos (deg)", "angle / °")."""
     bare = _BRACKETS.sub("", bare_column(name)).rstrip(" /").strip()
     slash = _SLASH.search(bare)
     return bare[: slash.start()] if slash and unit_of_text(slash.group(1)) else bare
 
 
 def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic") -> str | None:
-    """The unit that a column's name ends with, as the package writes it; None: it says none.
+    """The unit at the end of a column's name, as the package writes it; None: the name has no unit.
 
-    quantity: what the column is, if that is known: what is no unit of it is a part of the name
+    quantity: what the column is, if known: an ending that is no unit of this quantity belongs to
+        the name
     """
     name = bare_column(name)
     match = _BRACKETS.search(name)
@@ -183,7 +184,7 @@ def why_no_unit(name: str, said: str | None, quantity: str, axis: str) -> str:
 
 
 def unit_of_text(text: str) -> str | None:
-    """A unit as a logger writes it ("degrees", "Amps", "ticks"); None: none."""
+    """The package's unit for a unit that a logger writes ("degrees", "Amps"); None: no unit."""
     text = text.strip()
     if weight := _WEIGHT_AT_LEVER.fullmatch(text):
         load, lever = weight["weight"] or weight["load"], weight["lever"] or weight["arm"]
@@ -215,7 +216,7 @@ def _suits(unit: str, quantity: str, axis: str) -> bool:
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a name, lower case, without accents: "Actual_Pos2 (deg)" -> actual, pos."""
+    """The words of a name in lower case, without accents: "Actual_Pos2 (deg)" -> actual, pos."""
     bare = _ADDRESS.sub(" ", bare_name(name))
     bare = re.sub(r"([a-z])([A-Z])", r"\1 \2", bare)
     letters = unicodedata.normalize("NFD", bare.lower())
@@ -225,7 +226,7 @@ def words_of(name: str) -> list[str]:
 
 
 def _join_terms(words: list[str]) -> list[str]:
-    """The words with terms of several of them as one: "set point", "process value", "theta dot"."""
+    """The words, with terms of several words joined: "set point", "process value", "theta dot"."""
     joined: list[str] = []
     for word in words:
         pair = (joined[-1] if joined else "", word)
@@ -239,7 +240,7 @@ def _join_terms(words: list[str]) -> list[str]:
 
 
 def likeness(name: str, quantity: str) -> float:
-    """How much a name sounds like a quantity: 0 to 1."""
+    """How much a column's name suggests a quantity: from 0 (not at all) to 1."""
     words = words_of(name)
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
@@ -257,11 +258,11 @@ def likeness(name: str, quantity: str) -> float:
 
 
 def is_another_quantity(name: str) -> bool:
-    """Whether a name says a pressure, a temperature or the like."""
+    """Whether a name stands for a pressure, a temperature or a similar quantity."""
     return bool(OTHER_QUANTITIES.intersection(words_of(name)))
 
 
 def is_wanted(name: str) -> bool:
-    """Whether a name says that its column is what was asked for, not what was read."""
+    """Whether a name says that its column is a reference or a command, not a measurement."""
     words = words_of(name)
     return any(word in WANTED or word.startswith(WANTED_BEGINNINGS) for word in words)

@@ -2,10 +2,10 @@
 
     signal = sign * unit * (torque constant) * (gear ratio)^(+-1) * (sum of scale * column + offset)
 
-A column that wraps (an angle within one turn, a counter) is unwrapped before. `gear_ratio` is
-turns of the motor per turn of the joint: a position read at the motor is divided by it, a force
-commanded at the motor is multiplied. On a prismatic axis it has a unit, `{ value = 1.257, unit =
-"rad/mm" }`.
+A column that wraps (an angle within one turn, a counter) is unwrapped first. `gear_ratio` is the
+number of motor turns per turn of the joint: a position or velocity read at the motor is divided by
+the ratio, a force at the motor is multiplied by it. On a prismatic axis the ratio has a unit, `{
+value = 1.257, unit = "rad/mm" }`.
 """
 
 from __future__ import annotations
@@ -38,9 +38,11 @@ KEYS = (
 class Conversion:
     """How columns become one signal.
 
-    columns: summed, each times its `scales`;  offset: added to the sum
-    factor: from the sum to SI, with sign, gears and constants;  period: of a wrap, in the column's
-    unit, 0 for none;  delay: s by which the log has the signal late
+    columns: names of the columns that are summed;  scales: factor of each column
+    offset: added to the sum, in the unit of the column
+    factor: from the sum to SI, with sign, gear ratio and torque constant
+    period: of a wrap, in the unit of the column; 0: the column does not wrap
+    delay: of the signal in the log, s; positive if the log has the signal late
     """
 
     columns: tuple[str, ...]
@@ -61,12 +63,12 @@ class Conversion:
 
     @property
     def is_plain(self) -> bool:
-        """Whether one column times a factor is the signal."""
+        """Whether the signal is one column times a factor."""
         one = len(self.columns) == 1 and self.scales == (1.0,)
         return one and self.offset == 0.0 and self.period == 0.0
 
     def wraps(self, columns: Mapping[str, Array]) -> int:
-        """How often the columns wrap."""
+        """How many times the columns wrap."""
         if self.period == 0.0:
             return 0
         half = 0.5 * self.period
@@ -81,9 +83,10 @@ class Conversion:
 def conversion_of(
     table: Table, *, quantity: str, kind: str, axis: str, unit: str
 ) -> tuple[Conversion, float | None]:
-    """The conversion that a channel's table says, and what one count is (SI), if it counts.
+    """The conversion that a channel's table describes, and the size of one count (SI) or None.
 
-    quantity: of the channel ("position", "actuator_force");  kind: that of the table of units
+    quantity: of the channel ("position", "actuator_force");  kind: of quantity in the table of
+        units
     raises ExperimentError: keys that do not suit each other, units that do not fit
     """
     columns = _columns(table)
@@ -173,7 +176,7 @@ def _sign(table: Table) -> float:
 
 
 def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
-    """A number, or { value, unit }: the value, and its unit ("" for none)."""
+    """Read a number or { value, unit }: the value, and its unit ("" without a unit)."""
     if not isinstance(table.content[key], dict):
         value, unit = table.number(key), ""
     else:
@@ -192,7 +195,7 @@ def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
 
 
 def _unit_of_count(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
-    """Unit of a count and how much of it one count is; other units are one of themselves."""
+    """Unit of one count and its size in that unit; for a unit other than counts, the unit and 1."""
     keys = [key for key in ("count", "counts_per_turn") if key in table.content]
     if unit not in COUNTS:
         if keys:
@@ -226,7 +229,7 @@ def _without_constant(unit: str, kind: str, axis: str, where: str) -> float:
 
 
 def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[float]) -> float:
-    """Period of a wrap in the column's unit; 0 where it does not wrap."""
+    """Period of a wrap in the unit of the column; 0 where the column does not wrap."""
     value = table.content.get("unwrap", False)
     if value is False:
         return 0.0

@@ -1,8 +1,8 @@
-"""Bodies and an environment as written: in experiment.toml, in a diagram's file, in an answer.
+"""Bodies and an environment as written in experiment.toml, in a diagram's file or in an answer.
 
 A value is a number in SI, or { value = 150, unit = "g", fixed = true, stderr = 2 }; values keep the
-unit they were written in. Which quantity an effect's parameter is, only the effect knows:
-`blocks.described` converts it and repeats `where` in its messages.
+unit in which they were written. Only the effect knows the physical quantity of its parameters:
+`blocks.described` converts their values and repeats `where` in its messages.
 """
 
 from collections.abc import Mapping
@@ -21,9 +21,10 @@ _ENVIRONMENT = {"stiffness": "stiffness", "damping": "damping", "contact_positio
 
 @dataclass(frozen=True)
 class ModelValue:
-    """A number as written, in `unit` (None: SI); `fixed`: not to be re-estimated.
+    """A number as written in a file.
 
-    stderr: standard error in the same unit; None: not written
+    unit: of the number; None: SI;  fixed: the number is not estimated again
+    where: place in the file, for messages;  stderr: standard error in `unit`; None: not written
     """
 
     value: float
@@ -33,7 +34,7 @@ class ModelValue:
     stderr: float | None = None
 
     def in_si(self, quantity: str, axis: str) -> tuple[float, float | None]:
-        """Value and standard error in SI; raises ExperimentError: the unit of something else."""
+        """Value and standard error in SI; raises ExperimentError: the unit of another quantity."""
         if self.unit is None:
             return self.value, self.stderr
 
@@ -50,7 +51,7 @@ Effects = Mapping[str, Mapping[str, ModelValue]]
 
 @dataclass(frozen=True)
 class BodyDescription:
-    """One body ("device", "master", "slave") on one axis ("prismatic" or "revolute")."""
+    """One body ("device", "master", "slave" or a joint) on one axis ("prismatic" or "revolute")."""
 
     name: str
     axis: str
@@ -61,7 +62,10 @@ class BodyDescription:
 
 @dataclass(frozen=True)
 class EnvironmentDescription:
-    """What the slave (or device) touches: stiffness, damping, contact_position, if written."""
+    """The environment that the slave (or device) touches.
+
+    values: stiffness, damping and contact_position, those that are written
+    """
 
     values: Mapping[str, ModelValue]
     effects: Effects
@@ -69,7 +73,7 @@ class EnvironmentDescription:
 
 
 def bodies_from(model: Table) -> dict[str, BodyDescription]:
-    """The bodies of [model]: device alone, or master and slave."""
+    """Read the bodies of [model]: device alone, or master and slave."""
     model.allow((*ONE_BODY, *TWO_BODIES, "environment"))
     names = tuple(name for name in (*ONE_BODY, *TWO_BODIES) if name in model.content)
     if names not in (ONE_BODY, TWO_BODIES):
@@ -84,7 +88,7 @@ def bodies_from(model: Table) -> dict[str, BodyDescription]:
 def environment_from(
     model: Table, bodies: Mapping[str, BodyDescription]
 ) -> EnvironmentDescription | None:
-    """[model.environment], or None; its axis is that of the body that touches it (the last one)."""
+    """Read [model.environment] or None; its axis is that of the last body, which touches it."""
     if "environment" not in model.content:
         return None
     table = model.table("environment")
@@ -99,7 +103,7 @@ def environment_from(
 
 
 def _require_inertia(name: str, table: Table) -> BodyDescription:
-    """A body that records show in motion: it has an inertia, if it says which."""
+    """Read a body whose motion is recorded; its inertia, if written, must be above 0."""
     table.allow(BODY)
     body = body_from(name, table)
     if body.inertia is not None and body.inertia.value <= 0:
@@ -110,9 +114,9 @@ def _require_inertia(name: str, table: Table) -> BodyDescription:
 
 
 def body_from(name: str, table: Table) -> BodyDescription:
-    """The body that a table describes by its keys `BODY`; other keys are the caller's.
+    """Read a body from the keys `BODY` of a table; the caller checks all other keys.
 
-    raises ExperimentError: a wrong type, no axis, no number, the unit of something else
+    raises ExperimentError: a wrong type, no axis, no number, the unit of another quantity
     """
     axis = table.text("axis")
     if axis not in AXES:
@@ -128,7 +132,7 @@ def body_from(name: str, table: Table) -> BodyDescription:
 
 
 def effects_from(table: Table) -> dict[str, dict[str, ModelValue]]:
-    """The effects of a table under its key `effects`, with the values that are written."""
+    """Read the effects under the key `effects` of a table, with their parameters as written."""
     effects = table.table("effects")
     written = {name: effects.table(name) for name in effects.content}
     return {
@@ -138,7 +142,7 @@ def effects_from(table: Table) -> dict[str, dict[str, ModelValue]]:
 
 
 def value_from(table: Table, key: str) -> ModelValue:
-    """{ value = 0.5, unit = "N", fixed = true, stderr = 0.1 }, or a number in SI."""
+    """Read { value = 0.5, unit = "N", fixed = true, stderr = 0.1 }, or a number in SI."""
     if not isinstance(table.content[key], dict):
         return ModelValue(table.number(key), None, False, table.where(key))
     entry = table.table(key)

@@ -1,4 +1,4 @@
-"""What the readings of a position show: noise and step of its encoder, jitter of its moments."""
+"""Properties of position readings: noise and step of the encoder, jitter of the sampling times."""
 
 from __future__ import annotations
 
@@ -27,18 +27,19 @@ DIFFERENCE = 8
 
 
 def reading_noise(position: Array) -> float:
-    """Rms noise of one position reading, from its content near the Nyquist frequency."""
+    """Rms noise of one position reading, estimated from the content near the Nyquist frequency."""
     fourth = np.diff(position, 4)
     # white noise passes a fourth difference with gain sqrt(70); the median ignores sharp motion
     return float(np.median(np.abs(fourth)) / 0.6745 / np.sqrt(70.0))
 
 
 def reading_step(position: Array) -> float:
-    """Smallest step between neighbouring values that the readings take: the encoder's, if any.
+    """Smallest step between neighbouring values of the readings: the encoder step, if any.
 
-    In a motion that never comes back to a place, values lie apart by the travel of a sample: then
-    the step is the one whose rounding looks like the noise that is seen. Values on a grid that come
-    again are an encoder's, though: where a body rests for half the time, no noise is seen.
+    In a motion that never returns to a place, the values lie apart by the travel per sample. Then
+    the step is the one whose rounding error looks like the noise in the readings. Values that lie
+    on a grid and come again are those of an encoder, though: a body that rests for half the time
+    shows no noise.
     """
     values = np.unique(position)
     if len(values) < 2:
@@ -57,7 +58,7 @@ def reading_step(position: Array) -> float:
 
 
 def grid_of(position: Array, step: float) -> float:
-    """The step of a grid on which the readings lie, near `step`; 0 where there is no such grid."""
+    """Step of the grid on which the readings lie, near `step`; 0 where there is no such grid."""
     if step <= 0.0 or np.ptp(position) <= 20.0 * step:
         return 0.0
     mean = _fitted_step(position, step)
@@ -66,10 +67,10 @@ def grid_of(position: Array, step: float) -> float:
 
 
 def _fitted_step(position: Array, step: float) -> float:
-    """A step from values farther and farther apart: digits that were cut off average out.
+    """Refine a step by values at increasing distances, to average out rounded digits.
 
-    Neighbouring values tell a first mean, this counts the steps to values twice as far, and so on
-    to the ends of the travel.
+    Neighbouring values give a first mean. This mean counts the steps to values twice as far away,
+    and so on to the ends of the travel.
     """
     values = np.unique(position)
     gaps = np.diff(values)
@@ -90,10 +91,11 @@ def _fitted_step(position: Array, step: float) -> float:
 
 
 def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
-    """Rms error of the sampling times (s), from a position that scatters the more the faster it is.
+    """Rms error of the sampling times (s), from the growth of a position's scatter with its speed.
 
-    Scatter squared is that of rest and rounding, plus that of the times, times speed squared: from
-    the slowest and the fastest quarter of the pieces. 0 where the scatter does not grow with speed.
+    The square of the scatter is that at rest, plus the square of the time error times the square of
+    the speed. The slowest and the fastest quarter of the pieces are compared; 0 where the scatter
+    does not grow with speed.
     """
     count = len(x) // PIECE
     if count < PIECES:

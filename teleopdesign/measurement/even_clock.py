@@ -1,4 +1,4 @@
-"""Stamps on an even clock, or on one that was rounded: the sample time by least squares."""
+"""Time stamps of an even clock, exact or rounded: the sample time by least squares."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _EQUAL = 0.02  # if mean and usual step differ by less, rare odd steps are lost 
 
 
 def even_clock(stamps: Array, segments: tuple[slice, ...], where: str) -> RecordClock | None:
-    """The clock where stamps are even, or even and rounded; None where they are neither."""
+    """The clock of even stamps, exact or rounded; None where the stamps are uneven."""
     period = _least_squares_period(stamps, segments)
     if period is None or not _is_even(stamps, segments, period):
         return None
@@ -56,7 +56,7 @@ def _is_even(stamps: Array, segments: Sequence[slice], period: float) -> bool:
 
 
 def is_only_rounded(stamps: Array, segments: Sequence[slice], period: float) -> bool:
-    """Steps differ because stamps are coarse: each is still next to its place on a uniform grid."""
+    """Whether steps differ only by rounding: each stamp is next to its place on a uniform grid."""
     allowed = (0.5 + 1e-3) * _resolution(stamps) + _JITTER * period
     for segment in segments:
         deviation = stamps[segment] - period * np.arange(segment.stop - segment.start)
@@ -66,7 +66,7 @@ def is_only_rounded(stamps: Array, segments: Sequence[slice], period: float) -> 
 
 
 def _resolution(stamps: Array) -> float:
-    """Power of ten in seconds that the stamps are rounded to; 1e-9 s if they are finer."""
+    """Power of ten in seconds to which the stamps are rounded; 1e-9 s if they are finer."""
     some = stamps[:1000] - stamps[0]
     for digits in range(9):
         if np.all(np.abs(some - np.round(some, digits)) < 1e-3 * 10.0**-digits):

@@ -1,4 +1,4 @@
-"""An experiment: a folder with one experiment.toml and the record files that it names."""
+"""An experiment: a folder with experiment.toml and the record files that it names."""
 
 import shlex
 from collections.abc import Mapping
@@ -30,9 +30,9 @@ class Experiment(ByValue):
 
     bodies: "device", or "master" and "slave", or the joints of an arm by their names
     channels: "device.position" and the like, "time", "segment"
-    bandwidth: Hz; model and measurement are compared below it; None: to be chosen from the record
-    arm: the links that couple the bodies, where these are the joints of an arm
-    guesses: what `teleopdesign new` guessed and nobody confirmed: key -> why
+    bandwidth: Hz; model and measurement are compared below it; None: chosen from the records
+    arm: the links that couple the bodies, where these are the joints of an arm; else None
+    guesses: entries that `teleopdesign new` guessed and nobody confirmed: key -> reason
     """
 
     folder: Path
@@ -47,17 +47,17 @@ class Experiment(ByValue):
 
     @property
     def fit_records(self) -> tuple[Record, ...]:
-        """Records that parameters are estimated on; at least one."""
+        """Records on which parameters are estimated; at least one."""
         return tuple(record for record in self.records if record.use == "fit")
 
     @property
     def check_records(self) -> tuple[Record, ...]:
-        """Records that errors are reported on, never fitted; may be empty."""
+        """Records on which errors are reported, which are never fitted; may be empty."""
         return tuple(record for record in self.records if record.use == "check")
 
     @property
     def reading(self) -> tuple[ReadingStep, ...]:
-        """What was done to the logs to make even records of them; empty: used as they are."""
+        """Steps that made even records of the logs; empty: the logs are used unchanged."""
         return tuple(step for record in self.records for step in record.reading)
 
     def save(self, folder: str | Path) -> Path:
@@ -94,7 +94,7 @@ class Experiment(ByValue):
 
 
 def describe_content(experiment: Experiment) -> str:
-    """Bodies, channels and records, a line each, without what was done to read the logs."""
+    """Bodies, channels and records, one line each, without the steps of reading the logs."""
     lines = [f"Experiment {quote(experiment.title)} ({experiment.folder.name})"]
     for name, body in experiment.bodies.items():
         effects = ", ".join(body.effects) or "no effects"
@@ -113,7 +113,7 @@ def describe_content(experiment: Experiment) -> str:
 def load_experiment(folder: str | Path) -> Experiment:
     """Read and check a whole experiment.
 
-    folder: that of experiment.toml (the path of the file itself will do)
+    folder: the folder of experiment.toml (the path of the file is also accepted)
     raises ExperimentError: anything missing, unknown, of the wrong type or unit, in one line
     """
     folder = _folder_of(Path(folder))
@@ -184,7 +184,7 @@ def _folder_of(path: Path) -> Path:
 def _record_entries(
     experiment: Table, folder: Path
 ) -> list[tuple[str, str, frozenset[str], tuple[float, ...] | None]]:
-    """(file, use, its offsets, span) of each [[records]], checked before any file is read."""
+    """(file, use, separate offsets, span) of each [[records]], checked before any file is read."""
     entries: list[tuple[str, str, frozenset[str], tuple[float, ...] | None]] = []
     for table in experiment.tables("records"):
         table.allow(("file", "use", "span", *SEPARATE))
@@ -210,7 +210,7 @@ def _record_entries(
 
 
 def _span(table: Table) -> tuple[float, ...] | None:
-    """[begin, end] in s from the log's first row; None: the whole file."""
+    """Read [begin, end] in s from the first row of the log; None: the whole file."""
     if "span" not in table.content:
         return None
     span = table.content["span"]
@@ -276,7 +276,7 @@ def _check_bandwidth(
 
 
 def _measured_names(experiment: Experiment, body: str) -> str:
-    """Names of what is measured of a body."""
+    """Names of the measured quantities of a body."""
     return ", ".join(q for q in BODY_QUANTITIES if f"{body}.{q}" in experiment.channels)
 
 

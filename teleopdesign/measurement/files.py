@@ -1,4 +1,4 @@
-"""The files that an experiment is read from, and a digest of their content."""
+"""The files of an experiment, and a digest of their content."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def is_experiment(folder: Path) -> bool:
 
 
 def experiment_files(folder: Path) -> dict[str, Path | None]:
-    """Name -> file, of experiment.toml and the records that it names; a bag's folder file by file.
+    """Name -> file, for experiment.toml and its records; for a folder, each file in it.
 
-    None: no file of that name in the folder. Where experiment.toml cannot be read, it stands alone:
-    what reads the experiment says why.
+    None: the folder has no file of that name. If experiment.toml cannot be read, it is the only
+        entry; `load_experiment` gives the reason.
     """
     files: dict[str, Path | None] = {"experiment.toml": _resolve_within(folder, "experiment.toml")}
     try:
@@ -44,7 +44,7 @@ def experiment_files(folder: Path) -> dict[str, Path | None]:
 
 
 def _resolve_within(folder: Path, name: str) -> Path | None:
-    """The regular file of that name, if it lies in the folder."""
+    """The path of a regular file in the folder; None if there is none."""
     path = folder / name
     if not path.is_file() or not path.resolve().is_relative_to(folder.resolve()):
         return None
@@ -52,7 +52,7 @@ def _resolve_within(folder: Path, name: str) -> Path | None:
 
 
 def content_digest(folder: Path) -> str:
-    """SHA-256 of an experiment's files as they are, with their names within the folder."""
+    """SHA-256 of the content of an experiment's files and of their names within the folder."""
     whole = hashlib.sha256()
     for name, path in experiment_files(folder).items():
         whole.update(f"{name}\0".encode("utf-8", "surrogatepass"))
@@ -63,7 +63,7 @@ def content_digest(folder: Path) -> str:
 
 
 def _blocks(path: Path) -> Iterator[bytes]:
-    """The content of a file; of one that cannot be read, a word that says so."""
+    """The content of a file block by block; one fixed text for a file that cannot be read."""
     try:
         with path.open("rb") as file:
             while block := file.read(_BLOCK):

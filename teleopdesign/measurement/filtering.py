@@ -1,7 +1,8 @@
 """Low-pass, derivatives and zero-order hold as multipliers of one Fourier transform.
 
-The record is continued oddly at both ends (level and slope go on), so that only the ends suffer.
-Every multiplier is even in length, zero-phase where the physics is, and applies to (..., n) arrays.
+The signal is continued by point symmetry at both ends (level and slope go on), so that errors
+remain near the ends. Low-pass and derivative add no delay; the zero-order hold has its physical
+delay. All functions apply to arrays of shape (..., n).
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Spectrum:
         return spectrum, (self.n, self.sample_time)
 
     def transform(self, y: Array) -> NDArray[np.complex128]:
-        """Transform of (..., n) signals, continued at both ends."""
+        """Fourier transform of (..., n) signals, continued at both ends."""
         m = self.margin
         left = 2 * y[..., :1] - y[..., m:0:-1]
         right = 2 * y[..., -1:] - y[..., -2 : -m - 2 : -1]
@@ -45,18 +46,18 @@ class Spectrum:
         return np.asarray(fft.rfft(whole), dtype=np.complex128)
 
     def back(self, transformed: NDArray[np.complex128]) -> Array:
-        """The signals (..., n) of a transform."""
+        """The signals (..., n) from their transform."""
         y: Array = fft.irfft(transformed, self.length)
         return np.ascontiguousarray(y[..., self.margin : self.margin + self.n])
 
     def multiply(self, y: Array, gain: NDArray[np.complex128] | Array) -> Array:
-        """Signals (..., n) times a function of frequency, real or complex."""
+        """Multiply signals (..., n) by a function of frequency, real or complex."""
         return self.back(self.transform(y) * gain)
 
     def lowpass(self, cutoff: float, order: int = 4) -> Array:
-        """Gain of a Butterworth low-pass run forward and backward: zero phase, |H|^2.
+        """Gain |H|^2 of a Butterworth low-pass that runs forward and backward, with zero phase.
 
-        cutoff: Hz; order of the one-way filter (4: the filter of the force error)
+        cutoff: Hz;  order: of the one-way filter (4: the filter of the force error)
         """
         nyquist = 0.5 / self.sample_time
         warped = np.tan(0.5 * np.pi * np.minimum(self.frequency / nyquist, 0.99999))
@@ -64,30 +65,31 @@ class Spectrum:
         return np.asarray(1.0 / (1.0 + (warped / edge) ** (2 * order)))
 
     def derivative(self, order: int) -> NDArray[np.complex128]:
-        """(j omega)^order."""
+        """The multiplier (j omega)^order of a derivative in time."""
         return _derivative(self.n, self.sample_time, order)
 
     def ahead(self, time: float) -> NDArray[np.complex128] | float:
-        """A signal read so much later (s): what is to come moves forward; 1 for none."""
+        """The multiplier that advances a signal y(t) to y(t + time), time in s; 1 for time 0."""
         return np.exp(2j * np.pi * self.frequency * time) if time else 1.0
 
     def hold(self, parts: int = 1, which: int = 0) -> NDArray[np.complex128]:
-        """Zero-order hold: from row values to the staircase, seen at the rows' times.
+        """The multiplier of a zero-order hold: from row values to the held signal at the rows.
 
-        parts, which: the values are held only over that one of so many equal parts of a row
+        parts: number of equal parts of a row;  which: the part, from 0, in which the values are
+            held
         """
         return _hold(self.n, self.sample_time, parts, which)
 
 
 @lru_cache(maxsize=64)
 def spectrum(n: int, sample_time: float) -> Spectrum:
-    """The Spectrum for that grid, made once."""
+    """The Spectrum of a grid of n samples, computed once."""
     return Spectrum(n, sample_time)
 
 
 @lru_cache(maxsize=32)
 def _derivative(n: int, sample_time: float, order: int) -> NDArray[np.complex128]:
-    """`Spectrum.derivative` on that grid, made once."""
+    """`Spectrum.derivative` on that grid, computed once."""
     gain = (2j * np.pi * spectrum(n, sample_time).frequency) ** order
     gain.setflags(write=False)
     return np.asarray(gain, dtype=np.complex128)
@@ -95,7 +97,7 @@ def _derivative(n: int, sample_time: float, order: int) -> NDArray[np.complex128
 
 @lru_cache(maxsize=32)
 def _hold(n: int, sample_time: float, parts: int, which: int) -> NDArray[np.complex128]:
-    """`Spectrum.hold` on that grid, made once: every evaluation of an actuation asks for it."""
+    """`Spectrum.hold` on that grid, computed once: every evaluation of an actuation needs it."""
     x = np.pi * spectrum(n, sample_time).frequency * sample_time / parts
     held = np.sinc(x / np.pi) * np.exp(-1j * (1 + 2 * which) * x) / parts
     held.setflags(write=False)

@@ -2,8 +2,9 @@
 
     actuator force + interaction force = m a + c sgn(v) + b v + k
 
-and a force that grows with the place, as of a spring or a pendulum, where that explains most of
-what this leaves. A start for a diagnosis, which estimates again with all that this leaves out.
+A force proportional to position (a spring, a pendulum at small angles) is added where it explains
+most of the remaining force. The values are a start for a diagnosis, which estimates them again
+together with the effects that are missing here.
 """
 
 from __future__ import annotations
@@ -39,10 +40,11 @@ _MOSTLY = 0.5
 
 @dataclass(frozen=True)
 class FirstGuess:
-    """SI values of inertia, friction level and damping; `explained`: part of the force (0 to 1).
+    """Estimates of inertia, friction level and damping in SI.
 
+    explained: part of the force's variance (0 to 1)
     errors: standard errors of the three, each second of the record counted as one reading
-    left: rms of what they leave of the low-passed force, in its unit
+    left: rms of the low-passed force that they do not explain, in the unit of the force
     """
 
     inertia: float
@@ -57,7 +59,7 @@ _NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
 
 
 def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, Array]:
-    """Low-passed velocity, acceleration and direction of a position (n,)."""
+    """Low-passed velocity, acceleration and direction of motion, (n,) each, of a position (n,)."""
     band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     s = spectrum(len(position), sample_time)
     low = s.lowpass(band)
@@ -70,12 +72,12 @@ def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, A
 
 
 def explain_force(force: Array, position: Array, sample_time: float) -> FirstGuess:
-    """How a force (n,) follows from the motion of a position (n,), by least squares."""
+    """Inertia, friction level and damping that explain a force (n,) along a position (n,)."""
     return explain_forces([(force, position)], sample_time)
 
 
 def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> FirstGuess:
-    """As `explain_force`, over several stretches (force, position)."""
+    """As `explain_force`, over several stretches; pairs: (force, position) of each stretch."""
     all_of_them = [_stretch((force, place), place, sample_time) for force, place in pairs]
     stretches = [s for s in all_of_them if s is not None]
     if not stretches:
@@ -94,14 +96,14 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
 
 
 def is_turned(force: Array, position: Array, sample_time: float) -> bool:
-    """Whether the sign of a force (n,) or of the position is turned: friction would drive.
+    """Whether the sign of a force (n,) or of its position is inverted, so that friction drives.
 
-    Friction and damping take energy out, and inertia is positive. Of these two, what makes more of
-    the force decides, where the motion tells it surely. In slow motions inertia is lost among all
-    that is late; a motion in one direction does not distinguish friction from a constant force.
-    Below the rate at which a pendulum swings by itself, its force goes with the motion as that of a
-    negative inertia does: a force of the place is held beside the two where it takes away most of
-    what they leave.
+    Friction and damping take energy out, and inertia is positive. The larger of these two parts of
+    the force decides, if its sign is certain. In slow motions the force of inertia is too small to
+    be distinguished from delays. A motion in one direction does not distinguish friction from a
+    constant force. A pendulum that swings below its natural frequency has a force like that of a
+    negative mass; a force proportional to position is added where it explains most of the remaining
+    force.
     """
     stretch = _stretch((force, position), position, sample_time)
     if stretch is None:
@@ -132,7 +134,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
 def balance_factor(
     force: Array, other: Array, position: Array, sample_time: float
 ) -> tuple[float, float]:
-    """The factor with which another force balances a force (n,) along the motion, and its error.
+    """The factor of a second force that balances a force (n,) along the motion, with its error.
 
         force + factor other = m a + c sgn(v) + b v + k
 
@@ -158,7 +160,7 @@ def balance_factor(
 def _stretch(
     forces: Sequence[Array], position: Array, sample_time: float
 ) -> tuple[Array, Array] | None:
-    """What the motion says (4, rows) and low-passed forces, without the ends; None: too short."""
+    """Columns of the motion (4, rows) and low-passed forces, without the ends; None: too short."""
     trim = max(1, round(0.25 / sample_time))
     if len(position) < 4 * trim:
         return None
@@ -174,7 +176,7 @@ def _stretch(
 def _fit_with_place(
     columns: Array, place: Array, target: Array, sample_time: float
 ) -> tuple[Array, Array, float] | None:
-    """`_least_squares`, with a force of the place where that takes away most of what is left."""
+    """`_least_squares`, with a force proportional to position if this removes most of the rest."""
     fit = _least_squares(columns, target, sample_time)
     held = _least_squares(np.vstack([columns, place]), target, sample_time)
     if fit is None or held is None or not held[2] ** 2 < _MOSTLY * fit[2] ** 2:
@@ -185,7 +187,7 @@ def _fit_with_place(
 def _least_squares(
     columns: Array, target: Array, sample_time: float
 ) -> tuple[Array, Array, float] | None:
-    """Factors of columns (k, rows), their errors, and the rms that is left; None: no numbers."""
+    """Factors of columns (k, rows), their errors, rms of the rest; None: values too large."""
     with np.errstate(over="ignore", invalid="ignore"):
         scale = np.sqrt(np.mean(columns**2, axis=1))
         if not np.isfinite([*scale, np.mean(target**2)]).all():  # values beyond 1e150
@@ -200,7 +202,7 @@ def _least_squares(
 
 
 def guess_from(records: Sequence[Record], body: str) -> FirstGuess:
-    """The first values of one body from its records."""
+    """First values of the model of one body from its records."""
     pairs = []
     for record in records:
         force = record.signals[f"{body}.actuator_force"]

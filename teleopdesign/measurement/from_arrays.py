@@ -51,14 +51,14 @@ def experiment(
 
     data: a DataFrame of pandas or polars, a Dataset of xarray, or a dict of arrays of one length
     axis: "prismatic" or "revolute"
-    position, actuator_force, ...: the column, or a table as in [channels] of a file
-        (`{"column": "i", "unit": "A", "torque_constant": {"value": 0.04, "unit": "N*m/A"}}`)
-    time: default: the column or index that sounds like it;  sample_rate: Hz, in place of a time
+    position, actuator_force, ...: the column, or a table as in [channels] of a file (`{"column":
+        "i", "unit": "A", "torque_constant": {"value": 0.04, "unit": "N*m/A"}}`)
+    time: default: the column or index whose name suggests a time;  sample_rate: Hz, instead
     segment: the column that numbers trials: hidden states start anew at each
-    units: column -> unit; default: what the column's name ends with ("Pos (deg)"), or SI
-    inertia: kg or kg*m^2; default: estimated from the data, as are the friction's first values
+    units: column -> unit; default: the unit at the end of the column's name ("Pos (deg)"), or SI
+    inertia: kg or kg*m^2; default: estimated from the data, as are the first values of friction
     effects: those of the model;  fit, check: spans (begin, end) in s from the first row, or one
-        span; default: all is fitted, and blocks of it are held out in turn
+        span; default: all rows are fitted, and blocks of them are held out in turn
     raises ExperimentError: no such column, a unit that does not fit, too little data
     """
     log = log_of(data)
@@ -99,7 +99,7 @@ def _require_axis(axis: str) -> None:
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
-    """Spans as a tuple; two numbers are one span."""
+    """The spans as a list of pairs; two plain numbers are one span."""
     numbers = [span for span in spans if isinstance(span, int | float)]
     pairs = [span for span in spans if not isinstance(span, int | float)]
     if len(numbers) == 2 and not pairs:
@@ -113,7 +113,7 @@ def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[
 
 
 def _refuse_overlap(spans: Sequence[tuple[str, Sequence[float] | None]]) -> None:
-    """What is fitted may not be checked."""
+    """Refuse fit and check spans that overlap: fitted rows must not be checked."""
     known = [(use, span) for use, span in spans if span is not None]
     for k, (use, span) in enumerate(known):
         for other_use, other in known[:k]:
@@ -144,7 +144,8 @@ def build_experiment(
 ) -> Experiment:
     """An experiment from the tables of a file and one open log.
 
-    spans: (use, (begin, end) in s) of each record;  a body without inertia gets first values
+    spans: (use, (begin, end) in s) of each record, or (use, None) for all rows
+    A body without inertia gets first values from the fit records.
     """
     _refuse_overlap(spans)
     table = Table(content, _WHERE)
@@ -179,7 +180,10 @@ def build_experiment(
 
 
 def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:
-    """The body with inertia and first friction values from its records, where it says none."""
+    """The body, with inertia and first friction values from its records if it has no inertia.
+
+    raises ExperimentError: the motion does not show a positive inertia
+    """
     if body.inertia is not None:
         return body
     guess = guess_from(records, body.name)
@@ -206,7 +210,7 @@ def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyD
 def channel_table(
     entry: ChannelEntry, key: str, axis: str, log: Log, units: Mapping[str, str]
 ) -> dict[str, Any]:
-    """The table of a channel: as written, or from a column's name with the unit that it says."""
+    """The table of a channel: as written, or a column's name with the unit for this column."""
     table: dict[str, Any] = {"column": entry} if isinstance(entry, str) else dict(entry)
     column = table.get("column")
     if "unit" in table or not isinstance(column, str):
@@ -237,9 +241,9 @@ def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) 
 
 
 def log_of(data: Any) -> Log:
-    """Arrays in memory as an open log; the index of a DataFrame is a column of its name.
+    """Arrays in memory as an open log; the index of a DataFrame becomes a column.
 
-    raises ExperimentError: nothing of columns
+    raises ExperimentError: data without columns
     """
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}

@@ -1,8 +1,8 @@
-"""Hum of the mains in the log of a force: a tone of 50 or 60 Hz that no position shows.
+"""Mains hum in the log of a force: a tone of 50 or 60 Hz that no position shows.
 
-A force at that frequency would have moved the body. A tone without motion is only in the log, and
-is subtracted before forces are compared. Otherwise an effect with a resonance there would imitate
-the tone.
+A real force at that frequency would have moved the body. A tone without motion is only in the log,
+and is subtracted before forces are compared. Otherwise an effect with a resonance there would
+imitate the tone.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ SHORTEST = 2.0
 
 @dataclass(frozen=True)
 class Hum:
-    """A tone of the mains.
+    """A tone at the mains frequency.
 
-    mains: nominal frequency, Hz;  frequency: as found, Hz;  rms: in the unit of the channel
+    mains: nominal frequency, Hz;  frequency: as measured, Hz;  rms: in the unit of the channel
     """
 
     mains: float
@@ -43,7 +43,10 @@ class Hum:
 
 
 def tone_at(y: Array, sample_time: float, frequency: float) -> tuple[float, float]:
-    """Power of a tone over what is usual around it, and its rms, in the unit of y."""
+    """Power of a tone over the median power around it, and the rms of the tone in the unit of y.
+
+    frequency: Hz, of the tone;  sample_time: s
+    """
     window = np.hanning(len(y))
     power = np.abs(np.fft.rfft((y - y.mean()) * window)) ** 2
     off = np.abs(np.fft.rfftfreq(len(y), sample_time) - frequency)
@@ -55,7 +58,7 @@ def tone_at(y: Array, sample_time: float, frequency: float) -> tuple[float, floa
 
 
 def hum_of(force: Array, positions: Sequence[Array], sample_time: float) -> Hum | None:
-    """The hum of one stretch of a force (n,), whose positions (n,) do not show it; None."""
+    """The hum in one stretch of a force (n,); None: no hum, or a position (n,) shows it as well."""
     if len(force) * sample_time < SHORTEST:
         return None
     for mains in MAINS:
@@ -71,7 +74,7 @@ def hum_of(force: Array, positions: Sequence[Array], sample_time: float) -> Hum 
 
 
 def without_hum(force: Array, hum: Hum, sample_time: float) -> Array:
-    """A stretch of a force (n,) less the tone, of the amplitude and phase that it has there."""
+    """A stretch of a force (n,) minus the tone, with the amplitude and phase in this stretch."""
     wave = _wave(len(force), sample_time, hum.frequency)
     window = np.hanning(len(force))
     size = 2.0 * np.sum(window * (force - force.mean()) * wave.conj()) / window.sum()
@@ -84,7 +87,7 @@ def _wave(count: int, sample_time: float, frequency: float) -> NDArray[np.comple
 
 
 def _peak(y: Array, sample_time: float, near: float) -> float:
-    """Frequency (Hz) of the tone in `y`, within `WITHIN` of this one."""
+    """Frequency (Hz) of the tone in `y`, within `WITHIN` of `near`."""
     window = np.hanning(len(y))
     power = np.abs(np.fft.rfft(y * window))
     grid = np.fft.rfftfreq(len(y), sample_time)

@@ -1,4 +1,4 @@
-"""From the rows of a log to the clock of a record, and what is said of that."""
+"""From the rows of a log to the clock of a record, with the reading steps that report it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ SURE = 3.0
 
 @dataclass(frozen=True)
 class LogClock:
-    """The clock, and whether its stamps say when a row was taken or are on an even one."""
+    """The clock of a log.
+
+    stamped: True: each row was taken at its stamp; False: the rows lie on the even clock
+    """
 
     clock: RecordClock
     stamped: bool
@@ -47,7 +50,8 @@ def clock_of_log(
 ) -> tuple[LogClock, list[ReadingStep]]:
     """The clock of a log, with the steps that led to it.
 
-    name: of the log in messages;  to_seconds: factor of the time channel's unit
+    name: of the log in messages;  sample_rate: Hz; None: the log has a time channel
+    to_seconds: factor of the time channel's unit
     raises ExperimentError: see `clock_of`; too many cells without a number
     """
     on_this_clock = {c for c in columns.values if c not in columns.stamps}
@@ -88,7 +92,7 @@ def _left_out(
     between: NDArray[np.bool_],
     sample_time: float,
 ) -> list[ReadingStep]:
-    """What is said of rows that are not used; masks over all rows."""
+    """Reading steps for rows that are not used; the masks cover all rows."""
     steps = []
     if empty.any():
         said = f"{count_of(int(empty.sum()), 'row')} with a cell that holds no number"
@@ -130,7 +134,7 @@ def _filled_rows(
 
 
 def _mark_later_rows(stamps: Array) -> NDArray[np.bool_]:
-    """Rows whose stamp is not that of the row before, nor next to it: such are one row twice."""
+    """Rows whose stamp exceeds the stamp of the row before by more than half the median step."""
     steps = np.diff(stamps, prepend=stamps[:1])
     forward = steps[steps > 0]
     return np.asarray(steps > 0.5 * np.median(forward)) if len(forward) else steps > 0
@@ -142,7 +146,7 @@ def _mark_repeated(
     on_this_clock: set[str],
     filled: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Rows for which the logger had no new reading, among those that are filled."""
+    """Filled rows for which the logger had no new reading."""
     every, of = _columns_by_quantity(columns, channels, on_this_clock, filled)
     repeated = np.zeros(len(filled), dtype=bool)
     if every and filled.any():
@@ -157,7 +161,7 @@ def _mark_between_readings(
     filled: NDArray[np.bool_],
     stamps: Array,
 ) -> NDArray[np.bool_]:
-    """Rows of a log that asked its source again before this had a new reading."""
+    """Rows that the log wrote before its source had a new reading."""
     every, of = _columns_by_quantity(columns, channels, on_this_clock, filled)
     between = np.zeros(len(filled), dtype=bool)
     between[filled] = rows_between_readings(every, of("position"), stamps[filled])
@@ -170,7 +174,7 @@ def _columns_by_quantity(
     on_this_clock: set[str],
     filled: NDArray[np.bool_],
 ) -> tuple[list[Array], Callable[..., list[Array]]]:
-    """Columns of all signals, and those of some quantities: their filled rows, (n,) each."""
+    """The filled rows (n,) of all signal columns, and a function that selects them by quantity."""
     signals = [ch for k, ch in channels.items() if k not in ("time", "segment")]
 
     def of(*quantities: str) -> list[Array]:
@@ -199,7 +203,7 @@ def _repeats(
     rows: NDArray[np.intp],
     on_this_clock: set[str],
 ) -> NDArray[np.bool_]:
-    """Rows the same as the one before in every channel but the time."""
+    """Rows equal to the row before in every channel except the time."""
     same = np.ones(len(rows), dtype=bool)
     same[:1] = False
     for key, channel in channels.items():
@@ -210,7 +214,7 @@ def _repeats(
 
 
 def _order(clock: RecordClock, file: str, count: int) -> list[ReadingStep]:
-    """What is said of rows that were twice, out of order, lost, and of pauses."""
+    """Reading steps for repeated stamps, rows out of order, clocks set back and pauses."""
     steps = []
     if clock.dropped:
         text = f"{count_of(clock.dropped, 'row')} with the stamp of another"
@@ -240,7 +244,7 @@ def _order(clock: RecordClock, file: str, count: int) -> list[ReadingStep]:
 def _stamps(
     clock: RecordClock, columns: LogColumns, channels: Mapping[str, Channel], file: str
 ) -> tuple[bool, list[ReadingStep]]:
-    """Whether the stamps say when a row was taken, and what is said of that."""
+    """Whether each row was taken at its stamp, with the reading steps that report it."""
     h = clock.sample_time
     if clock.counted or clock.jitter <= EVEN * h:
         return False, []
@@ -286,7 +290,7 @@ def _stamps(
 
 
 def _effect_of_even_stamps(clock: RecordClock, positions: list[Array]) -> str:
-    """What even stamps would have done to the position."""
+    """The error of the position if the stamps were read as even, as a text."""
     off = clock.stamps - clock.time[clock.places]
     speeds = [
         float(np.sqrt(np.mean((np.gradient(x, clock.stamps) * off) ** 2)))

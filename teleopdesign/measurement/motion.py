@@ -31,10 +31,10 @@ SHORTEST = 0.6
 class LinkForces(ByValue):
     """Force that the links of an arm need at one joint, along a motion of n samples, SI.
 
-    constant: (n,) by what is known;  columns: (b, n) per unit of each base parameter of the arm
-    smooth: the same columns through the comparison's low-pass, less what friction at rest takes up
-        by the model at hand, if there is one
-    inertia: part of them that the body itself has, and that is not carried
+    constant: (n,) from the known parameters;  columns: (b, n) per unit of each base parameter
+    smooth: the same columns through the low-pass of the comparison, less what friction at rest
+        takes up in the model at hand, if there is one
+    inertia: part of the forces that belongs to the body itself and is not carried
     drawn: the same forces with the positions of all joints read anew, for the noise floor
     """
 
@@ -45,7 +45,7 @@ class LinkForces(ByValue):
     inertia: float = 0.0
 
     def carried(self, values: Sequence[float], acceleration: Array) -> Array:
-        """The force (n,) at these values (b,) of the base parameters; acceleration: (n,)."""
+        """The force (n,) at the values (b,) of the base parameters; acceleration: (n,)."""
         force = self.constant + np.asarray(values) @ self.columns if len(values) else self.constant
         return force - self.inertia * acceleration
 
@@ -56,14 +56,16 @@ class Motion(ByValue):
 
     position, velocity, acceleration: smoothed to `SMOOTHING` times the bandwidth, zero phase
     command: as commanded, held until the next row;  interaction: smoothed (zeros if not measured)
-    direction: +1, -1, or 0 where the reading cannot tell a motion
-    step: what one reading leaves open of the position (encoder step, or twice its noise)
-    rows: the samples' place in the record;  bandwidth: of the comparison, Hz
-    further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
+    direction: +1 or -1, or 0 where the readings do not show a direction
+    step: uncertainty of one position reading (encoder step, or a multiple of its noise)
+    rows: place of the samples in the record;  bandwidth: of the comparison, Hz
+    further: other channels: "temperature", "other_position" and its derivatives, smoothed alike
     command_late: s by which the log of the command is later than that of the position
-    interaction_late: s, time constant of the hand's sensor, whose low-pass `interaction` is without
-    merged: rows of the record from one sample to the next: 1 unless samples were left out
-    links: of the arm that the body is a joint of;  carried: (n,) the force that they need here
+    interaction_late: s, time constant of the sensor of the interaction force; its low-pass is
+        removed from `interaction`
+    merged: rows of the record from one sample to the next; 1 unless samples were left out
+    links: of the arm, if the body is a joint of an arm;  carried: (n,) the force that the links
+        need
     """
 
     body: str
@@ -89,13 +91,14 @@ class Motion(ByValue):
 
     @property
     def sample_time(self) -> float:
-        """Seconds between samples."""
+        """Time between samples, s."""
         return self.spectrum.sample_time
 
     def at_rows(self, staircase: Array) -> Array:
-        """A held signal, value of each row until the next, as a smooth one at the rows (..., n).
+        """A held signal, constant from row to row, as a smooth signal at the rows, (..., n).
 
-        It is read `command_late` later than logged: so it was then.
+        The signal is advanced by `command_late`, the delay of its log.
+
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
@@ -106,20 +109,20 @@ class Motion(ByValue):
         return s.back(held * (self.smoothing * s.ahead(self.command_late)))
 
     def lowpassed(self, y: Array, at: NDArray[np.intp] | None = None) -> Array:
-        """Signals (..., n) through the comparison's zero-phase low-pass;  at: these rows of it."""
+        """Signals (..., n) through the low-pass of the comparison; at: only these rows."""
         from .zero_phase import zero_phase  # numba: only where something is filtered
 
         return zero_phase(y, self.bandwidth, self.sample_time, at)
 
 
 def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
-    """+1 or -1 where consecutive readings show a direction of motion, else 0.
+    """Direction of motion: +1 or -1 where consecutive readings show it, else 0; shape (n,).
 
-    A motion shows in changes of the reading that go the same way, no more than `patience` samples
+    A motion shows in changes of the reading in the same direction, no more than `patience` samples
     apart, over at least `TRAVEL` steps; a shorter one may be the deflection of a contact that
-    holds. Between motions the body may rest, creep or turn, and nothing is said.
+    holds. Between motions the body may rest, creep or turn: the direction is 0.
 
-    change: smallest change of a reading that counts;  step: what one reading leaves open
+    change: smallest change of a reading that counts;  step: uncertainty of one reading
     """
     direction = np.zeros(len(position), dtype=np.int8)
     changes = np.flatnonzero(np.abs(np.diff(position)) > 0.5 * change) + 1
@@ -138,7 +141,7 @@ def direction_of(position: Array, change: float, step: float, patience: int) -> 
 
 
 def mark_neighbours(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The marked samples and those next to one."""
+    """Mask (n,) of the marked samples and of the samples next to them."""
     wide = marked.copy()
     wide[1:] |= marked[:-1]
     wide[:-1] |= marked[1:]
@@ -146,7 +149,7 @@ def mark_neighbours(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def play(position: Array, width: float) -> Array:
-    """Position behind a play (hysteresis) of total `width`, which follows only larger motions."""
+    """Position behind a play (backlash) of total width `width`: it follows only larger motions."""
     half = 0.5 * width
     out = np.empty_like(position)
     here = position[0]
@@ -172,8 +175,8 @@ def motion_of(
 ) -> Motion:
     """Smooth and differentiate one uninterrupted stretch of readings (n samples each, SI).
 
-    bandwidth: Hz, of the comparison;  resolution: encoder step, None where not stated
-    further: readings of channels besides, "temperature" and "other_position"
+    bandwidth: Hz, of the comparison;  resolution: encoder step; None: not stated
+    further: readings of other channels, "temperature" and "other_position"
     """
     n = len(position)
     s = spectrum(n, sample_time)
@@ -219,7 +222,7 @@ def motion_of(
 
 
 def without_mains(record: Record, name: str) -> Array:
-    """A force of a record (n,), less a hum of the mains that no position shows."""
+    """A force of a record (n,), minus a hum of the mains that no position shows."""
     force = record.signals[name]
     longest = max(record.segments, key=lambda rows: rows.stop - rows.start)
     positions = [x[longest] for key, x in record.signals.items() if key.endswith(".position")]
@@ -239,9 +242,9 @@ FURTHER = ("temperature", "other_position")
 def motions(
     record: Record, body: str, *, bandwidth: float, resolution: float | None
 ) -> tuple[Motion, ...]:
-    """The stretches of one record for one body, those long enough to low-pass and trim.
+    """The motions of one body in one record: the segments of at least `SHORTEST`.
 
-    bandwidth: Hz, of the comparison;  resolution: encoder step (SI), None where not stated
+    bandwidth: Hz, of the comparison;  resolution: encoder step (SI); None: not stated
     """
     command = without_mains(record, f"{body}.actuator_force")
     measured = f"{body}.interaction_force"

@@ -1,4 +1,4 @@
-"""Make an experiment's folder from logs: what a survey proposes, written with its reasons."""
+"""Make an experiment's folder from logs: the proposals of a survey, written with their reasons."""
 
 from __future__ import annotations
 
@@ -38,9 +38,10 @@ def make_folder(
 ) -> Path:
     """Copy the logs into a folder and write experiment.toml beside them.
 
-    One log is cut into a fit and a check record, at `spans` (s from its first row) if any; of
-    several the last is the check record.
-    overwrite: write an experiment.toml that is there anew
+    One log is cut into a fit and a check record, at `spans` (s from its first row) if given. Of
+    several logs, the last is the check record.
+
+    overwrite: replace an existing experiment.toml
     raises ExperimentError: the folder holds an experiment already, or cannot be written; spans that
         overlap, lie outside of the log or belong to several logs
     """
@@ -76,7 +77,7 @@ def make_folder(
 
 
 def require_new(folder: Path) -> None:
-    """Raise an ExperimentError where a folder holds an experiment."""
+    """Raise an ExperimentError if a folder holds an experiment already."""
     if (folder / _FILE).exists():
         raise ExperimentError(
             f"{folder.name}/{_FILE}: is there already: --overwrite writes it anew, --output FOLDER "
@@ -85,7 +86,7 @@ def require_new(folder: Path) -> None:
 
 
 def check_spans(spans: FitAndCheck, duration: float, names: Sequence[str]) -> None:
-    """Refuse spans that overlap, lie outside of the log, or belong to several logs."""
+    """Refuse spans that overlap, begin outside of the log, or belong to several logs."""
     if len(names) > 1:
         raise ExperimentError(
             f"{names[0]}: spans: found {len(names)} logs, expected one that is cut; of several the "
@@ -118,7 +119,7 @@ def _records(
 
 
 def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, Any]]) -> FirstGuess:
-    """First values of the model, from the fit records as they will be read."""
+    """First values of the model from the fit records, read as the experiment will read them."""
     content = {"channels": _channels(survey), "model": {"device": {"axis": survey.axis}}}
     table = Table(content, f"{folder.name}/{_FILE}")
     bodies = bodies_from(table.table("model"))
@@ -154,7 +155,7 @@ def experiment_text(
     first: FirstGuess | None,
     effects: Sequence[str],
 ) -> str:
-    """experiment.toml with a comment wherever something was guessed."""
+    """The text of experiment.toml, with a comment on each guessed channel."""
     axis = survey.axis
     force, length = ("N", "m") if axis == "prismatic" else ("N*m", "rad")
     mass = "kg" if axis == "prismatic" else "kg*m^2"

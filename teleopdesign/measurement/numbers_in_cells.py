@@ -1,4 +1,4 @@
-"""Numbers out of what the cells of a column hold: numbers, dates, or texts of either."""
+"""The cells of a column as numbers: numbers, dates, or texts of either."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ _LONG = 2**53
 
 
 def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
-    """A vector of float64 out of what a file holds: (n,), (n, 1) or (1, n) numbers or dates."""
+    """A column as float64 (n,), from numbers or dates of shape (n,), (n, 1) or (1, n).
+
+    raises ExperimentError: more than one column, or a cell that is no number
+    """
     values = np.asarray(values)
     begin = f"{file}: {channel}: column {quote(column)}" if channel else f"{file}: {quote(column)}"
     if values.ndim == 2 and 1 in values.shape:
@@ -39,7 +42,7 @@ def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
 
 
 def _seconds(values: NDArray[Any]) -> Array:
-    """Dates and durations as seconds from the first one; NaN where there is none."""
+    """Dates and durations in s from the first one; NaN in empty cells."""
     empty = np.isnat(values)
     filled = values[~empty]
     out = np.full(len(values), np.nan)
@@ -49,7 +52,7 @@ def _seconds(values: NDArray[Any]) -> Array:
 
 
 def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
-    """Objects as numbers where all are, written as text or not: None is an empty cell."""
+    """Objects as numbers if all are numbers, texts of numbers or dates; None is an empty cell."""
     if any(isinstance(v, str) for v in values):
         stamps = stamps_in_texts(values.tolist())
         if stamps is not None:

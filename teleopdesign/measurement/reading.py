@@ -17,15 +17,13 @@ _SPAN = re.compile(r" [-+.\de]+-[-+.\de]+ s$")
 
 @dataclass(frozen=True)
 class ReadingStep:
-    """One thing that was done when a file was read.
+    """One correction that was made when a file was read.
 
-    file: the record's;  observed: what the log held ("14 lost rows, 0.2 %")
-    rule: what was done with it;  effect: what it does to the answer, with a number where there is
-    one
-    size: part of the measured force that it may add to the force error; NaN: not a number of that
-    kind
-    topic: of the finding that it makes;  numbers: name -> value in SI
-    interpolates: values then lie between the steps of an encoder
+    file: of the record;  observed: what the log held ("14 lost rows, 0.2 %")
+    rule: the correction;  effect: on the answer, with a number if there is one
+    size: part of the measured force that the correction may add to the force error; NaN: unknown
+    topic: of the finding that reports the step;  numbers: name -> value in SI
+    interpolates: the values then lie between the steps of an encoder
     """
 
     file: str
@@ -39,12 +37,12 @@ class ReadingStep:
 
 
 def log_name(file: str) -> str:
-    """The name of the log that a record was cut from; of an uncut record its name."""
+    """The name of the log from which a record was cut; the name of the record if it is uncut."""
     return _SPAN.sub("", file)
 
 
 def reading_table(steps: Sequence[ReadingStep]) -> list[str]:
-    """The steps as lines of a table; empty where every file was used as it is.
+    """The steps as lines of a table; empty where every file is used unchanged.
 
     Records that are all cut from one log are named by their spans.
     """

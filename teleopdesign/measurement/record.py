@@ -1,4 +1,4 @@
-"""One recording: signals in SI units on a uniform time, and what was done to the log for that."""
+"""One recording: signals in SI units on a uniform time, and the corrections of its log."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,12 +27,12 @@ SEPARATE = ("position_zero", "bias", "friction_level")
 class Record(ByValue):
     """One recording of n samples, for estimation (use "fit") or for errors alone (use "check").
 
-    offset_names: of "position_zero", "bias" and "friction_level", those in which this record may
+    offset_names: those of "position_zero", "bias" and "friction_level" in which this record may
         differ from the others
     time: s, shape (n,), uniform within each segment with step `sample_time` (s)
     segments: stretches without interruption; hidden states start anew at each
     signals: "device.position", "master.actuator_force" ... -> shape (n,), SI, signs of the format
-    reading: what was done to the log on the way, each step with its effect; empty: used as it is
+    reading: corrections of the log, each with its effect; empty: the log is used unchanged
     """
 
     file: str
@@ -79,8 +79,8 @@ def read_record(
 ) -> Record:
     """Read one record file of an experiment's folder.
 
-    sample_rate: Hz; None: the channel "time" says
-    span: (begin, end) in s from the log's first row; None: all of it
+    sample_rate: Hz; None: the channel "time" gives the time
+    span: (begin, end) in s from the log's first row; None: the whole log
     raises ExperimentError: see `read_columns` and `clock_of`
     """
     name = f"{folder.name}/{file}"
@@ -101,7 +101,7 @@ def read_record(
 
 
 def wanted_columns(channels: Mapping[str, Channel]) -> dict[str, str]:
-    """Column -> the channel that wants it, as messages name it."""
+    """Column -> the channel that needs it, as messages name the channel."""
     return {
         column: f"channels.{short_name(key)}"
         for key, channel in channels.items()
@@ -120,9 +120,10 @@ def record_of(
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
 ) -> Record:
-    """The record that the columns of one log make.
+    """The record from the columns of one log.
 
-    name: of the log in messages;  file: the record's;  sample_rate: Hz; None: there is a time
+    name: of the log in messages;  file: of the record
+    sample_rate: Hz; None: the log has a time channel
     raises ExperimentError: too short, time that does not increase, too many cells without a number
     """
     conversions = {
@@ -150,5 +151,5 @@ def record_of(
 
 
 def short_name(key: str) -> str:
-    """A channel's name as a user of one body writes it."""
+    """The name of a channel without "device.", as in an experiment with one body."""
     return key.removeprefix("device.")

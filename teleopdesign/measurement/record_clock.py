@@ -1,4 +1,4 @@
-"""The clock of a record: the place of each row of the log on one even grid."""
+"""The clock of a record: the place of each row of the log on an even time grid."""
 
 from __future__ import annotations
 
@@ -17,16 +17,20 @@ _FEWEST = 64  # fewest samples of a record
 
 @dataclass(frozen=True, eq=False)
 class RecordClock:
-    """Which row of the log stands where on the even grid of a record.
+    """The place of each used row of the log on the even grid of a record.
 
-    rows: (m,) rows of the log that are used, in order;  stamps: (m,) s, of these
-    places: (m,) sample of the record that the row is next to
+    rows: (m,) used rows of the log, in order;  stamps: (m,) s, of these rows
+    places: (m,) nearest sample of the record
     time: (n,) s, even within each segment with step `sample_time`;  segments: of the n samples
     of_rows: the same stretches among the m rows
-    exact: every row is a sample, and the other way round, at its time
-    jitter: rms of the stamps about the even clock, s;  dropped, sorted, restarts: how many rows
-    lost: rows that are filled;  gaps: stretches begun at a pause
-    alone: rows with a pause, an end or a clock set back on both sides: no sample is made of them
+    exact: each row is one sample at its time, and each sample is a row
+    jitter: rms of the stamps about the even clock, s
+    dropped, sorted: rows with a repeated stamp, rows out of order
+    restarts: times that the clock was set back
+    lost: samples without a row, which are filled
+    gaps: segments that begin after a pause;  longest_gap: s
+    alone: rows with a pause, an end or a clock set back on both sides: they become no sample
+    counted: many rows share a stamp, so that rows are counted at the mean rate
     """
 
     rows: RowNumbers
@@ -49,7 +53,10 @@ class RecordClock:
 
 
 def segments_of(labels: Array | None, count: int) -> tuple[slice, ...]:
-    """Stretches of consecutive samples: a new one wherever the label changes."""
+    """Stretches of consecutive samples: a new stretch wherever the label changes.
+
+    labels: (count,), or None for a single stretch
+    """
     if labels is None:
         return (slice(0, count),)
     starts = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), count]
@@ -57,7 +64,10 @@ def segments_of(labels: Array | None, count: int) -> tuple[slice, ...]:
 
 
 def counted_time(count: int, rate: float, where: str) -> tuple[Array, float]:
-    """Time in s from the sample's number and a rate in Hz, and the sample time in s."""
+    """Time in s from the number of each sample and a rate in Hz, and the sample time in s.
+
+    raises ExperimentError: too few rows, or too short
+    """
     check_size(count, where)
     check_duration(count, 1 / rate, where)
     return np.arange(count) / rate, 1 / rate

@@ -1,4 +1,4 @@
-"""Repeated rows: rows in which no channel has a new reading, read as lost.
+"""Repeated rows: rows in which no channel has a new reading; they are read as lost.
 
 A body at rest repeats its position, and a command may be constant or follow the position. A force
 measured with noise repeats only if all channels repeat. Repeated rows are lost rows if the readings
@@ -47,7 +47,7 @@ STUCK_BY_CHANCE = 1e-3
 
 
 def runs_of(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """First place of each run of True, and one past its last."""
+    """First index of each run of True, and the index after its last."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     return edges[::2], edges[1::2]
 
@@ -55,11 +55,10 @@ def runs_of(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]
 def repeated_rows(
     channels: Sequence[Array], positions: Sequence[Array] = (), forces: Sequence[Array] = ()
 ) -> NDArray[np.bool_]:
-    """Rows that repeat the one before because no new reading was there.
+    """Mask (n,) of the rows that repeat the row before because no new reading was there.
 
     channels: (n,) each, of the same rows, without the time
-    positions, forces: those of them that are read, not commanded
-    returns: (n,)
+    positions, forces: the channels among them that are measured, not commanded
     """
     count = len(channels[0]) if channels else 0
     out = np.zeros(count, dtype=bool)
@@ -99,13 +98,14 @@ def repeated_rows(
 def rows_between_readings(
     channels: Sequence[Array], positions: Sequence[Array], stamps: Array
 ) -> NDArray[np.bool_]:
-    """Rows, but for one a reading, of a log that asked its source before that had a new reading.
+    """Mask (n,) of the rows that a log wrote before its source had a new reading.
 
-    Such a source changes all channels in the same rows, a fixed period apart, and positions go on
-    by several steps at once; the steps of a slow encoder come one by one. Where all rests, a row
-    in each period stays.
+    One row of each reading is not marked. Such a source changes all channels in the same rows, a
+    fixed period apart, and positions change by several steps at once; the steps of a slow encoder
+    come one by one. Where all channels rest, one row in each period is not marked.
+
     channels, positions: (n,) each, as in `repeated_rows`;  stamps: (n,) s
-    returns: (n,), all False where the log is none of these
+    returns: all False where the log has no such source
     """
     none = np.zeros(len(stamps), dtype=bool)
     if len(channels) < 2 or len(stamps) < 2:
@@ -141,10 +141,10 @@ def rows_between_readings(
 
 
 def repeats(x: Array, step: float) -> NDArray[np.intp]:
-    """Samples of a position that repeat the one before although the body goes on.
+    """Samples of a position that repeat the sample before although the body moves.
 
-    Into the hold and out of it the reading changes by half of the usual change there or more, the
-    same way: no body stops and starts within a sample.
+    Before and after the hold, the reading changes by at least half of the usual change there, in
+    the same direction: no body stops and starts within a sample.
     """
     change = np.diff(x)
     first, past = runs_of(change == 0)
@@ -161,10 +161,10 @@ def repeats(x: Array, step: float) -> NDArray[np.intp]:
 
 
 def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int]]:
-    """(first, one past the last) sample of holds that only a stuck channel explains.
+    """(first, one past the last) sample of each hold that only a stuck channel explains.
 
-    quantity: a position stops dead and leaps afterwards, or never moves again; noise of any other
-    measured quantity cannot vanish; a command may be held at will
+    quantity: a position counts as stuck if it stops abruptly and jumps afterwards or never moves
+        again; a command never does; any other measured quantity does if its noise vanishes
     """
     if quantity == "actuator_force":
         return []
@@ -196,9 +196,9 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
 def _chance_of_repeats(
     read: Sequence[Array], same: NDArray[np.bool_], first: NDArray[np.intp], past: NDArray[np.intp]
 ) -> Array:
-    """Chance that what is read repeats together in a row, at each run, as it repeats beside it.
+    """Probability of each run: that all readings repeat at once, from their repeats beside the run.
 
-    A command is not counted: where a position repeats, what follows it does too.
+    Commands are not counted; where a position repeats, a command that follows it repeats as well.
     """
     low, high = np.maximum(first - BESIDE, 0), np.minimum(past + BESIDE, len(same))
 
@@ -213,7 +213,7 @@ def _chance_of_repeats(
 
 
 def _leaps(x: Array, first: int, past: int, step: float) -> bool:
-    """Whether a reading stands from row `first` to `past` and leaps once after it."""
+    """Whether a reading stands still from row `first` to `past` and jumps once afterwards."""
     near = int(LEAP)
     if first < near or past + 1 + near > len(x) - 1:
         return False
@@ -223,13 +223,13 @@ def _leaps(x: Array, first: int, past: int, step: float) -> bool:
 
 
 def _goes_on(y: Array, first: int, past: int) -> bool:
-    """Whether a reading changes in every row to either side of a hold."""
+    """Whether a reading changes in every row before and after a hold."""
     near = int(LEAP)
     sides = y[first - near : first + 1], y[past + 1 : past + 2 + near]
     return all(bool(np.all(np.diff(side) != 0)) for side in sides)
 
 
 def _noise_vanishes(y: Array, first: int, past: int) -> bool:
-    """Whether a reading that never repeats by itself has noise before and after a hold."""
+    """Whether a reading that never repeats by itself shows noise before and after a hold."""
     sides = np.diff(y[max(first - SHOWN, 0) : first + 1]), np.diff(y[past : past + SHOWN + 1])
     return all(len(side) == SHOWN and np.mean(side[1:] * side[:-1] < 0) >= TURNS for side in sides)

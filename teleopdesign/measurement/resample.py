@@ -1,8 +1,8 @@
 """Signals of a log on the even grid of a record, each by the rule for its quantity.
 
-A command holds until the next row: what acts in a sample is its mean over the sample. A position is
-interpolated where it moves fast; where it moves by few encoder steps the line between readings is
-read in such steps, so that steps stay steps. Other measured signals follow the straight line.
+A command holds until the next row; the value of a sample is the mean of the command over the
+sample. A position is interpolated where it moves fast. Where it moves by few encoder steps, the
+line between readings is rounded to such steps. Other measured signals follow the straight line.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ TRIALS = 2000
 def resample_on_grid(
     values: Array, clock: RecordClock, rule: Rule, *, stamped: bool, step: float, delay: float = 0.0
 ) -> Array:
-    """A signal (m,), a value a used row, on the record's grid (n,).
+    """A signal (m,), one value per used row, on the record's grid (n,).
 
-    stamped: stamps say when a row was taken; otherwise it is at its place on the grid
+    stamped: each row was taken at its stamp; otherwise it lies at its place on the grid
     step: of the encoder, 0 for none;  delay: s by which the log has the signal late
     """
     if clock.exact and not stamped and delay == 0.0:
@@ -55,9 +55,10 @@ def resample_on_grid(
 def interpolate_by_rule(
     values: Array, at: Array, grid: Array, rule: Rule, *, step: float, slower_clock: bool = False
 ) -> Array:
-    """Values (m,) at ascending instants (m,) by their rule at others (n,), both in samples.
+    """Values (m,) at ascending instants `at` (m,), interpolated by their rule at `grid` (n,).
 
-    slower_clock: a slower signal, whose rows are not lost where they are more than a sample apart
+    at, grid: in samples;  step: of the encoder, 0 for none
+    slower_clock: the signal is slower than the grid: gaps above one sample are no lost rows
     """
     if len(at) == len(grid) and np.array_equal(at, grid):
         return values
@@ -71,9 +72,10 @@ def interpolate_by_rule(
 def command_phase(values: Array, clock: RecordClock) -> float | None:
     """Phase of the even clock on which a command changes, in samples; None: it follows the rows.
 
-    A log may read the command of a controller at other instants. Then two rows between the
-    same two changes say the same, and some commands are in no row. The phase is the one for which
-    rows say the same exactly where they lie between the same two changes.
+    A log may read the command of a controller at other instants. Then two rows between the same two
+    changes have the same value, and some commands are in no row. The phase is the one for which
+    rows are equal exactly where they lie between the same two changes.
+
     values: (m,) of the clock's rows, whose stamps are true
     """
     at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
@@ -101,7 +103,7 @@ def command_phase(values: Array, clock: RecordClock) -> float | None:
 
 
 def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[Array, float]:
-    """A command that changes on an even clock, on the record's grid, and the part in no row.
+    """A command that changes on an even clock, on the record's grid (n,), and the share in no row.
 
     values: (m,) of the clock's rows;  phase: of the command's clock (`command_phase`)
     """
@@ -117,10 +119,10 @@ def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[
 
 
 def _fill_held(values: Array, at: Array) -> tuple[Array, Array]:
-    """Held values with the line between rows where rows are lost.
+    """Held values and their instants, with straight lines where rows are lost.
 
-    A lost row had a different command: the line between its neighbours errs by half of
-    what the older one would, held on.
+    A lost row had a different command: the straight line between its neighbours errs half as much
+    as the older command held on.
     """
     steps = np.rint(np.diff(at)).astype(np.intp)
     if np.all(steps <= 1):
@@ -150,7 +152,7 @@ def _average_held(values: Array, at: Array, grid: Array) -> Array:
 
 
 def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
-    """Local cubic through four readings; where they are few steps apart, the line in such steps."""
+    """Local cubic through four readings; where these are few steps apart, a line in such steps."""
     right = np.clip(np.searchsorted(at, grid), 1, len(at) - 1)
     left = right - 1
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
@@ -163,9 +165,9 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
 
 
 def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
-    """What an encoder reads on the line between two readings;  part: of the way, 0 to 1.
+    """Readings of an encoder at times between two readings, for a straight motion between them.
 
-    step: 0 for none, where the nearer reading is taken
+    part: of the way between them, 0 to 1;  step: of the encoder; 0: the nearer reading is taken
     """
     if step == 0.0:
         return np.where(np.asarray(part) <= 0.5, left, right)
@@ -186,7 +188,7 @@ def _cubic(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Arr
 
 
 def filling_error(values: Array, clock: RecordClock, rule: Rule, *, step: float) -> float:
-    """Rms error of a filled row: rows that are there, filled as if each were lost."""
+    """Rms error of a filled row, from known rows that are filled as if each were lost."""
     error: list[Array] = []
     for rows in clock.of_rows:
         x, place = values[rows], clock.places[rows]

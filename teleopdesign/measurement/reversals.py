@@ -12,10 +12,12 @@ from .filtering import Array
 
 @dataclass(frozen=True)
 class SinceReversal:
-    """Per sample (n,); zero, and `known` false, before the first sure motion.
+    """For each sample (n,): time and travel since the last reversal, and the rest before it.
 
-    time: s since the body set off in its present direction;  travel: path since then (SI)
-    rested: s without sure motion before it set off
+    time: s since the motion in the present direction began
+    travel: distance from the position where it began (SI)
+    rested: s without certain motion before it began
+    known: False before the first certain motion; the other values are 0 there
     """
 
     time: Array
@@ -27,10 +29,10 @@ class SinceReversal:
 def look_back_to_reversal(
     direction: NDArray[np.int8], position: Array, *, sample_time: float, rest: float
 ) -> SinceReversal:
-    """Look back from each sample to where the present motion began.
+    """Look back from each sample to the beginning of the present motion.
 
-    direction: +1, -1, or 0 where no motion is sure;  position: (n,)
-    rest: s without sure motion after which the same direction counts as a new start
+    direction: (n,) +1, -1, or 0 where no motion is certain;  position: (n,)
+    rest: s without certain motion after which a motion in the same direction counts as a new start
     """
     n = len(direction)
     moving = np.flatnonzero(direction)
@@ -54,9 +56,9 @@ def look_back_to_reversal(
 
 
 def mark_reversals(direction: NDArray[np.int8], *, within: int) -> NDArray[np.bool_]:
-    """The samples at most so many before or after one where the motion sets off the other way.
+    """Mask (n,) of the samples at most `within` samples before or after a reversal of the motion.
 
-    direction: +1, -1, or 0 where no motion is sure
+    direction: (n,) +1, -1, or 0 where no motion is certain
     """
     moving = np.flatnonzero(direction)
     turned = moving[1:][np.diff(direction[moving].astype(int)) != 0]

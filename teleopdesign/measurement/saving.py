@@ -24,7 +24,7 @@ _ENVIRONMENT = ("stiffness", "damping", "contact_position")
 
 
 def write_experiment(experiment: Experiment, folder: str | Path) -> Path:
-    """Write a folder that reads as the same experiment; signals are in SI, on their even grid.
+    """Write a folder that reads as the same experiment, with signals in SI on their even grid.
 
     raises ExperimentError: the folder holds an experiment already, or cannot be written
     """
@@ -63,7 +63,7 @@ def _file_names(experiment: Experiment) -> list[str]:
 
 
 def experiment_text(experiment: Experiment, names: list[str]) -> str:
-    """experiment.toml of records that are written in SI."""
+    """The text of experiment.toml for records that are written in SI."""
     lines = [f"title = {string_text(experiment.title)}", ""]
     for body in experiment.bodies.values():
         lines += body_lines(body)
@@ -106,7 +106,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
 
 
 def body_lines(body: BodyDescription) -> list[str]:
-    """[model.BODY] with its effects."""
+    """The lines of [model.BODY] with its effects."""
     lines = [f"[model.{body.name}]", f"axis = {string_text(body.axis)}"]
     if body.inertia is not None:
         lines.append(f"inertia = {_value(body.inertia)}")

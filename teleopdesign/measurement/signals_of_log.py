@@ -1,4 +1,4 @@
-"""From the columns of a log to the signals of a record: converted to SI, on its grid."""
+"""From the columns of a log to the signals of a record: converted to SI, on the record's grid."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def signals_of_log(
     clock: LogClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
-    """The signals (n,) by channel, and what was done for them."""
+    """The signals (n,) by channel, and the reading steps that made them."""
     signals: dict[str, Array] = {}
     steps: list[ReadingStep] = []
     for key, conversion in conversions.items():
@@ -75,7 +75,7 @@ def signals_of_log(
 def _describe_signal_clock(
     values: Array, clock: LogClock, phase: float, unseen: float, file: str, name: str
 ) -> ReadingStep:
-    """What is said of a command that changes on an even clock while rows are read at others."""
+    """Reading step for a command that changes on an even clock while rows are read at others."""
     wrong = filling_error(values, clock.clock, "held", step=0.0)
     size = float(np.sqrt(unseen)) * wrong / max(float(np.sqrt(np.mean(values**2))), 1e-300)
     return ReadingStep(
@@ -91,7 +91,7 @@ def _describe_signal_clock(
 
 
 def rule_of(channel: Channel, values: Array) -> Rule:
-    """What holds between two rows of a channel."""
+    """The rule for the values of a channel between two rows."""
     if channel.quantity == "actuator_force":
         return "held"
     if channel.quantity == "position":
@@ -104,9 +104,7 @@ def rule_of(channel: Channel, values: Array) -> Rule:
 
 
 def encoder_step(channel: Channel, values: Array) -> float:
-    """Step of the position's encoder as stated, or as the readings show it; 0 for other
-    channels.
-    """
+    """Step of a position's encoder, stated or estimated from the readings; 0 for other channels."""
     if channel.quantity != "position":
         return 0.0
     return channel.resolution or reading_step(values)
@@ -123,7 +121,10 @@ def _resample_channel(
 
 
 def _restore_steps(out: Array, values: Array, channel: Channel, step: float) -> Array:
-    """Where no resolution is stated it is seen in the readings, and filling must leave it there."""
+    """Round a position to the steps of its readings, if no resolution is stated.
+
+    The resolution is then estimated from the readings, so interpolated values must keep the steps.
+    """
     if out is values or channel.quantity != "position" or channel.resolution or step <= 0.0:
         return out
     if np.abs(np.exp(2j * np.pi * (values - values[0]) / step).mean()) < ON_STEPS:
@@ -140,7 +141,7 @@ def _resample_by_stamps(
     file: str,
     name: str,
 ) -> tuple[Array, ReadingStep]:
-    """A channel with separate stamps, as each topic of a bag has them."""
+    """A channel with separate time stamps, as those of a bag's topic, and its reading step."""
     stamps = columns.stamps[conversion.columns[0]] - conversion.delay
     values = conversion.signal({c: columns.values[c] for c in conversion.columns})
     fine = np.isfinite(values) & np.isfinite(stamps)
@@ -177,7 +178,7 @@ def _describe_lost_rows(
     clock: LogClock,
     file: str,
 ) -> ReadingStep:
-    """Lost rows: how many, how they are filled, and the error of that where it can be tested."""
+    """Reading step for lost rows: their number, the filling, its error where it can be tested."""
     lost, rows = clock.clock.lost, clock.clock.rows
     part = lost / len(clock.clock.time)
     error = force = 0.0

@@ -1,4 +1,4 @@
-"""A part of a log, chosen by time: one file can hold the fit record and the check record."""
+"""A part of a log, selected by time: one file can hold the fit record and the check record."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def cut_to(
     sample_rate: float | None,
     where: str,
 ) -> LogColumns:
-    """The rows between two instants.
+    """The rows of a log between two instants.
 
-    span: (begin, end) in s from the first row; a clock that was set back counts on
+    span: (begin, end) in s from the first row; after a clock was set back the seconds count on
     raises ExperimentError: no two numbers in order, or no row between them
     """
     if len(span) != 2 or not np.isfinite(span).all() or not span[0] < span[1]:

@@ -1,4 +1,4 @@
-"""The unit of a log's stamps, where nothing says it."""
+"""The unit of time stamps for which neither the log nor its column names state one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SHORTEST = 1.0  # s: shortest duration of a record
 
 
 def unit_of_steps(stamps: Array) -> tuple[str, str]:
-    """Unit of a time from its usual step, and why if it is a guess."""
+    """Unit of a time column from its usual step, and the reason if the unit is a guess."""
     finite = stamps[np.isfinite(stamps)]
     step = float(np.median(np.abs(np.diff(finite))))
     # a spreadsheet counts days; in s, such a log would be shorter than a record may be

@@ -1,6 +1,4 @@
-"""Columns of a log: which door opens it, and what it holds as numbers. Nothing is converted
-here.
-"""
+"""Columns of a log: which reader opens the file, and its content as numbers, without conversion."""
 
 from __future__ import annotations
 
@@ -77,7 +75,7 @@ EXPERIMENT = "experiment.toml"
 class LogColumns:
     """Columns of one log as numbers, NaN where a cell holds none.
 
-        values: column -> (n,);  stamps: of columns with a separate clock, s, shape as the column
+    values: column -> (n,);  stamps: column with a separate clock -> its stamps (n,), s
     notes: remarks on the file
     """
 
@@ -86,15 +84,15 @@ class LogColumns:
     notes: tuple[str, ...] = ()
 
     def steps(self, file: str) -> tuple[ReadingStep, ...]:
-        """Remarks on the file, as steps of reading it."""
+        """Remarks on the file, as steps of reading."""
         return tuple(ReadingStep(file, note, "read accordingly", "none") for note in self.notes)
 
 
 def open_log(path: Path, file: str) -> Log:
-    """Open a log by its door.
+    """Open a log with the reader for its kind of file.
 
     file: its name in messages ("rod/fit.csv.gz")
-    raises ExperimentError: unknown kind of file, or one that cannot be read
+    raises ExperimentError: unknown kind of file, or a file that cannot be read
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise ExperimentError(f"{file}: found a pipe or a device, expected a file")
@@ -122,7 +120,7 @@ def open_log(path: Path, file: str) -> Log:
 
 
 def _door_by_content(path: Path, file: str) -> Callable[[Path, str], Log] | None:
-    """The door of a file with an ending that says nothing: "run12", "log.data"; None: no log."""
+    """The reader for a file whose ending does not decide ("run12", "log.data"); None: no log."""
     with path.open("rb") as stream:
         head = stream.read(LOOKED_AT)
     for begin, door in BEGINNINGS.items():
@@ -138,7 +136,7 @@ def _door_by_content(path: Path, file: str) -> Callable[[Path, str], Log] | None
 
 
 def tables_in(folder: Path) -> list[Path]:
-    """The files of a folder that are tables, in the order of their names; none of an experiment."""
+    """The files of a folder that are tables, sorted by name; empty for an experiment."""
     if (folder / EXPERIMENT).exists():
         return []
     inside = folder.resolve()  # no link leads out of it
@@ -147,7 +145,7 @@ def tables_in(folder: Path) -> list[Path]:
 
 
 def is_log(path: Path) -> bool:
-    """Whether a file's name ends as that of a log that can be read."""
+    """Whether the name of a file has the ending of a log that can be read."""
     return path.name.lower().endswith(tuple(DOORS))
 
 
@@ -164,13 +162,13 @@ def read_columns(path: Path, file: str, wanted: Wanted) -> LogColumns:
 
     file: the file's name in messages ("rod/fit.csv.gz")
     raises ExperimentError: unknown kind of file, unreadable, column missing, not numbers, columns
-    of different length
+        of different length
     """
     return columns_of(open_log(path, file), file, wanted)
 
 
 def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
-    """The wanted columns of an open log; errors of `read_columns`."""
+    """The wanted columns of an open log; raises the errors of `read_columns`."""
     require_columns(log.names, file, wanted)
     names = list(wanted)
     base = next((c for c, channel in wanted.items() if channel == "channels.time"), None)

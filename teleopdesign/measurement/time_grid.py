@@ -1,9 +1,9 @@
 """The time axis of a record: from the stamps of a log to one sample time, in stretches.
 
-Stamps on an even clock are used as they are. Where rows are missing, out of order or twice, where
-the log pauses, and where stamps are uneven, `clock_of` says which row stands where: nothing has to
-be mended in the file. Whether uneven stamps tell when a sample was taken, or only when it was
-written down, the position tells (`stamps_are_true`).
+Stamps on an even clock are used unchanged. If rows are missing, out of order or repeated, if the
+log pauses, or if stamps are uneven, `clock_of` gives the place of each row: the file need not be
+repaired. The position decides whether uneven stamps are the times of the samples, or only the times
+of writing (`stamps_are_true`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def clock_of(
     """The clock of a log.
 
     stamps: (n,) s, finite, as written;  segments: as labelled in the log
-    same_as_before: (n,) the row says the same as the row before in every channel
+    same_as_before: (n,) the row equals the row before in every channel
     raises ExperimentError: fewer than 64 rows, less than 1 s, time that does not increase
     """
     count = len(stamps)
@@ -53,12 +53,13 @@ def _mostly_back(stamps: Array) -> bool:
 
 
 def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[float, float]:
-    """Whether a position moved as long as the stamps say: 1, or a row as its neighbours: 0.
+    """Whether a position follows uneven stamps (coefficient 1) or an even clock (coefficient 0).
 
-    What a reading lies off its neighbours is regressed on speed times what the stamp lies off the
-    even clock, both as second differences, which a smooth motion does not pass.
+    The deviation of a reading from its neighbours is regressed on the speed times the deviation of
+    the stamp from the even clock. Both are second differences, which suppress a smooth motion.
+
     positions: (m,) each, of the clock's rows
-    returns: the coefficient and its standard error; (1, inf) where no position tells
+    returns: the coefficient and its standard error; (1, inf) if the positions do not decide
     """
     above = below = 0.0
     pairs: list[tuple[Array, Array]] = []

@@ -1,4 +1,4 @@
-"""A table of a TOML file, read strictly: a key unknown, missing or of a wrong type is an error."""
+"""A table of a TOML file, read strictly: an unknown, missing or wrongly typed key is an error."""
 
 import math
 import re
@@ -15,7 +15,11 @@ from ..whole_files import read_whole
 @final
 @dataclass(frozen=True)
 class Table:
-    """One table: its content, the file ("rod/experiment.toml") and the dotted key to it."""
+    """One table.
+
+    content: its keys and values;  file: its name in messages ("rod/experiment.toml")
+    key: the dotted key of the table; "" for the whole file
+    """
 
     content: Mapping[str, Any]
     file: str
@@ -38,7 +42,10 @@ class Table:
                 )
 
     def table(self, key: str) -> "Table":
-        """The table under `key`; empty if there is none."""
+        """The table under `key`; an empty one if the key is absent.
+
+        raises ExperimentError: no table
+        """
         value = self.content.get(key, {})
         if not isinstance(value, dict):
             raise self._wrong_type(key, "a table")
@@ -52,7 +59,7 @@ class Table:
         return tuple(Table(row, self.file, f"{key}[{i}]") for i, row in enumerate(value, start=1))
 
     def text(self, key: str, default: str | None = None) -> str:
-        """The text under `key`, not empty; without a default it must be there."""
+        """The text under `key`, which must not be empty; without a default it is required."""
         if key not in self.content and default is not None:
             return default
         value = self._require(key, "a text in quotes")
@@ -61,14 +68,14 @@ class Table:
         return value
 
     def flag(self, key: str, default: bool) -> bool:
-        """true or false under `key`."""
+        """The boolean (true or false) under `key`; `default` if the key is absent."""
         value = self.content.get(key, default)
         if not isinstance(value, bool):
             raise self._wrong_type(key, "true or false")
         return value
 
     def number(self, key: str, *, above: float = -math.inf) -> float:
-        """The finite number > `above` under `key`."""
+        """The finite number under `key`, above `above`; raises ExperimentError: anything else."""
         value = self._require(key, "a number")
         return self._check_number(value, key, above)
 
@@ -100,7 +107,7 @@ class Table:
 
 
 def describe_toml_value(value: object) -> str:
-    """A TOML value as a message names it."""
+    """A TOML value as messages name it."""
     if isinstance(value, str):
         return quote(value)
     if isinstance(value, bool):
@@ -124,12 +131,12 @@ _QUOTED = re.compile(r"\\.|\"(?:[^\"\\\n]|\\.)*+\"|'[^'\n]*+'")
 
 
 def _without_text(line: str) -> str:
-    """The line with nothing between its quotes."""
+    """The line, with all quoted texts emptied."""
     return _QUOTED.sub(lambda m: m[0] if m[0][0] == "\\" else '""', line)
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """The content of a TOML text; raises ValueError where it is none, or a key has 100 words."""
+    """The content of a TOML text; raises ValueError: not TOML, or a key of 100 words."""
     for number, line in enumerate(text.splitlines(), start=1):
         if line.count(".") >= 99 and _LONG_KEY.search(_without_text(line)):
             raise ValueError(f"a key of 100 words or more (at line {number})")
@@ -137,8 +144,9 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def read_toml(path: Path, file: str) -> Table:
-    """The whole file as a table; `file` is its name in messages.
+    """The whole file as a table.
 
+    file: its name in messages
     raises ExperimentError: unreadable, not UTF-8, or not TOML (with the line number)
     """
     try:

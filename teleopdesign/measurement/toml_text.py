@@ -1,4 +1,4 @@
-"""TOML as text: strings, keys and inline tables, for everything that writes a TOML file."""
+"""TOML as text: strings, keys and inline tables, for all functions that write a TOML file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..errors import printable
 
 
 def string_text(text: str) -> str:
-    """A basic string of TOML: that of JSON, but for one control character that JSON leaves."""
+    """A basic string of TOML: as in JSON, with one more control character escaped."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -20,11 +20,11 @@ def key_text(name: str) -> str:
 
 
 def comment_text(text: str) -> str:
-    """A comment of TOML on one line; control characters, which TOML forbids there, as escapes."""
+    """A TOML comment on one line; control characters, which TOML forbids there, are escaped."""
     return f"# {printable(text, keep=chr(9))}".rstrip()
 
 
 def inline_text(entries: Mapping[str, str]) -> str:
-    """An inline table of keys and values, both as TOML text."""
+    """An inline table; keys and values are TOML text already."""
     inside = ", ".join(f"{key} = {value}" for key, value in entries.items())
     return f"{{ {inside} }}" if inside else "{}"

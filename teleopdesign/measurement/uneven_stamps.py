@@ -30,7 +30,8 @@ def rows_in_order(
 ) -> tuple[list[RowNumbers], int, int, int]:
     """Rows of each stretch in the order of their stamps, each stamp once.
 
-    returns: the stretches, and how many rows were dropped, moved, and began a new clock
+    returns: the rows of the stretches, and the numbers of dropped rows, moved rows and set-back
+        clocks
     """
     forward = np.diff(stamps)
     usual = float(np.median(forward[forward > 0]))
@@ -55,7 +56,10 @@ def rows_in_order(
 def sparse_clock(
     stamps: Array, parts: list[RowNumbers], changes: tuple[int, int, int], where: str
 ) -> RecordClock:
-    """The clock of stamps with steps of any length, ascending in each part."""
+    """The clock of stamps that ascend in each part, with steps of any length.
+
+    changes: numbers of dropped rows, moved rows and set-back clocks
+    """
     dropped, moved, restarts = changes
     count = sum(map(len, parts))
     if dropped > TOO_COARSE * len(stamps):
@@ -118,10 +122,10 @@ def _grid_of(
     on_clock: bool,
     goes_on: bool,
 ) -> tuple[list[Array], list[RowNumbers], list[slice], list[slice]]:
-    """Even time and places of each piece, and where it lies among samples and rows.
+    """Even time and row places of each piece, and the slices of its samples and of its rows.
 
     on_clock: the stamps follow an even clock, whose phase is their mean
-    goes_on: a clock that was set back goes on where the stretch before it ended
+    goes_on: a clock that was set back continues where the stretch before it ended
     """
     time: list[Array] = []
     index: list[RowNumbers] = []
@@ -143,7 +147,7 @@ def _grid_of(
 
 
 def _deviation_from_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
-    """Stamps less the even time, each stretch about its mean: its clock may have been set."""
+    """Stamps minus the even time, minus the mean of each stretch: its clock may have been set."""
     off = stamps - time
     for stretch in stretches:
         off[stretch] -= off[stretch].mean()
@@ -160,7 +164,7 @@ def _counted_clock(stamps: Array, where: str) -> RecordClock:
 
 
 def _usual_step(pieces: Sequence[Array]) -> float:
-    """The step between neighbouring rows, s: that of the rows that follow each other at once."""
+    """Step between neighbouring rows, s: the mean of the steps near the median."""
     steps = np.concatenate([np.diff(piece) for piece in pieces])
     usual = float(np.median(steps))
     near = steps[np.abs(steps - usual) < 0.5 * usual]
@@ -168,7 +172,7 @@ def _usual_step(pieces: Sequence[Array]) -> float:
 
 
 def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[RowNumbers]] | None:
-    """An even clock through stretches of stamps with rows missing: its step, s, and the places.
+    """Step (s) of an even clock through stretches with missing rows, and the places of the rows.
 
     None: the stamps follow no even clock (rms distance above `NO_CLOCK`, or two rows on one place)
     """
@@ -195,7 +199,7 @@ def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[RowNumb
 
 
 def _line_through(stamps: Array, period: float) -> float | None:
-    """Step of the even clock through one stretch, from few rows to all: s."""
+    """Step (s) of the even clock through one stretch, fitted from few rows to all; or None."""
     start, count = float(stamps[0]), min(64, len(stamps))
     while True:
         some = stamps[:count]

@@ -1,4 +1,4 @@
-"""Values as people type them: a number, and a unit where there must be one."""
+"""Values as the user types them: a number, with a unit where one is required."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s
 
 
 def split_value(text: str) -> tuple[float, str] | None:
-    """The number and what stands behind it; None: no finite number begins the text."""
+    """The number and the rest of a text; None: the text does not begin with a finite number."""
     match = _NUMBER_AND_UNIT.fullmatch(text)
     if match is None or not math.isfinite(float(match[1])):
         return None
@@ -21,7 +21,7 @@ def split_value(text: str) -> tuple[float, str] | None:
 
 
 def motor_constant(text: str, *, where: str) -> tuple[float, str]:
-    """A motor's constant such as "0.037 N*m/A" or "12 N/A".
+    """A motor constant such as "0.037 N*m/A" or "12 N/A".
 
     raises ExperimentError: no number, or another unit
     """
@@ -41,7 +41,7 @@ def motor_constant(text: str, *, where: str) -> tuple[float, str]:
 
 
 def plain_number(text: str, *, where: str) -> float:
-    """A number alone; a decimal comma is read.
+    """A number without a unit; a decimal comma is accepted.
 
     raises ExperimentError: no number
     """

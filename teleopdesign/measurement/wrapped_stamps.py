@@ -1,7 +1,7 @@
-"""Time stamps across the wrap of a counter, midnight and a clock that was set back.
+"""Time stamps across the wrap of a counter, across midnight, and after a clock was set back.
 
-A microcontroller counts microseconds in 32 bits and begins anew after 71 minutes; a time of day
-begins anew at midnight; a clock without a zone goes back an hour in autumn.
+A microcontroller that counts microseconds in 32 bits starts again after 71 minutes; a time of day
+starts again at midnight; a clock without a zone goes back an hour in autumn.
 """
 
 from __future__ import annotations
@@ -30,9 +30,10 @@ FEWEST_STEPS = 500.0
 
 
 def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
-    """Stamps without the wraps of their counter or dial, and a note of each kind of wrap.
+    """Stamps without the wraps of their counter or clock, and a note on each kind of wrap.
 
-    A step back is a wrap where the period that is added leaves a step as others are.
+    A step back is a wrap if adding its period leaves a step like the others.
+
     stamps: (n,) in any unit, NaN where there is none
     """
     rows = np.flatnonzero(np.isfinite(stamps))
@@ -62,7 +63,7 @@ def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
 
 
 def seconds_since_first(stamps: Array) -> Array:
-    """Seconds in the log from its first row: a clock that was set back goes on where it was.
+    """Time from the first row of the log, s; after a clock was set back, the time continues.
 
     stamps: (n,) s, NaN where there is none; rows a little out of order keep their stamps
     """

@@ -1,7 +1,7 @@
-"""The comparison's low-pass in time: Butterworth of 4th order, run forward and backward, compiled.
+"""The low-pass of the comparison in time: 4th-order Butterworth, forward and backward, compiled.
 
-Many signals at once, side by side in memory, so that the processor filters them together. The
-record is continued oddly at both ends and the filter starts in steady state there.
+Many signals lie side by side in memory, so that the processor filters them together. The record is
+continued by point symmetry at both ends, and the filter starts there in steady state.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ def sections(cutoff: float, sample_time: float) -> tuple[Array, Array]:
 
 
 def margin(n: int, sample_time: float) -> int:
-    """Samples by which a record of n samples is continued at each end."""
+    """Number of samples by which a record of n samples is continued at each end."""
     return max(1, min(round(CONTINUED / sample_time), n - 1))
 
 
 def lanes(signals: int) -> int:
-    """Columns to set aside for so many signals: filters of eight, twelve ... are the fastest.
+    """Number of columns to reserve for some signals: eight, twelve ... columns are fastest.
 
-    One or two are filtered as they are.
+    One or two signals get one or two columns.
     """
     return signals if signals < 3 else max(8, -(-signals // 4) * 4)
 
 
 @compile_and_keep
 def settle(states: Array, steady_state: Array, row: Array) -> None:
-    """Set the states (2, 2, signals) to those of a signal that has always been this row."""
+    """Set the states (2, 2, signals) to the steady state of a constant signal of value `row`."""
     for s in range(2):
         for i in range(2):
             for j in range(len(row)):
@@ -50,9 +50,9 @@ def settle(states: Array, steady_state: Array, row: Array) -> None:
 
 @compile_and_keep
 def go_on(y: Array, states: Array, sos: Array, backward: bool) -> None:
-    """Filter the columns of y (samples, signals) in place, from these states on.
+    """Filter the columns of y (samples, signals) in place, starting from given states.
 
-    states: (2, 2, signals), afterwards those at the other end
+    states: (2, 2, signals), overwritten by the states at the other end
     """
     n, r = y.shape
     b0, b1, b2, a1, a2 = sos[0, 0], sos[0, 1], sos[0, 2], sos[0, 4], sos[0, 5]
@@ -72,9 +72,10 @@ def go_on(y: Array, states: Array, sos: Array, backward: bool) -> None:
 
 @compile_and_keep
 def copy_rows(values: Array, to: Array) -> None:
-    """Copy the rows of one array into another; both lie without gaps in memory.
+    """Copy the rows of one array into another; both are contiguous in memory.
 
-    One by one: for rows at once numba compiles a check of shapes, which takes three times as long.
+    Element by element: for whole rows numba compiles a check of shapes, which takes three times as
+    long.
     """
     flat, there = values.ravel(), to.ravel()
     for i in range(values.size):
@@ -104,7 +105,7 @@ def filter_both_ways(y: Array, extended: Array, sos: Array, steady_state: Array)
 
 
 def columns(rows: Array) -> Array:
-    """Signals (r, n) side by side in memory: (n, lanes), zeros in the lanes that are left over."""
+    """Signals (r, n) side by side in memory: (n, lanes), with zeros in the remaining lanes."""
     r, n = rows.shape
     side_by_side = np.zeros((n, lanes(r)))
     side_by_side[:, :r] = rows.T
@@ -114,7 +115,11 @@ def columns(rows: Array) -> Array:
 def zero_phase(
     y: Array, cutoff: float, sample_time: float, at: NDArray[np.intp] | None = None
 ) -> Array:
-    """Signals (..., n) through the low-pass;  cutoff: Hz;  at: samples that are wanted of it."""
+    """Signals (..., n) through the zero-phase low-pass.
+
+    cutoff: Hz, -3 dB of the one-way filter;  sample_time: s
+    at: indices of the wanted samples; None: all
+    """
     n = y.shape[-1]
     rows = y.reshape(-1, n)
     m = margin(n, sample_time)

@@ -1,9 +1,9 @@
-"""The comparison's low-pass of signals that are zero but for a few rows: exact, and faster.
+"""The low-pass of the comparison for signals that are zero except in a few rows: exact, and faster.
 
-What friction takes up changes only where the motion is not sure. Between such rows the filter
-swings freely: from one span of them to the next its states follow powers of one matrix, and what
-it puts out on the way reaches the way back by another. Both are put together from those of one,
-two, four ... rows. Nothing is left out.
+The force that friction takes up changes only where the motion is uncertain. Between such rows the
+filter has no input: its states from one span to the next follow powers of one matrix, and the
+effect of its output on the backward pass follows another matrix. Both are composed from those for
+1, 2, 4 ... rows. Nothing is neglected.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ TINY = 1e-100
 
 
 def spans_of(rows: NDArray[np.intp], n: int, m: int, cutoff: float) -> NDArray[np.intp]:
-    """Spans (k, 2), from and to, of the continued record that hold all that these rows change.
+    """Spans (k, 2), from and to, of the continued record that contain every change by these rows.
 
     rows: of the record of n samples, in order; the record is continued by m samples at each end
     cutoff: of the filter, over the sample rate
@@ -57,17 +57,17 @@ def spans_of(rows: NDArray[np.intp], n: int, m: int, cutoff: float) -> NDArray[n
 
 @lru_cache(maxsize=16)
 def reach(cutoff: float, sample_time: float) -> int:
-    """Rows after which nothing is left of what a row does to the filter's output."""
+    """Rows after which the influence of one row on the filter's output is below rounding."""
     sos, _ = sections(cutoff, sample_time)
     slowest = max(float(np.abs(np.roots(section[3:])).max()) for section in sos)
     return int(np.ceil(np.log(NOTHING) / np.log(slowest)))
 
 
 def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[int, int]]:
-    """Windows (from, to) of n samples that hold all that these rows feel of each other.
+    """Windows (from, to) of n samples outside of which these rows have no influence on each other.
 
-    rows: in order;  m: samples by which the record is continued at each end;  reach: as above
-    What lies between windows is felt at no row; one window holds all where little lies there.
+    rows: in order;  m: samples by which the record is continued at each end;  reach: see `reach`
+    One window covers all samples if little would be left out.
     """
     apart = np.flatnonzero(np.diff(rows) > 2 * reach)
     begins = np.maximum(rows[np.append(0, apart + 1)] - reach, 0)
@@ -83,10 +83,10 @@ def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[in
 
 @lru_cache(maxsize=16)
 def crossings(cutoff: float, sample_time: float) -> tuple[Array, Array]:
-    """What 1, 2, 4, ... rows of zeros make of the states (k, 4, 4): on the way there, and back.
+    """Effect of 1, 2, 4, ... rows of zero input on the states of the filter, two arrays (k, 4, 4).
 
-    The first is of either way; the second is what the states before those rows, there, add to those
-    of the way back after them.
+    The first array maps the states across these rows, in either direction. The second maps the
+    forward states before the rows to their contribution to the backward states after the rows.
     """
     sos, _ = sections(cutoff, sample_time)
     states, output = np.eye(4).reshape(2, 2, 4), np.zeros((1, 4))
@@ -103,7 +103,7 @@ def crossings(cutoff: float, sample_time: float) -> tuple[Array, Array]:
 
 @compile_and_keep
 def _multiply(to: Array, left: Array, right: Array) -> None:
-    """Matrices (4, 4) times states (4, signals) or matrices, added to what is there."""
+    """Add the product of matrices (4, 4) and states (4, signals), or of two matrices, to `to`."""
     for i in range(4):
         for k in range(4):
             for j in range(right.shape[1]):
@@ -114,7 +114,7 @@ def _multiply(to: Array, left: Array, right: Array) -> None:
 def _cross(rows: int, step: Array, swing: Array, free: Array, back: Array) -> None:
     """Set both matrices (4, 4) of `crossings` for any number of rows, from powers of two.
 
-    step, swing: zeros
+    step, swing: zeros on entry
     """
     for i in range(4):
         step[i, i] = 1.0
@@ -146,7 +146,7 @@ def connect_spans(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Ar
 
 @compile_and_keep
 def _fill_span(extended: Array, y: Array, begin: int, end: int) -> None:
-    """Set rows of the continued record to those of y (n, signals), mirrored beyond its ends."""
+    """Copy rows of y (n, signals) to the continued record, by point symmetry beyond its ends."""
     n, r = y.shape
     m = (extended.shape[0] - n) // 2
     for e in range(begin, min(end, m)):
@@ -167,11 +167,11 @@ def filter_spans(
     spans: NDArray[np.intp],
     filters: tuple[Array, Array, Array, Array],
 ) -> None:
-    """Filter the columns of y (n, signals) forward and backward; zero outside the spans' rows.
+    """Filter the columns of y (n, signals) forward and backward; y is zero outside the spans.
 
-    extended: (m + n + m, signals); afterwards its rows m + k hold row k of the filtered signals
-        where it is in a span, anything elsewhere
-    filters: from `sections`, and then `between`
+    extended: (m + n + m, signals); afterwards its rows m + k hold row k of the filtered signals if
+        this row is in a span; other rows are undefined
+    filters: from `sections`, and then from `connect_spans`
     """
     n, r = y.shape
     sos, steady_state, steps, swings = filters

@@ -1,6 +1,7 @@
-"""The statements of the two papers, P1 to P65, each with the code that shows how far it is known.
+"""The statements of the two papers, P1 to P65, with the code that proves, checks or refutes them.
 
-Every file that does not begin with `_` holds the statements of one topic, which are found here.
+Every file whose name does not begin with `_` holds the statements of one topic. This module
+collects them in `STATEMENTS`.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ STATEMENTS: Mapping[str, Statement] = _statements()
 
 
 def find_statement(name: str) -> Statement:
-    """A statement of the papers by its name.
+    """The statement of the papers with that name, such as "P16".
 
     raises ModelError: no such statement; the message names the nearest one
     """

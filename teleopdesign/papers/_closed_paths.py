@@ -1,4 +1,4 @@
-"""Couplings of several axes along closed paths, by quadrature: what P59 says in numbers."""
+"""Couplings of several axes along closed paths, by quadrature: numbers for statement P59."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ._statement import Figure, Numbers, figure_near
 
 
 def turned_about(coordinates: np.ndarray) -> np.ndarray:
-    """Matrix E of angular velocity = E rates, for angles about x, then y, then z of the body."""
+    """Matrix E (3, 3) of angular velocity = E rates, for body angles about x, then y, then z."""
     a, b, _ = coordinates
     x, y, z = np.eye(3)
     about_x = np.array([x, [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
@@ -17,7 +17,7 @@ def turned_about(coordinates: np.ndarray) -> np.ndarray:
 
 
 def closed_paths() -> Numbers:
-    """Energy that couplings give out along closed paths, in six axes and for orientations."""
+    """Energy (J) that couplings give out along closed paths, in six axes and for orientations."""
     rng, n = np.random.default_rng(59), 2000
     root = rng.normal(size=(6, 6))
     spring, skew = root @ root.T, 0.3 * (root - root.T)

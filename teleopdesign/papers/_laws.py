@@ -1,4 +1,4 @@
-"""Laws of the package on other symbols, for proofs: nothing is typed again here."""
+"""Laws of the package with symbols of a proof; every law comes from the catalogues."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ def bristle_rate(
 def bristle_force(
     bristle: sp.Expr, velocity: sp.Expr, level: sp.Expr, stiffness: sp.Expr, damping: sp.Expr
 ) -> sp.Expr:
-    """Friction force of the effect `presliding`, with bristle damping: LuGre's."""
+    """Friction force of the effect `presliding`, with bristle damping: the LuGre model."""
     signals = {"velocity": velocity, "level": level, "bristle": bristle}
     values = {"stiffness": stiffness, "bristle_damping": damping}
     return EFFECTS["presliding"].expression(signals, values)
 
 
 def dahl_rate(force: sp.Expr, velocity: sp.Expr, level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
-    """Rate of the force of the controller `dahl`, from its law and its state's rate."""
+    """Rate of the force of the controller `dahl`, from its law and the rate of its state."""
     law = CONTROLLERS["dahl"]
     z = sp.Symbol("z", real=True)
     now = SimpleNamespace(bristle=z, travel_rate=velocity, velocity=velocity)
@@ -75,10 +75,10 @@ def dahl_rate(force: sp.Expr, velocity: sp.Expr, level: sp.Expr, stiffness: sp.E
 def dahl_step(
     force: sp.Expr, distance: sp.Expr, direction: int, level: sp.Expr, stiffness: sp.Expr
 ) -> sp.Expr:
-    """Force of `dahl` after a distance >= 0 in one direction (1 or -1), from its rate.
+    """Force of `dahl` after a travel distance >= 0 in one direction (1 or -1), from the rate.
 
-    The rate at unit speed is affine, A f + B, and is stepped exactly as every sampled controller
-    is: e^(A d) f + B (e^(A d) - 1)/A.
+    The rate at unit speed is affine, A f + B. The step is exact, as for every sampled controller:
+    e^(A d) f + B (e^(A d) - 1)/A.
     """
     f = sp.Symbol("f_before", real=True)
     rate = dahl_rate(f, sp.S(direction), level, stiffness)
@@ -89,9 +89,10 @@ def dahl_step(
 
 
 def dahl_loop(position: sp.Expr, amplitude: sp.Expr, level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
-    """Force of `dahl` on the rising branch of the steady loop of that amplitude.
+    """Force of `dahl` on the rising branch of the steady loop with that amplitude.
 
-    From -level tanh(u) at -amplitude, u = stiffness amplitude/level; falling: the point mirror.
+    The branch starts at -level tanh(u) at -amplitude, u = stiffness amplitude/level. The falling
+    branch is its mirror image in the origin.
     """
     lowest = -level * sp.tanh(stiffness * amplitude / level)
     return dahl_step(lowest, position + amplitude, 1, level, stiffness)

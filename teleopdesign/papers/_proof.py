@@ -1,8 +1,8 @@
-"""What counts as a proof: steps of sympy expressions, each checked exactly, none with a float.
+"""Proofs as steps of sympy expressions; each step is checked exactly, without a float.
 
-A callable only writes steps down; whether they hold is decided here. What a step may use is what
-the proof assumes, what the symbols assume (positive, real) and what an earlier step established.
-How the steps make up the statement stands in their words.
+A function only writes down the steps; this module decides whether they hold. A step may use the
+assumptions of the proof, the assumptions of the symbols (positive, real), and facts that an earlier
+step has established. The words of the steps say how the steps make up the statement.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _LONGEST = 48  # characters of an expression that a line of a proof shows
 
 
 class NotProved(Exception):
-    """A step does not hold, or could not be shown to hold; the message says which and why."""
+    """A step is false, or could not be shown to be true; the message says which step and why."""
 
 
 def vanishes(expression: sp.Expr) -> bool:
@@ -34,7 +34,7 @@ def vanishes(expression: sp.Expr) -> bool:
 
 
 def _plainly_not_zero(expression: sp.Expr) -> bool:
-    """Whether a point shows that the expression is not 0: saves the search for a proof."""
+    """Whether the value at one point shows that the expression is not 0; saves a longer search."""
     symbols = sorted(expression.free_symbols, key=str)
     point = {x: sp.Rational(7 + 3 * i, 11 + 2 * i) for i, x in enumerate(symbols)}
     value = sp.N(expression.subs(point), 30)
@@ -54,16 +54,20 @@ def _show_sign(sign: str, expression: sp.Expr) -> str:
 
 @dataclass(frozen=True)
 class ProofStep:
-    """One exact fact; words: what it says in the chain of the proof."""
+    """One exact fact; words: its meaning in the chain of the proof."""
 
     words: str
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Expressions shown not to be negative where those in `known` are not; raises NotProved."""
+        """Check the step; returns expressions that it shows to be >= 0.
+
+        known: expressions that are assumed, or were shown, to be >= 0
+        raises NotProved: the step is not shown to hold
+        """
         raise NotImplementedError
 
     def as_text(self) -> str:
-        """The words, and what is short enough to print of the expressions."""
+        """The words of the step, with expressions that are short enough to print."""
         return self.words
 
 
@@ -75,23 +79,24 @@ class Equal(ProofStep):
     right: sp.Expr
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Both zero test and refusal are sympy's exact ones."""
+        """Check by sympy's exact zero test; returns no expressions."""
         _without_floats(self.left, self.right)
         if not vanishes(sp.sympify(self.left) - self.right):
             raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
         return []
 
     def as_text(self) -> str:
-        """With the right side."""
+        """The words with the right side."""
         return self.words + _show_sign("=", self.right)
 
 
 @dataclass(frozen=True)
 class NotNegative(ProofStep):
-    """expression >= 0: it equals `form`, whose sign shows by itself.
+    """expression >= 0: it equals `form`, whose sign sympy knows.
 
-    form: built from symbols whose sign sympy knows, and from the symbols of `signs`
-    signs: symbol >= 0 -> expression that the proof assumes, or showed before, not to be negative
+    form: an expression of symbols whose sign sympy knows, and of the symbols in `signs`
+    signs: symbol >= 0 -> expression that the proof assumes, or has shown before, to be >= 0
+    strictly: expression > 0
     """
 
     expression: sp.Expr
@@ -100,7 +105,7 @@ class NotNegative(ProofStep):
     strictly: bool = False
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Sign from sympy's assumptions, equality exactly."""
+        """Check the sign by sympy's assumptions, and the equality exactly."""
         form = sp.sympify(self.form)
         _without_floats(self.expression, form, *self.signs.values())
         for symbol, used in self.signs.items():
@@ -117,9 +122,9 @@ class NotNegative(ProofStep):
 
 @dataclass(frozen=True)
 class Grows(ProofStep):
-    """expression >= 0 for variable > 0: it starts at a value >= 0 and its derivative is `slope`.
+    """expression >= 0 for variable > 0: its start and its derivative `slope` are >= 0.
 
-    slope: form of the derivative whose sign shows by itself, as in NotNegative
+    slope: a form of the derivative whose sign sympy knows, as in NotNegative
     """
 
     expression: sp.Expr
@@ -128,7 +133,7 @@ class Grows(ProofStep):
     signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Start by an exact limit from the right, derivative as in NotNegative."""
+        """Check the start by an exact limit from the right, the derivative as in NotNegative."""
         start = sp.limit(self.expression, self.variable, 0, "+")
         if not start.is_nonnegative:
             raise NotProved(f"{self.words}: starts at {start}")
@@ -139,7 +144,7 @@ class Grows(ProofStep):
 
 @dataclass(frozen=True)
 class Limit(ProofStep):
-    """expression -> value as variable -> at (from the right where at is finite)."""
+    """expression -> value as variable -> at (from the right if `at` is finite)."""
 
     expression: sp.Expr
     variable: sp.Symbol
@@ -147,7 +152,7 @@ class Limit(ProofStep):
     value: sp.Expr
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """By sympy's limit."""
+        """Check by sympy's limit; returns no expressions."""
         _without_floats(self.expression, self.value)
         limit = sp.limit(self.expression, self.variable, self.at, "+")
         if limit != self.value and not vanishes(limit - self.value):
@@ -155,13 +160,13 @@ class Limit(ProofStep):
         return []
 
     def as_text(self) -> str:
-        """With the value."""
+        """The words with the value of the limit."""
         return self.words + _show_sign("->", self.value)
 
 
 @dataclass(frozen=True)
 class Holds(ProofStep):
-    """A relation between exact numbers is true: a witness, an example that something can happen.
+    """A relation between exact numbers is true: an example that a case can occur.
 
     relation: "==", "!=", "<", "<=", ">" or ">="
     """
@@ -171,7 +176,7 @@ class Holds(ProofStep):
     right: sp.Expr
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Decided by sympy."""
+        """Check by sympy; returns no expressions."""
         left, right = sp.sympify(self.left), sp.sympify(self.right)
         _without_floats(left, right)
         if left.free_symbols or right.free_symbols:
@@ -190,7 +195,7 @@ class BlocksEqual(ProofStep):
     right: sp.Expr
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """By exact rewriting, see `derive.proved_equal`."""
+        """Check by exact rewriting, see `derive.proved_equal`."""
         _without_floats(self.left, self.right)
         if not proved_equal(self.left, self.right):
             raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
@@ -205,7 +210,7 @@ class BlocksDiffer(ProofStep):
     right: sp.Expr
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """By a counterexample, see `derive.counterexample`."""
+        """Check by a counterexample, see `derive.counterexample`."""
         _without_floats(self.left, self.right)
         if counterexample(self.left, self.right) is None:
             raise NotProved(f"{self.words}: no counterexample found")
@@ -214,16 +219,16 @@ class BlocksDiffer(ProofStep):
 
 @dataclass(frozen=True)
 class ProofSteps:
-    """Steps in order.
+    """Steps of a proof, in order.
 
-    assuming: expressions that the statement supposes not to be negative, beyond what symbols assume
+    assuming: expressions that the statement assumes to be >= 0, beyond the assumptions of symbols
     """
 
     steps: tuple[ProofStep, ...]
     assuming: tuple[sp.Expr, ...] = ()
 
     def verify(self) -> tuple[str, ...]:
-        """The words of every step, once all of them hold; raises NotProved at the first not."""
+        """The words of every step; raises NotProved at the first step that does not hold."""
         if not self.steps:
             raise NotProved("a proof without steps")
         known: list[sp.Expr] = [sp.sympify(a) for a in self.assuming]
@@ -234,7 +239,10 @@ class ProofSteps:
 
 
 def proof(*steps: ProofStep | Iterable[ProofStep], assuming: Iterable[sp.Expr] = ()) -> ProofSteps:
-    """A proof of these steps; several may be passed as one iterable."""
+    """A proof of these steps; an argument may also be an iterable of steps.
+
+    assuming: expressions that the statement assumes to be >= 0
+    """
     flat: list[ProofStep] = []
     for step in steps:
         flat += [step] if isinstance(step, ProofStep) else list(step)
@@ -243,15 +251,15 @@ def proof(*steps: ProofStep | Iterable[ProofStep], assuming: Iterable[sp.Expr] =
 
 @dataclass(frozen=True)
 class Correction:
-    """What is printed fails, exactly, and the corrected form is proved.
+    """A printed statement is refuted exactly, and a corrected form is proved.
 
-    printed: steps that show the failure;  corrected: proof of what holds instead
+    printed: steps that show the failure;  corrected: proof of the corrected form
     """
 
     printed: ProofSteps
     corrected: ProofSteps
 
     def verify(self) -> tuple[str, ...]:
-        """The words of all steps; raises NotProved."""
+        """The words of all steps; raises NotProved if one does not hold."""
         against = tuple(f"against the print: {w}" for w in self.printed.verify())
         return against + self.corrected.verify()

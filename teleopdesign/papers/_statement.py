@@ -1,4 +1,4 @@
-"""A numbered statement of the papers, how far it is known, and the code that shows it."""
+"""A numbered statement of the papers, the kind of its evidence, and the code that gives it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HOW: tuple[How, ...] = ("proved", "checked numerically", "refuted", "claim of th
 
 @dataclass(frozen=True)
 class Paper:
-    """A paper that states something;  short: its name in tables;  full: its reference."""
+    """A paper that makes statements;  short: its name in tables;  full: its reference."""
 
     short: str
     full: str
@@ -38,7 +38,7 @@ DERIVED = Paper("derived here", "derived in this project from the models of the 
 
 @dataclass(frozen=True)
 class Figure:
-    """A computed number and the range that it must lie in (SI unless `unit` says otherwise)."""
+    """A computed number and the range in which it must lie (SI unless `unit` says otherwise)."""
 
     what: str
     value: float
@@ -48,7 +48,7 @@ class Figure:
 
     @property
     def margin(self) -> float:
-        """Distance to the nearest end of the range; negative outside of it."""
+        """Distance to the nearest end of the range; negative outside of the range."""
         return min(self.value - self.low, self.high - self.value)
 
     def __str__(self) -> str:
@@ -62,13 +62,13 @@ class Figure:
 
 
 def figure_near(what: str, value: float, expected: float, within: float, unit: str = "") -> Figure:
-    """A number that must lie within `within` of `expected`."""
+    """A number that may differ from `expected` by at most `within`."""
     return Figure(what, float(value), expected - within, expected + within, unit)
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """Numbers that a computation gave, each with the range in which it must lie."""
+    """Computed numbers, each with the range in which it must lie."""
 
     figures: tuple[Figure, ...]
 
@@ -84,12 +84,12 @@ StatementEvidence = ProofSteps | Correction | Numbers
 class Statement:
     """One statement.
 
-    number: that of P1 to P65;  paper, place: source and equation or section in it
-    words: what it says;  formula: the form that holds;  printed: what the paper prints or says
-    where that is wrong, damaged or ambiguous
-    assumes: a theorem of others that the proof uses without proving it
-    how: how far it is known; `shown_by` must show just that, None for a claim of the paper
-    numbers: a computation beside a proof, for what is stated in numbers
+    number: 1 to 65, for P1 to P65;  paper, place: source, and equation or section in it
+    words: the statement in words;  formula: the form that holds
+    printed: text of the paper, if it is wrong, damaged or ambiguous
+    assumes: a theorem of others that the proof uses without a proof of it
+    how: kind of evidence; `shown_by` must give this kind, and is None for a claim of the paper
+    numbers: a computation beside a proof, for numbers in the statement
     see: statements that bear on a claim
     """
 
@@ -112,7 +112,7 @@ class Statement:
 
     @property
     def code(self) -> str:
-        """File and function that show it; "" for a claim."""
+        """File and function that show the statement; "" for a claim."""
         if self.shown_by is None:
             return ""
         return f"{self.shown_by.__module__.rpartition('.')[2]}.{self.shown_by.__name__}"
@@ -120,9 +120,9 @@ class Statement:
 
 @dataclass(frozen=True)
 class Result:
-    """The result of checking a statement.
+    """The result of a check of a statement.
 
-    outcome: how far it is known now; "failed": less than the statement says
+    outcome: kind of evidence that was obtained; "failed": a step or a number does not hold
     details: one line for each exact step, or why it failed;  figures: computed numbers
     """
 
@@ -134,7 +134,7 @@ class Result:
 
     @property
     def as_stated(self) -> bool:
-        """Whether the outcome is what the statement says."""
+        """Whether the outcome is the kind of evidence that the statement names."""
         return self.outcome == self.statement.how
 
 
@@ -149,7 +149,7 @@ def shows(
     assumes: str = "",
     numbers: Callable[[], Numbers] | None = None,
 ) -> Callable[[Callable[[], StatementEvidence]], Statement]:
-    """The function below it shows this statement; its docstring is the statement's words."""
+    """A decorator: the function shows this statement; its docstring is the statement's words."""
 
     def made(function: Callable[[], StatementEvidence]) -> Statement:
         words = " ".join((inspect.getdoc(function) or "").split())
@@ -161,12 +161,12 @@ def shows(
 
 
 def claim(number: int, *, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
-    """A statement that only the paper's own experiment or text can support."""
+    """A statement that only the experiment or the text of the paper can support."""
     return Statement(number, paper, place, words, "", "claim of the paper", None, see=see)
 
 
 def check(statement: Statement) -> Result:
-    """Run what shows the statement; the outcome follows from what kind of evidence holds."""
+    """Run the code that shows the statement; its evidence determines the outcome."""
     start = time.perf_counter()
     outcome: How | Literal["failed"] = "claim of the paper"
     details: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""Master and slave joined by a position-position spring, wired from the package's blocks."""
+"""Master and slave joined by a position-position spring, wired from blocks of the package."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ BRISTLE = 1e-5  # m: deflection before sliding, which stands for ideal Coulomb f
 
 
 def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
-    """Master without friction, slave with Coulomb friction and a Dahl compensator.
+    """Master without friction; slave with damping, Coulomb friction and a Dahl compensator.
 
-    cancelled: f_D, N;  environment: stiffness that holds the slave, N/m
+    cancelled: f_D (N);  environment: stiffness that holds the slave (N/m)
     """
     master = Body("prismatic", {"inertia": Value(0.1)})
     slave = master.with_effect(EFFECTS["coulomb"], {"level": FRICTION})
@@ -39,7 +39,7 @@ def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
 
 
 def slow_cycle(*, cancelled: float, environment: float = 0.0) -> Simulation:
-    """The second of two slow cycles of the master; its user force F_u is what the motion takes."""
+    """The second of two slow cycles of the master; F_u is the user force that moves the master."""
     simulation = simulate(
         two_sides(cancelled=cancelled, environment=environment),
         duration=2 / FREQUENCY,

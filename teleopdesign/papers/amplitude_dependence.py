@@ -23,7 +23,7 @@ LOSS = sp.atan(r * y) - sp.atan(y)  # phase lost while the amplitude falls by r,
 
 
 def corner_at_20_hz() -> Numbers:
-    """The friction per mass and amplitude that puts the corner at 20 Hz."""
+    """The ratio of friction to mass and amplitude for which the corner is at 20 Hz."""
     return Numbers((figure_near("F_C/(m a_0) for 20 Hz", pi**3 * 20**1.2, 1130, 5, "N/(kg m)"),))
 
 
@@ -53,7 +53,7 @@ def corner() -> ProofSteps:
 
 
 def degrees_lost() -> Numbers:
-    """The greatest loss of phase over one and two decades of amplitude."""
+    """The greatest loss of phase (deg) over one and over two decades of amplitude."""
     loss = [np.degrees(2 * np.arctan(np.sqrt(10.0**n))) - 90 for n in (1, 2)]
     # half of the last digit printed
     return Numbers(
@@ -113,7 +113,7 @@ def phase_per_decade() -> Correction:
 
 
 def apparent_impedance(diagram: Diagram, *, amplitude: float, frequency: float) -> complex:
-    """First harmonic of the force error over that of a prescribed sinusoid, N/m."""
+    """First harmonic of the force error over a prescribed sinusoidal position (N/m)."""
     measured = measured_impedance(
         diagram, amplitude=amplitude, frequency=frequency, computer="continuous"
     )
@@ -121,12 +121,12 @@ def apparent_impedance(diagram: Diagram, *, amplitude: float, frequency: float) 
 
 
 def decibel(z: complex | np.ndarray) -> np.ndarray:
-    """20 log10 of the size."""
+    """Size of an impedance in dB: 20 log10 of its absolute value."""
     return np.asarray(20 * np.log10(np.abs(z)))
 
 
 def phase(z: complex) -> float:
-    """Degrees in 0 .. 360."""
+    """Phase of an impedance in degrees, 0 to 360."""
     return float(np.degrees(np.angle(z)) % 360)
 
 
@@ -135,7 +135,7 @@ def remaining_impedance(
 ) -> np.ndarray:
     """Impedance of mass and Coulomb friction less smoothed Coulomb friction of `share` its level.
 
-    From describing functions; N/m over amplitude (n,).
+    From describing functions; returns N/m over amplitude, (n,).
     """
     level, mass = read_open_number("coulomb_level"), read_open_number("mass")
     parameters = {"inertia": Value(mass), "coulomb.level": Value(level)}

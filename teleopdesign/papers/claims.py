@@ -1,4 +1,4 @@
-"""What the first paper reports from experiments and users: P24 to P26."""
+"""Statements of the first paper that rest on its experiments and users: P24 to P26."""
 
 from ._statement import BERNSTEIN, claim
 

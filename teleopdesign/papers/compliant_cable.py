@@ -77,7 +77,7 @@ def motor_side() -> ProofSteps:
 
 
 def rising_gain() -> list[ProofStep]:
-    """The compensator's energy per travel, f_D (1 - tanh(u)/u), rises with u, to f_D."""
+    """The compensator's energy per travel, f_D (1 - tanh(u)/u), rises with u and tends to f_D."""
     rest = sp.Symbol("rest", nonnegative=True)
     bend = sp.tanh(u) - u / sp.cosh(u) ** 2
     loop = ENERGY.subs({LOOP_LEVEL: f_D, LOOP_STIFFNESS: sigma, LOOP_AMPLITUDE: A})

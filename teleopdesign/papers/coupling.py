@@ -1,4 +1,4 @@
-"""Coupling of master and slave, of several axes or late: P59 and P61."""
+"""Coupling of master and slave with several axes or with a delay: P59 and P61."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def coupling_stiffness() -> ProofSteps:
 
 
 def why_the_criterion_suffices() -> tuple[ProofStep, ...]:
-    """z_in = z_11 - L/n, L = z_12 z_21, n = z_22 + Z_2: its real part and its residues.
+    """Real part and residues of z_in = z_11 - L/n, with L = z_12 z_21 and n = z_22 + Z_2.
 
     L = size e^(2 j half), n = rho (1 + j tau) on the axis, rho >= Re z_22 > 0
     """
@@ -98,7 +98,10 @@ def why_the_criterion_suffices() -> tuple[ProofStep, ...]:
 
 
 def residues_of_the_coupling(z_11: sp.Expr, z_12: sp.Expr) -> tuple[ProofStep, ...]:
-    """At s = 0 those of a spring, equality; at infinity the masses, and nothing between the ports.
+    """Residues at s = 0, which are those of a spring, and the behaviour of z_12 at infinity.
+
+    At s = 0 the condition on residues holds with equality; at infinity nothing grows like s between
+    the ports.
 
     z_11, z_12: on the axis, s = j omega;  z_22 is z_11 with the slave's mass and damping
     """

@@ -17,7 +17,7 @@ FORWARD = f + T * dahl_rate(f, v, f_c, sigma)
 
 
 def step_upwards(step: sp.Expr) -> sp.Expr:
-    """The step at a speed v > 0 with T sigma v/f_c = q; downwards is its point mirror."""
+    """The step at a speed v > 0 with T sigma v/f_c = q; the step at -v mirrors it in the origin."""
     return step.subs(v, q * f_c / (T * sigma))
 
 

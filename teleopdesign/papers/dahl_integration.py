@@ -18,14 +18,14 @@ SHARE = sp.exp(-sigma * d / f_c)  # remaining share of the distance to the level
 
 
 def integrate_in_parts(direction: int) -> ProofStep:
-    """Travel in two parts is travel at once."""
+    """A travel in two parts gives the same force as the whole travel in one step."""
     once = dahl_step(f, d + e, direction, f_c, sigma)
     twice = dahl_step(dahl_step(f, d, direction, f_c, sigma), e, direction, f_c, sigma)
     return Equal(f"two parts in direction {direction:+d} are the whole", twice, once)
 
 
 def sampled_compensator() -> Numbers:
-    """The compensator as the package runs it, sample by sample, against the step of the proof."""
+    """The package's sampled compensator, compared with the step of the proof at every sample."""
     positions = 1e-4 * np.array([0.0, 0.3, 0.9, 0.9, 0.5, -0.4, -3.0, 2.0, 2.0, 2.1])
     level, stiffness, period = 0.5, 5e3, 1e-3
 

@@ -1,4 +1,4 @@
-"""Compensation that acts late: P47 to P49. Energy is that *given out* by the compensator."""
+"""Compensation with a delay: P47 to P49. Energy is that *given out* by the compensator."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FRICTIONLIKE, SPRINGLIKE, TURN = sp.symbols("frictionlike springlike turn", nonn
 
 
 def work_over_cycle(force: sp.Expr) -> sp.Expr:
-    """Work of a force(angle) over a cycle of x = A sin(angle)."""
+    """Work of a force, an expression in `angle`, over a cycle of x = A sin(angle)."""
     return sp.integrate(sp.expand(sp.expand_trig(force * A * sp.cos(angle))), (angle, 0, 2 * sp.pi))
 
 
@@ -119,7 +119,7 @@ def late_inertia() -> ProofSteps:
 
 
 def least_damping() -> Numbers:
-    """The constant of the least damper."""
+    """The constant in the condition on the smallest damper, -min sin(x)/x."""
     x = float(brentq(lambda x: np.sin(x) - x * np.cos(x), np.pi, 1.5 * np.pi))
     return Numbers(
         (figure_near("-min sin(x)/x", -np.sin(x) / x, 0.2172, 5e-5),)

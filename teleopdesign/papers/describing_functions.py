@@ -1,7 +1,8 @@
 """Describing functions relative to position x = A sin(omega t): P16 to P19.
 
-N = (phasor of the first harmonic of the force that opposes motion)/A; spring real, damper +j.
-Forces are odd in the motion, so half a cycle, with velocity upwards, decides: phase -pi/2 to pi/2.
+N = (phasor of the first harmonic of the force that opposes motion)/A; a spring is real, a damper
+has the phase of +j. Forces are odd in the motion, so that half a cycle with velocity upwards is
+enough: phase -pi/2 to pi/2.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ DAHL_FRICTION = closed_forms.dahl_friction(f, u)
 
 
 def first_harmonic(force: sp.Expr) -> sp.Expr:
-    """Part of a force(phi), odd in the motion, in phase with velocity; phi: symbol of this file."""
+    """Part of a force, odd in the motion, that is in phase with velocity.
+
+    force: an expression in the symbol `phi` of this file
+    """
     return 2 / sp.pi * sp.integrate(force * sp.cos(phi), (phi, -QUARTER, QUARTER))
 
 

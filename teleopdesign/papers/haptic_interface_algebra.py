@@ -1,7 +1,7 @@
 """Block algebra of the haptic interface: P1 to P11, all derived from the wiring.
 
-Blocks are matrices that need not commute. H and C depend on speed, so the forms hold at a frozen
-speed or in the sense of describing functions.
+Blocks are matrices that need not commute. H and C depend on speed, so that the forms hold at a
+fixed speed or in the sense of describing functions.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Compensation of friction that itself gives before it slides: P43 to P46.
+"""Compensation of friction with presliding, an elastic displacement before sliding: P43 to P46.
 
-Plant: Dahl(sigma_p, f_C). Compensator: Dahl(sigma_D, f_D) on the same position. The pair takes in
-(p - d) v, with p and d their forces.
+The plant is Dahl(sigma_p, f_C), the compensator Dahl(sigma_D, f_D) on the same position. The pair
+takes in (p - d) v, with p and d their forces.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CHOSEN = {g: 2 / gap, sP: sD + gap}
 
 
 def rate(stored: sp.Expr, direction: int) -> sp.Expr:
-    """Rate of a stored energy at a speed w, by the laws of plant and compensator."""
+    """Rate of a stored energy at speed w in one direction, by the laws of plant and compensator."""
     v = direction * w
     return sp.diff(stored, p) * dahl_rate(p, v, fC, sP) + sp.diff(stored, d) * dahl_rate(
         d, v, fD, sD
@@ -34,7 +34,7 @@ def rate(stored: sp.Expr, direction: int) -> sp.Expr:
 
 
 def dissipation(level: sp.Expr) -> sp.Matrix:
-    """Q of supply - dV/dt = abs(v) (p d) Q (p d)^T, at that level of the plant."""
+    """Q of supply - dV/dt = abs(v) (p d) Q (p d)^T, for that friction level of the plant."""
     m, n = sP / level, sD / fD
     side = -g * (m + n) / 2
     return sp.Matrix([[ALPHA * m, side], [side, BETA * n]])
@@ -72,7 +72,7 @@ def stored_and_lost(level: sp.Expr) -> list[ProofStep]:
 
 
 def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
-    """Energy of a small cycle over A^3, from the exact loop."""
+    """Energy of a cycle over A^3 in the limit of small amplitude A, from the exact loop."""
     scaled = ENERGY.subs({f_c: level, STIFFNESS: stiffness})
     return sp.limit(scaled / A**3, A, 0, "+")
 

@@ -1,7 +1,7 @@
 """Sampled forces on damped masses: P50 to P52 and P60.
 
-A force held over a sample of length T does the work force * travel; a damper b takes at least
-b travel^2/T. No theorem of others is used.
+A force that is held over a sample of length T does the work force * travel; a damper b takes at
+least b travel^2/T. No theorem of others is used.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ BACK = c - sp.I * sp.sin(theta)
 
 
 def damper_takes_most() -> list[ProofStep]:
-    """b times the integral of v^2 over a sample is at least b D^2/T."""
+    """A damper takes at least b D^2/T over a sample: b times the integral of v^2 is not less."""
     squares = sp.Symbol("squares", positive=True)  # integral of v^2
     return [
         Equal(
@@ -52,7 +52,7 @@ def damper_takes_most() -> list[ProofStep]:
 
 
 def least_damping(block: sp.Expr) -> sp.Expr:
-    """Damping needed at the angle theta by a held force -H x: T/2/(1 - cos) Re[(1 - 1/z) H]."""
+    """Damping that a held force -H x needs at the angle theta: T/2/(1 - cos) Re[(1 - 1/z) H]."""
     return T / 2 / (1 - c) * sp.re(sp.expand((1 - BACK) * block))
 
 
@@ -178,9 +178,9 @@ def encoder_steps() -> ProofSteps:
 
 
 def controlled_port() -> Numbers:
-    """The observer and controller of the package over forces that give out energy: 4000 samples.
+    """The package's observer and controller over forces that give out energy: 4000 samples.
 
-    A force of 1.2 N along the motion against 1 N of friction, to and fro at uneven speed.
+    A force of 1.2 N acts along the motion against 1 N of friction, to and fro at uneven speed.
     """
     rng, period, friction, helps = np.random.default_rng(52), 1e-3, 1.0, 1.2
     speed = rng.uniform(0.01, 0.2, 4000) * np.sign(np.sin(np.arange(4000) / 50 + 0.1))

@@ -1,7 +1,8 @@
 """Compensation of ideal Coulomb friction: P37 to P42.
 
-The joint obeys m a = u_link + f_comp - f_friction + f_ext: a compensator pushes along, friction
-against. Energy given out by the pair is that of the compensator less what friction takes.
+The joint obeys m a = u_link + f_comp - f_friction + f_ext: the compensator pushes along the motion,
+friction against it. Energy given out by the pair is the work of the compensator less the work that
+friction takes.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ UNDER = f_C - f_D
 
 
 def pair_power(force: sp.Expr, velocity: sp.Expr) -> sp.Expr:
-    """Power that friction less compensation takes in."""
+    """Power that the pair of friction and compensation takes in."""
     return (coulomb(velocity, f_C) - force) * velocity
 
 
@@ -155,7 +156,7 @@ def unlimited_motion() -> ProofSteps:
 
 
 def needed_amplitude() -> Numbers:
-    """Amplitude u from which a ratio f_D/f_C gives out energy, and simulations about it."""
+    """Amplitude u above which a ratio f_D/f_C gives out energy, and simulations near it."""
     # half of the last digit stated
     table: dict[float, tuple[float, float]] = {1.02: (51, 0.5), 1.05: (21, 0.5), 1.1: (11, 0.5)}
     table |= {1.2: (6, 0.5), 1.5: (2.98, 0.005), 2.0: (1.92, 0.005)}
@@ -176,9 +177,11 @@ def needed_amplitude() -> Numbers:
 
 
 def swing(ratio: float, bristle: float) -> float:
-    """Last amplitude over the first of a mass on a spring, Coulomb friction compensated by Dahl.
+    """Last amplitude over first of a mass on a spring, Coulomb friction compensated by Dahl.
 
     0.1 kg on 400 N/m (10 Hz), 0.5 N, started 2 mm from rest, 0.5 s
+
+    ratio: f_D/f_C;  bristle: f_D/sigma_D (m)
     """
     level = 0.5
     device = Body("prismatic", {"inertia": Value(0.1)})

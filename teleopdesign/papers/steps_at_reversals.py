@@ -1,8 +1,8 @@
-"""What plain cycles do not show of a compensator behind a compliant cable: P56.
+"""Energy that is given out only with steps at the reversals, behind a compliant cable: P56.
 
 A motor that steps back and forth at its reversals lets the bristle of the compensator forget the
-last stroke, so that it pushes along sooner in the next one. The price is the motor's own friction
-over the steps.
+last stroke, so that the compensator pushes along the motion sooner in the next stroke. The price is
+the work against the motor's friction over the steps.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 def dithered_cycle() -> sp.Expr:
-    """Energy of half a cycle of amplitude u, a step of `small` back and forth at each reversal.
+    """Energy of half a cycle of amplitude u, with a step of `SMALL` to and fro at each reversal.
 
     Units f_D = sigma_D = 1, link stuck; the second half of a cycle mirrors the first.
     """
@@ -47,7 +47,7 @@ def dithered_cycle() -> sp.Expr:
 
 
 def stepping_motor() -> Numbers:
-    """Energy given out in a cycle, simulated: the case of the proof, with steps and without."""
+    """Simulated energy given out in a cycle of the proof's case, with steps and without."""
     steps = energy_of_cycle((0.5, 0.4, 0.5, -0.5, -0.4, -0.5))
     plain = energy_of_cycle((0.5, -0.5))
     # a percent of what friction takes: the contact gives before it slides
@@ -61,9 +61,9 @@ def stepping_motor() -> Numbers:
 
 
 def energy_of_cycle(turning: tuple[float, ...]) -> float:
-    """Work of the compensator less that of the motor's friction in the last of four cycles, J.
+    """Work of the compensator less the work of the motor's friction in the last of four cycles (J).
 
-    turning: points where the motor reverses, m; half a second from one to the next
+    turning: points where the motor reverses (m); it takes half a second from one to the next
     """
     points = np.array(turning)
     n = len(points)
@@ -148,7 +148,7 @@ def steps_at_reversals() -> Correction:
 
 
 def _force_within_a_bound() -> ProofSteps:
-    """With the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path."""
+    """With the link stuck, f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path."""
     f, edge = sp.Symbol("f", real=True), sp.Symbol("edge", positive=True)
     x = sp.Symbol("x", positive=True)  # above the lower end of the range of the motion
     most = sp.Symbol("most", positive=True)  # the bound at the upper end

@@ -19,7 +19,7 @@ x_m, x_s = sp.symbols("x_m x_s", real=True)
 
 
 def mid_stroke(simulation: Simulation, name: str) -> Loop:
-    """A signal over the master's position, both ways, at mid-stroke."""
+    """The loop of a signal over the master's position, in both directions, near mid-stroke."""
     middle = (-0.2 * AMPLITUDE, 0.2 * AMPLITUDE)
     return loop_of(simulation["X_m"].values, simulation[name].values, within=middle)
 
@@ -69,7 +69,10 @@ def free_space() -> ProofSteps:
 
 
 def contact(share: float) -> tuple[float, float, float]:
-    """Stiffness felt (N/m), hysteresis width (N), rms difference from the environment (N)."""
+    """Stiffness felt (N/m), hysteresis width (N), rms difference from the environment (N).
+
+    share: f_D/f_C
+    """
     simulation = slow_cycle(cancelled=share * FRICTION, environment=ENVIRONMENT)
     loop = mid_stroke(simulation, "F_u")
     whole = simulation["F_u"].values - ENVIRONMENT * simulation["X_m"].values
@@ -154,9 +157,11 @@ def transparency_figures() -> Numbers:
 
 
 def quasi_static_difference(share: float) -> float:
-    """Rms of user force less environment's own over a cycle, by the balance at the slave alone.
+    """Rms difference (N) of user force and environment force over a cycle, by a static balance.
 
-    The slave stays where it is while abs(P x_m - (P + k_e) x_s) is below the friction left.
+    The slave stays in place while abs(P x_m - (P + k_e) x_s) is below the remaining friction.
+
+    share: f_D/f_C
     """
     left = (1 - share) * FRICTION
     total = STIFFNESS + ENVIRONMENT

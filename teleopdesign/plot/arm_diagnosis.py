@@ -1,4 +1,4 @@
-"""The figure of an arm's diagnosis: a row for each joint, and the ladder of the whole arm."""
+"""The figure of an arm's diagnosis: a row for each joint, and the ladder for the whole arm."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
 
 
 def plot_arm_diagnosis(diagnosis: ArmDiagnosis) -> Figure:
-    """Of each joint forces, residual over time and over velocity; below, the ladder of the arm.
+    """For each joint: forces, residual over time and over velocity; below, the ladder of the arm.
 
-    Drawn from the check records' low-passed forces (fit records where there is no check record), by
-    the models in which all joints agree on the links; over time, the first of these records.
+    The curves are low-passed forces of the check records (of the fit records if there is no check
+    record), from the models in which all joints agree on the links. The panels over time show the
+    first of these records.
     """
     import matplotlib.pyplot as plt
 
@@ -83,5 +84,5 @@ def _joint(row: list[Any], diagnosis: ArmDiagnosis, joint: str, *, changed: bool
 
 
 def _first_record(data: Any) -> Any:
-    """The rows of the first record: over time, several would lie on each other."""
+    """The rows of the first record; over time, several records would lie on each other."""
     return data.isel(sample=data["record"].values == data["record"].values[0])

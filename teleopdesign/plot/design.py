@@ -46,7 +46,7 @@ _DOTS = {None: "", "_velocity": r"\dot ", "_acceleration": r"\ddot "}
 
 
 def symbol(name: str) -> str:
-    """The signal's symbol in mathtext; names without one as they are."""
+    """The signal's symbol in mathtext; a name without a symbol gets spaces for underscores."""
     if name in _SYMBOLS:
         return f"${_SYMBOLS[name]}$"
     if indexed := _INDEXED.fullmatch(name):
@@ -57,7 +57,7 @@ def symbol(name: str) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """A unit as printed on an axis."""
+    """A unit as printed at an axis."""
     return unit.replace("*", r"$\,$").replace("^2", "²")
 
 
@@ -67,10 +67,10 @@ def save_figure(
     *,
     suffixes: tuple[str, ...] = (".pdf", ".svg", ".png"),
 ) -> list[Path]:
-    """Write the figure in house style, once for each suffix; returns the files.
+    """Write the figure in house style, once for each suffix; returns the paths of the files.
 
-    path: its suffix is replaced by each of `suffixes`; an older file is overwritten when the new
-        one is whole
+    path: its suffix is replaced by each of `suffixes`; an older file is replaced only when the new
+        file is complete
     """
     import matplotlib.pyplot as plt
 
@@ -85,9 +85,10 @@ def save_figure(
 
 
 def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
-    """Force against velocity, a panel for each case, top to bottom.
+    """Force error against velocity, a panel for each case, from top to bottom.
 
-    Axes in SI units of the axis (N over m/s, or N m over rad/s); each panel states its rms force.
+    Axes are in SI units of the axis (N over m/s, or N m over rad/s); each panel states its rms
+    force.
     """
     import matplotlib.pyplot as plt
     from matplotlib.ticker import MaxNLocator, MultipleLocator
@@ -123,9 +124,9 @@ def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
 def plot_simulation(
     simulation: Simulation, names: tuple[str, ...] = ()
 ) -> matplotlib.figure.Figure:
-    """Signals against time, one panel each.
+    """Signals against time, a panel for each signal.
 
-    names: signals of the diagram, in SI units;  default: those of "L", "R_A" and "R_M" that it has
+    names: signals of the diagram, drawn in SI units;  default: "L", "R_A" and "R_M", if present
     """
     import matplotlib.pyplot as plt
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def plot_design(design: Design) -> matplotlib.figure.Figure:
-    """Before and after: three panels, a line a case."""
+    """Three panels that compare the designed cases with no compensation, a line for each case."""
     import matplotlib.pyplot as plt
 
     with plt.style.context(house_style()):

@@ -1,4 +1,4 @@
-"""Figures of comparisons and diagnoses; draws what they hold and computes nothing."""
+"""Figures of comparisons and diagnoses; they draw the contents of results and compute nothing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ POINTS = 6000
 
 
 def check_rows(data: Any) -> Any:
-    """What counts of the check records (of all where there are none), of the first body."""
+    """Counted samples of the check records (of all records if there is none), of the first body.
+
+    At most about 2 POINTS samples remain.
+    """
     first = data["body"].values == data["body"].values[0]
     check = first & (data["use"].values == "check")
     chosen = data.isel(sample=(check if check.any() else first) & data["counts"].values)
@@ -34,12 +37,12 @@ def check_rows(data: Any) -> Any:
 
 
 def label_of(data: Any, name: str) -> str:
-    """Name and unit of residual data, for an axis."""
+    """Name and unit of a variable of residual data, for an axis."""
     return f"{name} ({unit_text(data[name].attrs['units'])})"
 
 
 def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
-    """The residual over a name of the data, a colour for each direction."""
+    """The residual over a variable of the data, a colour for each direction of motion."""
     for way, color, label in (
         (0, UNTOLD, "near rest"),
         (1, FORWARD, "forward"),
@@ -61,14 +64,14 @@ def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
 
 
 def _runs(data: Any) -> list[slice]:
-    """Slices of consecutive samples of one record and segment, so that no line joins two."""
+    """Slices of consecutive samples of one record and segment; no line joins two segments."""
     segment = data["segment"].values
     edges = [0, *(np.flatnonzero(np.diff(segment)) + 1), len(segment)]
     return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
 
 
 def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
-    """A name of the data over time; width: of its line."""
+    """A variable of the data over time; width: line width (points)."""
     for i, run in enumerate(_runs(data)):
         ax.plot(
             data["time"].values[run],
@@ -98,7 +101,7 @@ def plot_comparison(comparison: Comparison) -> Figure:
 
 
 def direction_legend(ax: Axes) -> None:
-    """The directions above the panel, clear of its points."""
+    """A legend of the directions above the panel, so that it covers no points."""
     ax.legend(
         markerscale=6,
         loc="lower right",
@@ -119,7 +122,8 @@ def _force_axes(ax: Axes, data: Any) -> None:
 def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     """Forces and residual before and after, residual over velocity and position, the ladder.
 
-    Drawn from the check records' low-passed forces (fit records where there is no check record).
+    The curves are low-passed forces of the check records (of the fit records if there is no check
+    record).
     """
     import matplotlib.pyplot as plt
 
@@ -173,7 +177,10 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
 
 
 def draw_ladder(ax: Axes, rungs: Sequence[Rung | ArmRung], floor: float, *, of: str) -> None:
-    """Check errors of the rungs as bars, with the noise floor; of: what they are relative to."""
+    """Check errors of the rungs as bars, with the noise floor.
+
+    floor: noise floor, relative like the errors;  of: words for what the errors are relative to
+    """
     names = ["your model, re-estimated" if r.added is None else f"+ {r.said}" for r in rungs]
     errors = [100 * r.fit.check_error for r in rungs]
     rows = np.arange(len(names))

@@ -1,4 +1,4 @@
-"""Figures of what a user feels: force over displacement, beside the environment's curve."""
+"""Figures of what a user feels: force over displacement, beside the curve of the environment."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ENVIRONMENT = "#BFBFBF"
 
 
 def plot_force_displacement(result: ForceDisplacement) -> matplotlib.figure.Figure:
-    """Displacement of the hand and its force over time; its force over displacement."""
+    """Displacement of the hand over time, its force over time, and its force over displacement."""
     import matplotlib.pyplot as plt
 
     data = result.data

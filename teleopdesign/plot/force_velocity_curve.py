@@ -1,4 +1,4 @@
-"""Force against velocity from runs at constant speed: points measured, line fitted."""
+"""Force against velocity from runs at constant speed: measured points and a fitted line."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def plot_force_velocity_curve(level: CoulombLevel) -> Figure:
-    """Mean force of each run, friction at each speed, and the line through it."""
+    """Mean force of each run, and the fitted line (level and damping) of each direction."""
     import matplotlib.pyplot as plt
 
     with plt.style.context(house_style()):

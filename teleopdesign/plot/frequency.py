@@ -1,7 +1,8 @@
 """Bode and Nyquist figures. Nothing is computed.
 
-One column is 3.5 in wide with magnitude above phase, two are 7.16 in with them side by side; fonts,
-lines and colours are the same. A model is drawn as lines, what was measured as points.
+A figure of one column is 3.5 in wide with magnitude above phase, a figure of two columns is 7.16 in
+wide with both side by side; fonts, lines and colours are the same. A model is drawn as lines,
+measurements as points.
 """
 
 from __future__ import annotations
@@ -35,9 +36,9 @@ def plot_bode(
     measured: FrequencyResponse | None = None,
     columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
-    """Magnitude in dB and phase against frequency; measured: drawn as points beside it.
+    """Magnitude (dB) and phase (deg) against frequency (Hz); measured: drawn as points.
 
-    A case that is zero at every frequency has neither: its name says so.
+    A case that is zero at every frequency has no curve; the legend says that it is zero.
     """
     import matplotlib.pyplot as plt
     import numpy as np
@@ -77,10 +78,10 @@ def plot_nyquist(
     measured: FrequencyResponse | None = None,
     columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
-    """Imaginary against real part; a dot at each decade of frequency.
+    """Imaginary part against real part, with a dot at each decade of frequency.
 
-    response: lines;  measured: points beside them, of the same cases;  unit: that of the response
-    columns: of a page that the figure is wide, 1 or 2
+    response: drawn as lines, in its unit;  measured: drawn as points, of the same cases
+    columns: width of the figure in columns of a page, 1 or 2
     """
     import matplotlib.pyplot as plt
 
@@ -124,7 +125,7 @@ def _name(one: FrequencyResponse, case: str) -> str:
 
 
 def _unwrap_beside(phase: xarray.DataArray, model: FrequencyResponse, case: str) -> np.ndarray:
-    """Measured phase on the turn of the model's, which is unwrapped from another start."""
+    """Measured phase, shifted by multiples of 360 degrees to lie beside the phase of the model."""
     import numpy as np
 
     known = [str(c) for c in model.data["case"].values]

@@ -1,4 +1,4 @@
-"""The look of figures over frequency and amplitude: cases, points, panels, abscissa."""
+"""The style of figures over frequency and amplitude: cases, points, panels, abscissa."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ ENTRY = 1.7
 
 
 def look(case: str) -> dict[str, Any]:
-    """Colour, line and label of a case, the same in every figure."""
+    """Colour, line style and label of a case, the same in every figure."""
     colour, line, label = CASES.get(case, (None, "-", case))
     return {"color": colour, "linestyle": line, "label": label}
 
 
 def points(case: str, *, alone: bool) -> dict[str, Any]:
-    """Look of what was measured: grey, or the colour of its case where there are several."""
+    """Style of measured points: grey, or the colour of the case if there are several cases."""
     colour = MEASURED if alone or case not in CASES else CASES[case][0]
     return {
         "color": colour,
@@ -36,7 +36,7 @@ def points(case: str, *, alone: bool) -> dict[str, Any]:
 
 
 def panels(columns: PageColumns) -> tuple[matplotlib.figure.Figure, Any]:
-    """Two panels that share their abscissa: above each other, or side by side in two columns."""
+    """Two panels with a common abscissa: one above the other, or side by side for two columns."""
     import matplotlib.pyplot as plt
 
     if columns == 2:
@@ -51,7 +51,7 @@ def share_abscissa(
     ends: tuple[float, float],
     columns: PageColumns,
 ) -> None:
-    """Logarithmic abscissa of both panels, named below the lower one, or below both of a row."""
+    """A logarithmic abscissa for both panels, labelled below the lower panel or below the row."""
     logarithmic(lower, *ends)
     for axis in (upper, lower):
         axis.grid(True)
@@ -61,7 +61,7 @@ def share_abscissa(
 
 
 def logarithmic(axis: matplotlib.axes.Axes, low: float, high: float) -> None:
-    """Logarithmic abscissa with plain numbers; 2 and 5 too where it spans under two decades."""
+    """A logarithmic abscissa with plain numbers; also 2 and 5 on a range below two decades."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     axis.set_xscale("log")
@@ -74,7 +74,7 @@ def logarithmic(axis: matplotlib.axes.Axes, low: float, high: float) -> None:
 
 
 def mark_degrees(axis: matplotlib.axes.Axes) -> None:
-    """Ticks at 45 or 90 degrees, where the range is wide enough."""
+    """Ticks at every 45 or 90 degrees, if the range is wide enough."""
     from matplotlib.ticker import MultipleLocator
 
     low, high = axis.get_ylim()
@@ -83,7 +83,7 @@ def mark_degrees(axis: matplotlib.axes.Axes) -> None:
 
 
 def legend_below(figure: matplotlib.figure.Figure, axis: matplotlib.axes.Axes) -> None:
-    """Legend of one axis below the whole figure, where it covers no curve."""
+    """The legend of one axis below the whole figure, where it covers no curve."""
     handles, labels = axis.get_legend_handles_labels()
     across = max(1, int(figure.get_figwidth() / ENTRY))
     figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), across))

@@ -33,10 +33,11 @@ def plot_impedance(
     model: ImpedanceMap | None = None,
     columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
-    """Size in dB and phase in 0 to 360 degrees, as figures 6 and 7 of Bernstein, Lawrence, Pao.
+    """Size (dB) and phase (0 to 360 degrees), as in figures 6 and 7 of Bernstein, Lawrence, Pao.
 
-    Several values of the other variable are shades, from light to dark.
-    model: drawn as lines, `result` then as points
+    Several values of the other variable are drawn in shades, from light to dark.
+
+    model: drawn as lines; `result` is then drawn as points
     """
     import matplotlib.pyplot as plt
 
@@ -85,9 +86,9 @@ def _impedance_lines(
 def plot_spread(
     result: ImpedanceMap, *, model: ImpedanceMap | None = None, columns: PageColumns = 1
 ) -> matplotlib.figure.Figure:
-    """How far from linear: spread of size and phase over amplitude, against frequency.
+    """Deviation from linearity: spread of size and phase over amplitude, against frequency.
 
-    model: drawn as lines, `result` then as points
+    model: drawn as lines; `result` is then drawn as points
     """
     import matplotlib.pyplot as plt
 
@@ -124,7 +125,7 @@ def _scale(result: ImpedanceMap, name: str) -> tuple[np.ndarray, str]:
 
 
 def _other_variable(result: ImpedanceMap, against: str) -> str:
-    """The variable that is not the abscissa; "" where there is none or one value of it."""
+    """The variable that is not the abscissa; "" if the map lies on a profile of both."""
     other = "amplitude" if against == "frequency" else "frequency"
     return "" if result.on_profile else other
 

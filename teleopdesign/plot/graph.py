@@ -1,4 +1,4 @@
-"""Draw the graph of a finding on axes; computes nothing but which points to leave out."""
+"""Draws the graph of a finding on axes; computes only which points are left out."""
 
 from __future__ import annotations
 
@@ -36,11 +36,12 @@ FEW = 300
 def draw_graph(
     graph: Graph, axes: Axes, *, most: int = MOST, colours: Mapping[str, str] | None = None
 ) -> None:
-    """Draw every series of a graph with labels and, for more than one, a legend above.
+    """Draw every series of a graph with labels and, for more than one series, a legend above.
 
-    most: points drawn of one series; of a longer one each bucket keeps its lowest and highest
-    colours: name of a series -> its colour, where it is not that of its kind
-    Texts are drawn as they are: a name from a file may hold a dollar sign.
+    most: limit on the points of one series; a longer series keeps its extremes (see `thin_series`)
+    colours: name of a series -> its colour, if it differs from the colour of its kind
+
+    Texts are drawn without formulas; a name from a file may contain a dollar sign.
     """
     totals: Counter[str] = Counter(s.kind for s in graph.series)
     if graph.logarithmic:
@@ -57,9 +58,9 @@ def draw_graph(
 
 
 def thin_series(series: Series, most: int) -> Series:
-    """The series with at most `most` points: the lowest and the highest of each bucket of them.
+    """The series with at most `most` points: the lowest and highest of each group of neighbours.
 
-    Of a cloud ("rest") every k-th point: the extremes alone would leave its middle empty.
+    A cloud ("rest") keeps every k-th point: its extremes alone would leave the middle empty.
     """
     n = len(series.x)
     if n <= most:
@@ -71,7 +72,7 @@ def thin_series(series: Series, most: int) -> Series:
 
 
 def extremes(values: Array, buckets: int) -> NDArray[np.intp]:
-    """Indices of the lowest and highest value in each of so many buckets, in order."""
+    """Indices of the lowest and highest value in each of `buckets` equal parts, in order."""
     filled = np.where(np.isfinite(values), values, 0.0)
     edges = np.linspace(0, len(values), max(buckets, 1) + 1).astype(int)
     pairs = zip(edges[:-1], edges[1:], strict=True)
@@ -111,7 +112,7 @@ def _label(series: Series) -> str:
 
 
 def _logarithmic(graph: Graph, axes: Axes) -> None:
-    """Logarithmic y; x too where it is positive and spans more than a decade, as frequencies do."""
+    """Logarithmic y; also x if it is positive and spans more than a decade, as frequencies do."""
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
     axes.set_yscale("log")

@@ -1,7 +1,7 @@
-"""Fonts for letters that the fonts of a figure lack: names in Japanese, Chinese, Korean, Arabic.
+"""Fonts for letters that a figure's fonts lack: names in Japanese, Chinese, Korean, Arabic.
 
-A figure takes each letter from the first of its fonts that has it. Fonts of this machine are put
-behind those of the house style; a letter that no font has is drawn as a box.
+A figure takes each letter from the first of its fonts that has the letter. Fonts of this machine
+follow the fonts of the house style; a letter that no font has is drawn as a box.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MANY_LETTERS = (
 
 @cache
 def further_fonts() -> tuple[str, ...]:
-    """Those of the fonts with many letters that are on this machine."""
+    """Names of the fonts in `MANY_LETTERS` that this machine has."""
     from matplotlib.font_manager import fontManager
 
     here = {font.name for font in fontManager.ttflist}
@@ -33,12 +33,12 @@ def further_fonts() -> tuple[str, ...]:
 
 
 def house_style() -> Any:
-    """The house style for `plt.style.context`, with this machine's fonts behind its fonts."""
+    """The house style for `plt.style.context`, with further fonts of this machine at the end."""
     return [STYLE, {"font.family": ["STIXGeneral", "DejaVu Serif", *further_fonts()]}]
 
 
 def letters_without_a_font(texts: Iterable[str]) -> str:
-    """The letters that no font of a figure has, each once; they are drawn as boxes."""
+    """The letters of the texts that no font of a figure has, each once; they are drawn as boxes."""
     from matplotlib.font_manager import FontProperties, findfont, get_font
 
     fonts = [get_font(findfont(FontProperties(family=name))) for name in further_fonts()]
@@ -47,7 +47,7 @@ def letters_without_a_font(texts: Iterable[str]) -> str:
 
 
 def explain_boxes(texts: Iterable[str]) -> str:
-    """One line about letters that are drawn as boxes, and what helps; empty if there are none."""
+    """One line that names letters drawn as boxes and proposes fonts; "" if there are none."""
     lacking = letters_without_a_font(texts)
     if not lacking:
         return ""

@@ -29,7 +29,7 @@ _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
 def save_survey(figure: Figure, path: Path) -> None:
-    """Write the picture; `explain_boxes` says which letters of names no font has."""
+    """Write the figure as PNG; `explain_boxes` names the letters that no font has."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
         with write_beside(path) as part:
@@ -37,9 +37,9 @@ def save_survey(figure: Figure, path: Path) -> None:
 
 
 def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
-    """The channels as they will be used, fit and check records in shades; SI units.
+    """The channels in SI units, with fit and check records shaded in different colours.
 
-    Below stand the columns that are in no channel, with the reason of each.
+    Columns of the log that are in no channel are listed below, each with the reason.
     """
     with rc_context({"font.family": ["DejaVu Sans", *further_fonts()]}):
         return _draw_survey(survey, experiment)
@@ -86,7 +86,7 @@ def _draw_survey(survey: Survey, experiment: Experiment) -> Figure:
 
 
 def unused_lines(unused: Mapping[str, str]) -> list[str]:
-    """Text on the columns that are in no channel: a line for each, of at most `_UNUSED`."""
+    """Lines of text on columns that are in no channel: at most `_UNUSED`, then a summary."""
     if not unused:
         return []
     lines = [f'not used: "{name}": {why}' for name, why in unused.items()]
@@ -95,7 +95,7 @@ def unused_lines(unused: Mapping[str, str]) -> list[str]:
 
 
 def shade_spans(panels: Iterable[Axes], spans: Sequence[tuple[float, float]]) -> None:
-    """Shade the fit and the check span in every panel, and name them in the first."""
+    """Shade the fit span and the check span in every panel, and label them in the first panel."""
     for k, axes in enumerate(panels):
         for (use, shade), (begin, end) in zip(_SHADES.items(), spans, strict=True):
             axes.axvspan(begin, end, color=shade, alpha=0.15, lw=0, label=use)

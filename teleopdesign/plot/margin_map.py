@@ -1,4 +1,4 @@
-"""Figure of margins over two values. Nothing is computed."""
+"""Figure of stability margins over two parameters. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LARGEST = 2.0
 
 
 def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
-    """Llewellyn's margin as colour, the line where it is zero in black."""
+    """Llewellyn's margin as colour over two parameters, with a black line at margin zero."""
     import matplotlib.pyplot as plt
     import numpy as np
 

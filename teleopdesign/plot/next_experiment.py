@@ -1,4 +1,4 @@
-"""The figure of a proposed experiment; draws what the proposal holds and computes nothing."""
+"""The figure of a proposed experiment; it draws what the proposal holds and computes nothing."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ TRUTH, OTHER, NOW = "0.55", "#D55E00", "#0072B2"
 
 
 def plot_proposal(proposal: Proposal) -> Figure:
-    """The motion, what a wrong model would leave along it, and how far apart it takes the rivals.
+    """The proposed motion, the force that a wrong model would leave, and the separation of rivals.
 
-    Where no motion is proposed the sentence stands alone.
+    If no motion is proposed, the figure shows only the sentence of the proposal.
     """
     import matplotlib.pyplot as plt
 
@@ -55,7 +55,7 @@ def _line(ax: Axes, series: Series, named: bool) -> None:
 
 
 def _plot_separation(ax: Axes, proposal: Proposal) -> None:
-    """What the widest separated pair leaves: the wrong model's residual over the right one's."""
+    """Force left for the best separated pair: of the wrong model and of the right model."""
     widest = max(proposal.separations, key=lambda s: s.predicted)
     curves = proposal.curves[proposal.separations.index(widest)]
     ax.plot(curves.time, curves.left, lw=0.8, color=OTHER, label=f"{widest.other} (wrong)")

@@ -1,4 +1,4 @@
-"""Velocity over time, and force over a level against velocity: one line a case."""
+"""Velocity over time, and normalised force against velocity: one line for each case."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _LINES = (("#0072B2", "-"), ("#D55E00", (0, (5, 1.6))), ("#000000", (0, (4, 1.4,
 def plot_normalised_force(
     curves: ForceVelocity, *, level: Mapping[str, float]
 ) -> matplotlib.figure.Figure:
-    """Velocity over time and normalised force against velocity.
+    """Velocity over time, and normalised force against velocity.
 
-    level: case -> the force that counts as 1
+    level: case -> the force by which the forces of the case are divided
     """
     import matplotlib.pyplot as plt
 

@@ -1,4 +1,4 @@
-"""Maps of where an oscillation of a teleoperator starts to grow. Draws, no more."""
+"""Maps that show where an oscillation of a teleoperator starts to grow. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GROWS = "#F6D5C0"
 
 
 def plot_teleoperator_onset(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Simulated growth over damping and over contact, f_D/f_C upward; bound and balance over it."""
+    """Simulated growth over damping and over contact stiffness, f_D/f_C upward, with two limits."""
     import matplotlib.pyplot as plt
 
     y = data["share"].values
@@ -83,7 +83,7 @@ def _mark_growth(axis: Axes, x: np.ndarray, y: np.ndarray, grown: np.ndarray, la
 def hatch_region(
     axis: Axes, x: np.ndarray, low: float | np.ndarray, high: float | np.ndarray, label: str
 ) -> None:
-    """A region that a theorem covers, hatched as in every figure of passivity."""
+    """Hatch a region between `low` and `high` that a theorem covers."""
     axis.fill_between(
         x,
         low,
@@ -97,7 +97,7 @@ def hatch_region(
 
 
 def _mark_onsets(axis: Axes, x: np.ndarray, onsets: xarray.DataArray) -> None:
-    """Stiffnesses (N/m) from which a simulated swing grows, one marker for each kind of ends."""
+    """Stiffnesses (N/m) above which a simulated swing grows, a marker for each kind of ends."""
     for ends, marker in zip(onsets["ends"].values, "^o", strict=True):
         axis.plot(
             x,
@@ -112,13 +112,13 @@ def _mark_onsets(axis: Axes, x: np.ndarray, onsets: xarray.DataArray) -> None:
 
 
 def _set_decades(axis: Axes, x: np.ndarray, stiffness: np.ndarray) -> None:
-    """Logarithmic axes around the points of a map."""
+    """Logarithmic axes with limits around the points of a map."""
     axis.set(xscale="log", yscale="log", xlim=(0.9 * x[0], 1.1 * x[-1]))
     axis.set_ylim(0.8 * stiffness[0], 1.25 * stiffness[-1])
 
 
 def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Judged couplings over delay and over sample period, and where simulation starts to grow."""
+    """Claims on couplings over delay and over sample period, and onsets of growth in simulation."""
     import matplotlib.pyplot as plt
 
     stiffness = data["stiffness"].values
@@ -142,7 +142,7 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Judged late compensators over sample period and stiffness, and where a swing grows."""
+    """Claims on late compensators over sample period and stiffness, and onsets of growth."""
     import matplotlib.pyplot as plt
 
     x, stiffness = data["period"].values, data["stiffness"].values
@@ -165,7 +165,7 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def _mark_status(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -> None:
-    """A dot at each point that a claim decides."""
+    """A marker at each point, by the status of the claim there."""
     import numpy as np
 
     across, up = np.meshgrid(x, y)

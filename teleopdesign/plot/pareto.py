@@ -20,7 +20,7 @@ GREY, BEST, BEFORE = "#BFBFBF", "#0072B2", "#D55E00"
 
 
 def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
-    """The front as steps; points that keep the limits in grey; the diagram itself as a cross."""
+    """The front as steps; points that keep the limits in grey; the untuned diagram as a cross."""
     import matplotlib.pyplot as plt
     import numpy as np
 
@@ -45,5 +45,5 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
 
 
 def _farthest(values: np.ndarray) -> float:
-    """What is still in the picture."""
+    """Limit of an axis: the largest value of the front and a margin beyond it."""
     return float(values.max() + _BESIDE * ((values.max() - values.min()) or abs(values.max()) or 1))

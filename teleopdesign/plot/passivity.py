@@ -1,4 +1,4 @@
-"""Figures of passivity: limits of compensation and regions of two parameters. Draws, no more."""
+"""Figures of passivity: limits of compensation, regions of two parameters. Computes nothing."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def plot_largest_compensation(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def plot_passive_region(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Map over sigma_D/sigma_p and f_D/f_C: proved region hatched, searched points over it."""
+    """Map over sigma_D/sigma_p and f_D/f_C: the proved region hatched, with markers of a search."""
     import matplotlib.pyplot as plt
     import numpy as np
 
@@ -108,7 +108,7 @@ def plot_passive_region(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def plot_forward_euler(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Force over samples for four q, exact and by forward Euler; below, the largest over q."""
+    """Force over samples for four values of q, exact and by forward Euler; largest force over q."""
     import matplotlib.pyplot as plt
 
     cases = data["q"].values
@@ -175,8 +175,9 @@ def _one_case(axis: Axes, one: xarray.Dataset, q: float, letter: str, *, last: b
 
 
 def plot_cable_limits(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Largest f_D/f_1 over sigma_D/k: proved floor, plain cycles, searched points; beside it, the
-    map with presliding at both contacts.
+    """Largest f_D/f_1 over sigma_D/k: proved limits, searched points and a map of presliding.
+
+    The left panel has ideal contacts, the right panel has presliding at both contacts.
     """
     import matplotlib.pyplot as plt
     from matplotlib.colors import ListedColormap
@@ -243,7 +244,7 @@ def _floor(axis: Axes, x: np.ndarray) -> None:
 
 
 def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Passive walls over period and over damping, as friction is and with most of it cancelled."""
+    """Stiffness of passive walls over period and over damping, with two amounts of cancellation."""
     import matplotlib.pyplot as plt
     from matplotlib.colors import ListedColormap
 
@@ -273,7 +274,7 @@ def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def _mask_all_but(shown: np.ndarray) -> np.ma.MaskedArray[tuple[int, ...], np.dtype[np.float64]]:
-    """Ones where something is shown, masked elsewhere."""
+    """Ones where `shown` is true, masked elsewhere."""
     import numpy as np
 
     return np.ma.masked_where(~shown, np.ones(shown.shape))

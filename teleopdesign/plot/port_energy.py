@@ -1,4 +1,4 @@
-"""Figure of the energy into a port over time. Draws, no more."""
+"""Figure of the energy into a port over time. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def plot_port_energy(observed: PortEnergy) -> matplotlib.figure.Figure:
-    """Energy into a port over time, its 95 % band, and the times in which it came out."""
+    """Energy (J) into a port over time, its 95 % band, and the spans in which energy comes out."""
     import matplotlib.pyplot as plt
 
     data = observed.data

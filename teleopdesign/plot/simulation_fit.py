@@ -1,4 +1,4 @@
-"""Figure of a simulation that was fitted to measured signals. Nothing is computed."""
+"""Figure of a simulation that was fitted to measured signals. Nothing else is computed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GREY, FITTED = "#9A9A9A", "#0072B2"
 
 
 def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
-    """For each signal measured points with the simulation as a line, and the difference below."""
+    """For each signal: measured points and the simulation as a line; below, their difference."""
     import matplotlib.pyplot as plt
 
     names = tuple(fitted.rms)

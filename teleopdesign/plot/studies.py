@@ -1,4 +1,4 @@
-"""Figures of parameter studies: curves, maps, small multiples, sensitivity bars. Draws, no more."""
+"""Figures of parameter studies: curves, maps, panels, points, bars. Draws only."""
 
 from __future__ import annotations
 
@@ -27,12 +27,15 @@ _MOST_LINES = 8
 
 @dataclass(frozen=True, eq=False)
 class StudyPlots:
-    """Figures of a study's data: call it for what fits its axes."""
+    """Figures of a study's data; a call draws the figure that fits the study's axes."""
 
     data: xarray.Dataset
 
     def __call__(self, measure: str = "") -> matplotlib.figure.Figure:
-        """Bars for points of `sensitivity_samples`, else curves, a map, or maps side by side."""
+        """Bars or points for sampled studies; else curves, a map, or maps side by side.
+
+        Bars are drawn for points of `sensitivity_samples`.
+        """
         if self.data.attrs.get("sampling"):
             if self.data.attrs["sampling"] == "sensitivity":
                 return self.sensitivity(measure)
@@ -47,8 +50,9 @@ class StudyPlots:
     ) -> matplotlib.figure.Figure:
         """A measure over one parameter, a line for each value of a second one.
 
-        over: parameter along the axis, default the first;  at: values of all others, the nearest is
-        taken
+        over: parameter along the abscissa, default the first one
+        at: parameter -> value of every further parameter; the nearest value of the study is taken
+        raises ModelError: no such name, or more than two parameters without a value
         """
         import matplotlib.pyplot as plt
 
@@ -91,11 +95,12 @@ class StudyPlots:
     ) -> matplotlib.figure.Figure:
         """A measure as colour over two parameters.
 
-        x, y: default the last two axes;  at: values of all others
-        proved: hatched: where that measure is "proved", where an array over x and y is true, or
-            below a limit y(x)
-        onset: the line on which the measure has that value, between the points
-        Points that failed stay white.
+        x, y: parameters across and up, default the last two axes;  at: values of all others
+        proved: region that is hatched: where the measure of that name is "proved", where an array
+            over x and y is true, or below a limit y(x)
+        onset: value of the measure at which a line is drawn, interpolated between the points
+
+        Points of failed simulations stay white.
         """
         over = Overlay(proved, proved_label, onset, onset_label)
         return draw_map(self._study, measure, (x, y), at, over)
@@ -113,15 +118,15 @@ class StudyPlots:
         onset: float | None = None,
         onset_label: str = "onset, simulated",
     ) -> matplotlib.figure.Figure:
-        """Maps side by side with one scale of colours, one for each value of a third parameter.
+        """Maps side by side with one scale of colours, a map for each value of a third parameter.
 
-        by: that parameter, default the first axis;  others as in `map`
+        by: that parameter, default the first axis;  other arguments: as for `map`
         """
         over = Overlay(proved, proved_label, onset, onset_label)
         return draw_panels(self._study, measure, (x, y, by), at, over)
 
     def scatter(self, measure: str = "") -> matplotlib.figure.Figure:
-        """A measure over each parameter of points drawn together, a panel each."""
+        """A measure over each parameter, for points that were drawn together; a panel for each."""
         import matplotlib.pyplot as plt
 
         values = self._study.measure(measure)

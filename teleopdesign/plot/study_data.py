@@ -1,4 +1,4 @@
-"""Axes and measures of a study's data by their names, and the words of their labels."""
+"""Axes and measures of a study's data by their names, and texts of their labels."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _EVEN = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class StudyData:
-    """What a study's figures read: each method takes names of axes and measures.
+    """The data of a study for its figures: the methods take names of axes and measures.
 
     raises ModelError: no such axis or measure
     """
@@ -35,15 +35,15 @@ class StudyData:
         return list(json.loads(self.data.attrs["axes"]))
 
     def name(self, name: str) -> str:
-        """What a parameter or measure is called in a label."""
+        """The text for a parameter or a measure in a label."""
         return words(self.data[name].attrs.get("long_name") or name)
 
     def is_number(self, *names: str) -> bool:
-        """Whether the values of all of them are numbers, not words."""
+        """Whether the values of all these variables are numbers and not words."""
         return all(self.data[n].dtype.kind in "biuf" for n in names)
 
     def measure(self, name: str) -> xarray.DataArray:
-        """The measure of that name;  "": the first one in numbers."""
+        """The measure of that name, which must have numbers;  "": the first such measure."""
         known = [str(n) for n in self.data.data_vars if n != "failure" and self.is_number(str(n))]
         if not name and known:
             name = known[0]
@@ -55,7 +55,7 @@ class StudyData:
         return self.data[name]
 
     def at(self, values: xarray.DataArray, at: Mapping[str, float] | None) -> xarray.DataArray:
-        """The values nearest to those of `at`, without the axes that have one value left."""
+        """The values nearest to the point `at`, without axes that have only one value left."""
         for name, value in (at or {}).items():
             self.require(name, [str(d) for d in values.dims])
             if self.data[name].dtype.kind in "biuf":
@@ -65,14 +65,17 @@ class StudyData:
         return values.squeeze(drop=True)
 
     def require(self, name: str, known: Sequence[str]) -> None:
-        """Refuse a name that is none of the known axes."""
+        """Raise ModelError if `name` is not a known axis."""
         if name not in known:
             raise ModelError(
                 f'study: no axis "{name}", has {join_names(known)}{did_you_mean(name, known)}'
             )
 
     def pair(self, values: xarray.DataArray, x: str, y: str) -> tuple[str, str]:
-        """The axes of a map, across and up: those asked for, else the last two."""
+        """The axes of a map, across and up: x and y if given, else the last two.
+
+        raises ModelError: the values do not have two axes, or there is no such axis
+        """
         dims = [str(d) for d in values.dims]
         if len(dims) != 2:
             raise ModelError(
@@ -88,7 +91,7 @@ class StudyData:
         return across, up
 
     def label_axis(self, axis: Axes, which: str, name: str) -> None:
-        """Label one axis of a panel, "x" or "y"; logarithmic where the values are spaced so."""
+        """Label the axis "x" or "y" of a panel; logarithmic if the values have a constant ratio."""
         values = self.data[name].values
         if values.dtype.kind in "biuf" and len(values) > 2 and (values > 0).all():
             ratios = values[1:] / values[:-1]
@@ -98,16 +101,16 @@ class StudyData:
 
 
 def label(array: xarray.DataArray) -> str:
-    """Name and unit."""
+    """Name and unit of an array, for an axis."""
     unit = array.attrs.get("units", "")
     name = words(array.attrs.get("long_name") or str(array.name))
     return f"{name} ({unit_text(unit)})" if unit else name
 
 
 def words(name: str) -> str:
-    """The name with spaces, a signal at its end as a symbol: "rms_R_FF" is rms and R_FF.
+    """The name with spaces, and a signal at its end as a symbol: "rms_R_FF" is rms and R_FF.
 
-    What has a dot is a path of the model and stays; so does what stands between dollar signs.
+    A name with a dot is a path of the model and stays unchanged; so does text between dollar signs.
     """
     if "$" in name or "." in name:
         return "$".join(
@@ -123,15 +126,15 @@ def words(name: str) -> str:
 
 
 def join_names(names: Sequence[str]) -> str:
-    """Names in a message."""
+    """Names in a list for a message."""
     return ", ".join(names)
 
 
 def number(value: Any) -> str:
-    """Three digits; a word stays."""
+    """The number with three significant digits; a word stays unchanged."""
     return value if isinstance(value, str) else f"{float(value):.3g}"
 
 
 def spread(count: int, most: int) -> list[int]:
-    """At most that many of `count` places, evenly."""
+    """Indices, at most `most` and evenly spaced, out of range(count)."""
     return sorted({round(k) for k in np.linspace(0, count - 1, min(count, most))})

@@ -28,7 +28,7 @@ MOST_PANELS = 9
 
 @dataclass(frozen=True)
 class Overlay:
-    """What is drawn over a map: see `StudyPlots.map`."""
+    """Marks that are drawn over a map: see `StudyPlots.map`."""
 
     proved: Any
     proved_label: str
@@ -133,7 +133,7 @@ def _draw_marks(
     over: Overlay,
     at: Mapping[str, float] | None,
 ) -> None:
-    """Hatched region and line of onset over a map."""
+    """Draw the hatched region and the line of onset over a map."""
     (across, up), proved, onset = along, over.proved, over.onset
     x, y = study.data[across].values, study.data[up].values
     box = axis.get_xlim(), axis.get_ylim()
@@ -166,9 +166,10 @@ def _draw_legend(figure: Any, axis: Axes) -> None:
 
 
 def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float]:
-    """Scale of colours: of all numbers; even about 0 where the onset is at 0.
+    """Ends of the colour scale: all numbers; symmetric about 0 if the onset is at 0.
 
-    There the 95th percentile of sizes: swings that explode would leave no colour for the rest.
+    The symmetric scale ends at the 95th percentile of the absolute values; growing swings with very
+    large values would leave no colour for the rest.
     """
     finite = values.values[np.isfinite(values.values)]
     if not finite.size:
@@ -180,6 +181,6 @@ def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float
 
 
 def _edges(values: np.ndarray, ends: tuple[float, float] | None = None) -> np.ndarray:
-    """Points, with the ends of the axis (or the last values again) on both sides."""
+    """The points, with the ends of the axis (or the first and last point again) on both sides."""
     first, last = ends or (values[0], values[-1])
     return np.concatenate([[first], values, [last]])

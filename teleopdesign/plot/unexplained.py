@@ -1,4 +1,4 @@
-"""The figure of what a model leaves: views of the residual, and the curve of each dependence."""
+"""The figure of a residual: its views, and a curve for each dependence on a variable."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COLOURS = {
 
 
 def plot_unexplained(failure: ResidualDescription) -> Figure:
-    """Views of each body with the sentences above, dependences first."""
+    """The sentences of all findings, and below them the graphs of each body, dependences first."""
     import matplotlib.pyplot as plt
 
     panels = [p for part in failure.parts for p in _panels(part, name=len(failure.parts) > 1)]

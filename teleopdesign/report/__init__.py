@@ -1,4 +1,4 @@
-"""The report of a diagnosis: one HTML page that needs nothing else; computes no physics."""
+"""The report of a diagnosis: one self-contained HTML page; this folder computes no physics."""
 
 from ..arguments import check_arguments
 from .arm import ArmPage, arm_page_of, write_arm_report

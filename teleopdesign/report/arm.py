@@ -1,7 +1,7 @@
-"""The report of an arm: one HTML page with the whole arm, and a part for each joint as bodies have.
+"""The report of an arm: one HTML page with the whole arm, and a part for each joint.
 
-Each joint's diagnosis is one of a body, so its part is that body's page; here stands what they
-share: the ladder of the arm, the joints in a table, the links, the recording.
+The diagnosis of a joint is that of a body, so its part is a page of a body. This module adds what
+the joints share: the ladder of the arm, the joints in a table, the links, the recording.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .write import Figures, figures_of, render_page
 class JointPart:
     """A joint: its errors with all joints estimated together, and its page.
 
-    left: in noise floors of the joint;  said: the verdict on it in words
+    left: check error in noise floors of the joint;  said: the verdict on the joint in words
     """
 
     name: str
@@ -45,7 +45,7 @@ class JointPart:
 
 @dataclass(frozen=True)
 class LinkRow:
-    """A base parameter of the links, SI; stderr: None where it is not determined."""
+    """A base parameter of the links, SI; stderr: None if the parameter is not determined."""
 
     name: str
     unit: str
@@ -55,7 +55,7 @@ class LinkRow:
 
 @dataclass(frozen=True)
 class ArmPage:
-    """What the report of an arm shows, top to bottom. Errors are relative, the rest is SI."""
+    """The content of an arm's report, from top to bottom. Errors are relative, the rest is SI."""
 
     title: str
     folder: str
@@ -82,7 +82,7 @@ class ArmPage:
 
 @dataclass(frozen=True)
 class ArmFigures:
-    """Pictures of the whole arm, and those of each joint's part."""
+    """Pictures of the whole arm, and those in the part of each joint."""
 
     whole: Figures
     joints: tuple[Figures, ...]
@@ -96,7 +96,7 @@ def arm_page_of(
 ) -> ArmPage:
     """The page of an arm.
 
-    soundness: about the recording;  unexplained: joint -> about what its last model leaves
+    soundness: findings on the recording;  unexplained: joint -> findings on its last residual
     """
     experiment, left = diagnosis.experiment, unexplained or {}
     return ArmPage(
@@ -158,7 +158,7 @@ def _ladder(diagnosis: ArmDiagnosis) -> tuple[LadderRow, ...]:
 
 
 def _verdict(diagnosis: ArmDiagnosis) -> str:
-    """The verdict on the arm in a sentence or two."""
+    """The verdict on the arm in one or two sentences."""
     before, after = percent(diagnosis.before.check_error), percent(diagnosis.after.check_error)
     where = describe_judgement(diagnosis.experiment)
     if diagnosis.verdict == "model_adequate":
@@ -183,9 +183,9 @@ def write_arm_report(
     soundness: Sequence[Finding] = (),
     unexplained: Mapping[str, Sequence[Finding]] | None = None,
 ) -> None:
-    """Write the page of an arm; the same diagnosis has the same bytes.
+    """Write the page of an arm; the same diagnosis gives the same bytes.
 
-    soundness, unexplained: as `arm_page_of` takes them
+    soundness, unexplained: as in `arm_page_of`
     """
     page = arm_page_of(diagnosis, soundness=soundness, unexplained=unexplained)
     data: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Two graphs of one body before and after: the residual over velocity, and the force in time."""
+"""Two graphs of one body, before and after: the residual over velocity, and the force in time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ YOURS = "your model"
 
 @dataclass(frozen=True)
 class BodySamples:
-    """Samples that count, of one body: (n,) each; residual: one for each rung."""
+    """Samples of one body that count in the error, (n,) each.
+
+    time: s, without gaps;  clock: s, of the record;  residual: one array for each rung
+    """
 
     time: Array
     clock: Array
@@ -39,12 +42,12 @@ class BodySamples:
     residual: tuple[Array, ...]
 
     def select_rungs(self, rungs: list[int]) -> BodySamples:
-        """The same samples on these rungs."""
+        """The same samples, with the residuals of these rungs."""
         return replace(self, residual=tuple(self.residual[i] for i in rungs))
 
 
 def plot_over_velocity(rows: BodySamples, axis: str, force: Scaled) -> Graph:
-    """Mean residual over velocity on the first and the last rung, with the band of most samples."""
+    """Mean residual over velocity on the first and last rung, with a band of 80 % of samples."""
     speed = choose_prefix(unit_of("velocity", axis), size_of(rows.velocity))
     series = [
         Series(
@@ -69,7 +72,7 @@ def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
 
 
 def _profile(rows: BodySamples, residual: Array) -> list[tuple[float, float, float, float]]:
-    """Velocity, mean, low and high residual of groups of equally many samples in each direction."""
+    """Mean velocity, mean, low and high residual of groups of equal size in each direction."""
     groups = []
     for way in (-1, 1):
         this_way = np.flatnonzero(rows.direction == way)
@@ -85,7 +88,7 @@ def _profile(rows: BodySamples, residual: Array) -> list[tuple[float, float, flo
 
 
 def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
-    """Measured and modelled force where the residual fell most (or is largest)."""
+    """Measured and modelled force where the residual decreased most (or is largest)."""
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
     force = choose_prefix(unit_of("force", axis), size_of(rows.measured[window]))
@@ -119,6 +122,6 @@ def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
 
 
 def _moving_mean(values: Array, length: int) -> Array:
-    """Mean of each window of that length."""
+    """Mean of each window of `length` samples."""
     sums = np.concatenate([[0.0], np.cumsum(values)])
     return np.asarray((sums[length:] - sums[:-length]) / length)

@@ -1,4 +1,4 @@
-"""The ladder's rungs, and every candidate, with how it did on each of them."""
+"""The rungs of the ladder, and every candidate with its result on each of them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from .words import step_name
 class LadderRow:
     """One rung; errors are relative to the measured force, floors are noise floors.
 
-    at_command: the error seen at the command and the blind share in words, where they say more
+    alike: effects that explain the records equally well
+    at_command: error at the command and blind share in words, if they add information
     """
 
     name: str
@@ -33,7 +34,7 @@ class LadderRow:
 
 @dataclass(frozen=True)
 class CandidateScore:
-    """How a candidate did on one step; outcome: what of `_outcome` holds, or ""."""
+    """Result of a candidate on one step; outcome: a word of `_outcome`, or ""."""
 
     check_error: float
     score: float
@@ -42,7 +43,7 @@ class CandidateScore:
 
 @dataclass(frozen=True)
 class CandidateStep:
-    """A column of the table of candidates: its heading, and the check error with nothing added."""
+    """A column of the table of candidates: its heading, and the check error without a candidate."""
 
     heading: str
     check_error: float
@@ -50,7 +51,7 @@ class CandidateStep:
 
 @dataclass(frozen=True)
 class CandidateRow:
-    """A candidate with its probability, and how it did on each step (None: not fitted there)."""
+    """A candidate with its probability, and its result on each step (None: not fitted there)."""
 
     effect: str
     at: str
@@ -76,7 +77,7 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
 
 
 def candidate_steps(diagnosis: Diagnosis) -> tuple[CandidateStep, ...]:
-    """The steps that candidates were fitted on; of an answer that was read back, the best alone."""
+    """The steps on which candidates were fitted; for an answer from a file, only the best step."""
     ladder = ladder_rows(diagnosis)
     if diagnosis.recorded is not None:
         return (CandidateStep("at its best step", ladder[0].check_error),)
@@ -87,7 +88,7 @@ def candidate_steps(diagnosis: Diagnosis) -> tuple[CandidateStep, ...]:
 
 
 def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
-    """Every candidate, with its check error on each step: those added, then by probability."""
+    """Every candidate with its check error on each step: added ones first, then by probability."""
     if diagnosis.recorded is not None:
         return tuple(_recorded_row(diagnosis, row) for row in diagnosis.recorded["candidates"])
     steps = [(r, r.ranking) for r in diagnosis.rungs if r.ranking is not None]
@@ -116,7 +117,7 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
 
 
 def _recorded_row(diagnosis: Diagnosis, row: Mapping[str, Any]) -> CandidateRow:
-    """A candidate as an answer tells of it: at the step that accepted it, or at its best."""
+    """A candidate as an answer describes it: at the step that accepted it, or at its best step."""
     key = (row["effect"], row["at"])
     if key in {r.added.key for r in diagnosis.rungs if r.added is not None}:
         outcome = "added"
@@ -131,7 +132,7 @@ def _recorded_row(diagnosis: Diagnosis, row: Mapping[str, Any]) -> CandidateRow:
 
 
 def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
-    """Outcome of a candidate at a step, where the error alone does not show it."""
+    """Outcome of a candidate at a step, if the error alone does not show it; else ""."""
     key = ranked.candidate.key
     if rung is not None and rung.added is not None and rung.added.key == key:
         return "added"

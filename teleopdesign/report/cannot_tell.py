@@ -1,4 +1,4 @@
-"""What the records of a diagnosis cannot tell, each with the numbers that say so."""
+"""Questions that the records of a diagnosis cannot decide, each with its numbers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PAIRS = 6
 
 
 def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
-    """Effects, parameters and candidates that these records cannot decide; may be empty."""
+    """Effects, parameters and candidates that the records cannot decide; may be empty."""
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
         *_untold(diagnosis),
@@ -43,14 +43,14 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
 
 
 def _untold(diagnosis: Diagnosis) -> list[Finding]:
-    """Of effects that stand: which of their parameters' values do not."""
+    """Parameters without a determined value, of effects that are certain."""
     return [
         Finding("values that are not determined", "warning", f"{one}.") for one in diagnosis.untold
     ]
 
 
 def _set_aside(diagnosis: Diagnosis) -> list[Finding]:
-    """Effects that lowered the error and were taken out of the model again."""
+    """Effects that lowered the error but were removed from the model again."""
     return [
         Finding(
             topic="effects set aside",
@@ -65,7 +65,7 @@ def _set_aside(diagnosis: Diagnosis) -> list[Finding]:
 
 
 def _clock(diagnosis: Diagnosis) -> list[Finding]:
-    """Shifts between force and position of the records, where a delay would look the same."""
+    """Time shifts between force and position in the records, if a delay would look the same."""
     return [
         Finding(
             topic="clock of the logger",
@@ -108,7 +108,7 @@ def _group(rung: Rung) -> Finding:
 
 
 def _likeness(base: Fit, one: Ranked, other: Ranked) -> float:
-    """Correlation of what two candidates take away from the residual of the check records."""
+    """Correlation of the changes that two candidates make to the residual of the check records."""
     a = base.check_residual - one.fit.check_residual
     b = base.check_residual - other.fit.check_residual
     size = float(np.linalg.norm(a) * np.linalg.norm(b))
@@ -162,7 +162,7 @@ def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
 
 
 def _find_correlated(fit: Fit) -> list[Finding]:
-    """Pairs of parameters whose estimates are so correlated that only a combination is known."""
+    """Pairs of parameters with such a correlation that only a combination of them is known."""
     size = np.linalg.norm(fit.jacobian, axis=0)
     moving = [i for i in range(len(fit.free)) if size[i] > 0]
     columns = fit.jacobian[:, moving] / size[moving]
@@ -243,7 +243,7 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
 
 
 def _findings_on_exclusions(diagnosis: Diagnosis) -> list[Finding]:
-    """What the user kept from being searched."""
+    """Effects that the user excluded from the search."""
     if not diagnosis.left_out:
         return []
     said = "; ".join(diagnosis.left_out)

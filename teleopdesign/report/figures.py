@@ -1,4 +1,4 @@
-"""The figures of a report, drawn from the data of its page; each with an alternative text."""
+"""The figures of a report, drawn from the data of its page, each with an alternative text."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ GREY, RULE = "0.55", "#D9D9D9"
 
 
 def make_diverging_colormap() -> Colormap:
-    """Blue for less force than the model needs, grey for none, orange for more; clear to all eyes.
+    """Blue for too little force, grey for none, orange for too much; suits colour blindness.
 
     The middle is grey, not white, so that cells without data stand out on light and dark pages.
     """
@@ -40,7 +40,7 @@ def make_diverging_colormap() -> Colormap:
 
 
 def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
-    """Check error of every rung as a bar, the fit error as a ring, the noise floor as a line."""
+    """Check error of every rung as a bar, fit error as a ring, noise floor as a line."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
@@ -132,7 +132,7 @@ def _trace(view: BodyView, step: RungResidual, axes: Axes, colour: str) -> None:
 
 
 def colour_scale(view: BodyView) -> Markup:
-    """The scale that all maps of a body share."""
+    """The colour scale that all maps of a body share."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
@@ -158,7 +158,7 @@ def colour_scale(view: BodyView) -> Markup:
 
 
 def graph_figure(graph: Graph, alt: str, *, width: float = PANEL) -> Markup:
-    """The graph of a finding."""
+    """The picture of a finding's graph; alt: alternative text, width: inches."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()

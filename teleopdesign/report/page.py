@@ -1,4 +1,4 @@
-"""The data of a report's page: everything that it shows, as plain numbers and texts."""
+"""The data of a report's page: all its content, as plain numbers and texts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ DIGITS = 5
 
 @dataclass(frozen=True)
 class Page:
-    """What a report shows, top to bottom. Errors are relative, everything else is SI."""
+    """The content of a report, from top to bottom. Errors are relative, everything else is SI."""
 
     title: str
     folder: str
@@ -77,8 +77,8 @@ def page_of(
 ) -> Page:
     """The page of a diagnosis.
 
-    soundness: about the recording itself;  unexplained: about what the last model leaves
-    next_steps: what to measure next; each section is left out where there is nothing to say
+    soundness: findings on the recording;  unexplained: findings on the last residual
+    next_steps: findings on what to measure next; a section without findings is left out
     """
     experiment, rows = diagnosis.experiment, parameter_rows(diagnosis)
     ladder = ladder_rows(diagnosis)
@@ -115,7 +115,7 @@ def page_of(
 
 
 def version() -> str:
-    """Version of the package as installed."""
+    """Version of the installed package."""
     try:
         return metadata.version("teleopdesign")
     except metadata.PackageNotFoundError:  # used from its folder, without an installation
@@ -123,7 +123,7 @@ def version() -> str:
 
 
 def limit_size(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """The findings with graphs of so few points that the page stays small."""
+    """The findings, with few enough points in their graphs that the page stays small."""
     return tuple(
         f if f.graph is None else dataclasses.replace(f, graph=_thin(f.graph)) for f in findings
     )
@@ -135,5 +135,5 @@ def _thin(graph: Graph) -> Graph:
 
 
 def page_data(page: Page, diagnosis: Diagnosis) -> dict[str, Any]:
-    """What is embedded in the page: the answer, and every number that the page shows."""
+    """Data embedded in the page: the answer, and every number that the page shows."""
     return {"answer": make_plain(answer(diagnosis)), "report": make_plain(page, digits=DIGITS)}

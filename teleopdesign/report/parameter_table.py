@@ -1,4 +1,4 @@
-"""Parameters of a diagnosis: as stated, before and after; and the effects that were added."""
+"""Parameters of a diagnosis, as stated, before and after; and the effects that were added."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ from ..plain_data import make_plain
 class ParameterRow:
     """A parameter in SI: as written in the experiment, re-estimated before, and after.
 
-    stated: None where the experiment leaves it open;  before: None where its effect was added
-    after: None where its effect gave way to another;  gave_way_to: the name of that, else ""
+    stated: None if the experiment leaves it open;  before: None if its effect was added
+    after: None if another effect replaced its effect;  gave_way_to: name of the other effect, else
+        ""
     low, high: 95 % interval, cut at the physical bounds
     """
 
@@ -44,7 +45,7 @@ class ParameterRow:
 
 @dataclass(frozen=True)
 class AddedEffect:
-    """An effect that was added: what it is, and its parameters' rows by name."""
+    """An effect that was added: its description, and the rows of its parameters."""
 
     effect: str
     at: str
@@ -56,7 +57,7 @@ class AddedEffect:
 
 
 def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
-    """Every parameter of the user's model and of the one that the diagnosis ends with."""
+    """Every parameter of the user's model and of the last model of the diagnosis."""
     stated, before = _stated_values(diagnosis), diagnosis.before.model.parameters
     added = {r.added.key for r in diagnosis.rungs if r.added is not None}
     rows = []
@@ -89,7 +90,7 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
 
 
 def _rows_removed(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[ParameterRow]:
-    """The parameters of effects of the user's model that gave way to others."""
+    """The parameters of effects in the user's model that other effects replaced."""
     model, there = diagnosis.before.model, diagnosis.model.parameters
     instead = {r.instead_of.key: r.added for r in diagnosis.rungs if r.added and r.instead_of}
     rows = []
@@ -123,14 +124,14 @@ def _rows_removed(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[Par
 
 
 def _parts(name: str) -> tuple[str, str, str]:
-    """Place, effect ("" for one of the body) and parameter of a full name."""
+    """Place, effect ("" for a parameter of the body) and parameter in a full name."""
     place, _, local = name.partition(".")
     effect, _, parameter = local.rpartition(".")
     return place, effect, parameter
 
 
 def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple[AddedEffect, ...]:
-    """What each added effect is, from its file."""
+    """The description of each added effect, from its file."""
     return tuple(
         AddedEffect(
             effect=r.added.effect.name,
@@ -147,7 +148,7 @@ def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple
 
 
 def _stated_values(diagnosis: Diagnosis) -> dict[str, float]:
-    """Values of the experiment's file, by full name (SI)."""
+    """Values in the experiment's file, by full name (SI)."""
     experiment = diagnosis.experiment
     try:
         # a diagnosis among some effects knows no others; the file's model may have them

@@ -1,8 +1,8 @@
-"""A matplotlib figure as an <img> element that holds the SVG: nothing is loaded from elsewhere.
+"""A matplotlib figure as an <img> element that contains the SVG: the page loads no other file.
 
-The SVG is the library's output. As the content of an image its identifiers and styles cannot
-meet those of the page, and no text in it can become an element of the page. The same figure has
-the same bytes. On a dark page the style sheet inverts the picture's lightness.
+Inside an image, identifiers and styles of the SVG cannot conflict with those of the page, and no
+text in it can become an element of the page. The same figure gives the same bytes. On a dark page
+the style sheet inverts the picture's lightness.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ PIXELS_PER_INCH = 288
 
 
 def picture(draw: Callable[[Figure], None], *, size: tuple[float, float], alt: str) -> Markup:
-    """What `draw` draws, as an <img> element with an alternative text.
+    """The drawing by `draw` as an <img> element with an alternative text.
 
-    draw: gets an empty figure in house style;  size: width and height, inches
-    alt: plain text, escaped here
+    draw: function that receives an empty figure in house style
+    size: width and height, inches;  alt: plain text, escaped here
     """
     import matplotlib.style
     from matplotlib import rc_context

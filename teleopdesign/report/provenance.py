@@ -1,4 +1,4 @@
-"""Where a report's numbers come from: the record files and the channels."""
+"""Sources of a report's numbers: the record files and the channels."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BLOCK = 1 << 20
 
 @dataclass(frozen=True)
 class RecordRow:
-    """A record file and what is in it; duration in s, rate in Hz, digest: SHA-256 of its log."""
+    """A record file and its content; duration in s, rate in Hz, digest: SHA-256 of its log."""
 
     file: str
     use: str
@@ -29,7 +29,7 @@ class RecordRow:
 
 @dataclass(frozen=True)
 class ChannelRow:
-    """A channel as described; resolution and noise in SI (`si_unit`), None where not stated."""
+    """A channel as described; resolution and noise in SI (`si_unit`), None if not stated."""
 
     name: str
     column: str
@@ -57,9 +57,9 @@ def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
 
 
 def _digest(experiment: Experiment, file: str) -> str:
-    """SHA-256 of a record's log; empty where it is no longer there.
+    """SHA-256 of a record's log; "" if the log no longer exists.
 
-    Of a folder (a bag): of its files one after the other, in the order of their names.
+    For a folder (a bag): of its files one after the other, sorted by name.
     """
     path = experiment.folder / file
     if not path.exists():  # a part of a log

@@ -1,8 +1,8 @@
-"""Where the model failed, step by step: the residual over position, velocity and time of each body.
+"""The residual of the model, step by step, over position, velocity and time of each body.
 
-Taken from the low-passed residuals of the check records (of the fit records where there is no
-check record), the samples that count in the force error. Units are SI, residual > 0: more force
-acts than the model needs.
+From the low-passed residuals of the check records (of the fit records without a check record), at
+the samples that count in the force error. Units are SI; residual > 0: more force acts than the
+model needs.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ OUTSIDE = 4.0
 class RungResidual:
     """One rung on one body: rms residual, its mean in cells of position and velocity, its trace.
 
-    mean: (velocity cells, position cells), NaN where the motion hardly came
+    mean: (velocity cells, position cells), NaN in cells with too few samples
     low, high: (buckets,) of the residual over `BodyView.time`
     """
 
@@ -50,8 +50,8 @@ class BodyView:
     """The residual of one body on every rung that changed it, on one scale.
 
     position, velocity: edges of the cells;  limit: mean residual at the ends of the colour scale
-    noise: rms of what sensors alone would leave, of all bodies together
-    time: s along the records shown, without gaps;  joints: where one stretch follows another
+    noise: rms residual from sensor noise alone, of all bodies together
+    time: s along the records shown, without gaps;  joints: times at which a new stretch begins
     """
 
     body: str
@@ -70,9 +70,9 @@ class BodyView:
 
 
 def body_views(diagnosis: Diagnosis, names: tuple[str, ...]) -> tuple[BodyView, ...]:
-    """The residual on every rung, for each body that the records shown have.
+    """The residual on every rung, for each body in the records shown.
 
-    names: what each rung is called
+    names: of the rungs
     """
     prepared = diagnosis.prepared
     shown = replace(prepared, stretches=prepared.of("check") or prepared.of("fit"))
@@ -88,7 +88,7 @@ def body_views(diagnosis: Diagnosis, names: tuple[str, ...]) -> tuple[BodyView, 
 
 
 def _list_changed_rungs(residual: tuple[Array, ...]) -> list[int]:
-    """The first rung, and those that changed the residual of this body by more than rounding."""
+    """The first rung, and rungs that changed the residual of this body by more than rounding."""
     scale = float(np.sqrt(np.mean(residual[0] ** 2)))
     moved = [float(np.sqrt(np.mean((b - a) ** 2))) for a, b in pairwise(residual)]
     return [0, *(i for i, size in enumerate(moved, 1) if size > SAME * scale)]
@@ -153,14 +153,14 @@ def _view(
 
 
 def _noise(diagnosis: Diagnosis) -> float:
-    """The noise floor as a force: it is relative to the rms of the measured one."""
+    """The noise floor as a force: the floor is relative to the rms of the measured force."""
     shown = diagnosis.prepared.of("check") or diagnosis.prepared.of("fit")
     rows = sum(s.weight * len(s.keep) for s in shown)
     return diagnosis.floor.value * float(np.sqrt(sum(s.measured for s in shown) / rows))
 
 
 def _round_up(value: float) -> float:
-    """The next value of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten: the end of a scale."""
+    """The next of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten, as the end of a scale."""
     if value <= 0:
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))

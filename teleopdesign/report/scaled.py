@@ -1,4 +1,4 @@
-"""The prefix in which a quantity reads well on an axis: 0.012 m as 12 mm."""
+"""The unit prefix that suits the values on an axis: 0.012 m as 12 mm."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _SHOWN = {
 
 @dataclass(frozen=True)
 class Scaled:
-    """A unit to show a quantity in, and the factor from SI to it."""
+    """A unit for display, and the factor from SI to it."""
 
     unit: str
     factor: float
 
 
 def choose_prefix(unit: str, size: float) -> Scaled:
-    """The prefix in which values up to `size` (SI) are at least 0.5, or the smallest there is."""
+    """The largest prefix in which `size` (SI) is at least 0.5, or the smallest that exists."""
     choices = _SHOWN.get(unit, ((unit_text(unit), 1.0),))
     for shown, factor in reversed(choices):
         if size * factor >= 0.5:
@@ -38,5 +38,5 @@ def choose_prefix(unit: str, size: float) -> Scaled:
 
 
 def size_of(values: Array) -> float:
-    """How large values are, but for the largest two in a hundred."""
+    """Size of values: the 98 % quantile of their magnitudes."""
     return float(np.quantile(np.abs(values), 0.98))

@@ -21,7 +21,7 @@ _POWER = re.compile(r"(?<=[a-z])\^([23])(?!\d)")
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """A number with so many significant digits: 0.1972, −12 300, 1.2·10⁻⁶; a dash for none."""
+    """A number with some significant digits: 0.1972, −12 300, 1.2·10⁻⁶; a dash for None or NaN."""
     if value is None or not math.isfinite(value):
         return NONE
     if value == 0:
@@ -35,13 +35,13 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def short(value: float | None, digits: int = 4) -> str:
-    """A number without the zeros at its end: 60, 58.9, 7.2·10⁻⁶."""
+    """A number without trailing zeros: 60, 58.9, 7.2·10⁻⁶."""
     text, times, power = number(value, digits).partition("·")
     return (text.rstrip("0").rstrip(".") if "." in text else text) + times + power
 
 
 def with_error(value: float, error: float | None) -> tuple[str, str]:
-    """A value and its standard error to the same decimal, the error's second significant one."""
+    """A value and its standard error, both to the second significant digit of the error."""
     if error is None or not math.isfinite(error) or error <= 0:
         return number(value), NONE
     decimals = 1 - math.floor(math.log10(error))
@@ -61,20 +61,20 @@ def percent(value: float | None) -> str:
 
 
 def sentence_of(entry: object | None) -> str:
-    """What an entry of a diagnosis says of itself, as a sentence; nothing where there is none."""
+    """The text of an entry of a diagnosis as a sentence; "" without an entry."""
     text = "" if entry is None else str(entry)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 def unit_text(unit: str) -> str:
-    """An SI unit as printed: N*s/m as N·s/m, m^2 as m²; nothing for a plain number."""
+    """An SI unit as printed: N*s/m as N·s/m, m^2 as m²; "" for a plain number."""
     if unit == "1":
         return ""
     return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
 
 
 def typeset(sentence: str) -> str:
-    """A sentence of a terminal as a page prints it: a capital letter, ± and units with dots."""
+    """A sentence of the terminal in the form of a page: capital letter, ± and units with dots."""
     first = sentence.partition(" ")[0].rstrip(",:;")
     if first.isalpha() and first.isascii():  # no number, and no key of a file
         sentence = sentence[0].upper() + sentence[1:]
@@ -83,21 +83,21 @@ def typeset(sentence: str) -> str:
 
 
 def join_names(names: list[str], last: str = "and") -> str:
-    """Names as a person lists them: a, b and c."""
+    """Names as a list in a sentence: a, b and c."""
     if len(names) < 2:
         return "".join(names)
     return f"{', '.join(names[:-1])} {last} {names[-1]}"
 
 
 def step_name(rung: Rung) -> str:
-    """What a rung adds, with those that do as well: "stribeck at device"."""
+    """The effect that a rung adds, with equally good ones: "stribeck at device"."""
     if rung.added is None:
         return "your model, re-estimated"
     return " or ".join((rung.said, *map(str, rung.alternatives)))
 
 
 def describe_judgement(experiment: Experiment) -> str:
-    """What the errors are reported on."""
+    """The records on which the errors are reported."""
     if experiment.check_records:
         return "records that were not fitted"
     return "blocks of the records that were held out of the fit"
@@ -109,7 +109,7 @@ def _floors(left: float) -> str:
 
 
 def verdict(diagnosis: Diagnosis) -> str:
-    """The verdict in a sentence or two."""
+    """The verdict in one or two sentences."""
     before, after = diagnosis.before.check_error, diagnosis.after.check_error
     floor, left = percent(diagnosis.floor.value), _floors(diagnosis.left)
     fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "

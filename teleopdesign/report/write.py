@@ -28,7 +28,7 @@ TEMPLATES = Path(__file__).with_name("templates")
 
 @dataclass(frozen=True)
 class Figures:
-    """The page's pictures; scales, steps and the rest for each body, findings by (section, row)."""
+    """The pictures of a page; scales, steps etc. by body, findings by (section, row)."""
 
     ladder: Markup
     scales: tuple[Markup, ...]
@@ -46,10 +46,10 @@ def write_report(
     unexplained: Sequence[Finding] = (),
     next_steps: Sequence[Finding] = (),
 ) -> None:
-    """Write the page of a diagnosis; the same diagnosis has the same bytes.
+    """Write the page of a diagnosis; the same diagnosis gives the same bytes.
 
-    soundness: findings about the recording;  unexplained: about what the last model leaves
-    next_steps: what to measure next; a section without findings is left out
+    soundness: findings on the recording;  unexplained: findings on the last residual
+    next_steps: findings on what to measure next; a section without findings is left out
     """
     page = page_of(diagnosis, soundness=soundness, unexplained=unexplained, next_steps=next_steps)
     html = render(page, figures_of(page), page_data(page, diagnosis))
@@ -57,12 +57,12 @@ def write_report(
 
 
 def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
-    """The page as HTML; every text of it is escaped."""
+    """The page as HTML, with all its texts escaped."""
     return render_page("report.html.jinja", page, figures, data)
 
 
 def render_page(name: str, page: object, figures: object, data: dict[str, Any]) -> str:
-    """A page by the template of that name, with what is embedded in it; its texts are escaped."""
+    """A page from the named template, with embedded data; its texts are escaped."""
     template = _environment().get_template(name)
     script = figure_script()
     text = template.render(
@@ -76,18 +76,18 @@ def render_page(name: str, page: object, figures: object, data: dict[str, Any]) 
 
 
 def figure_script() -> Markup:
-    """The page's only script: it opens figures. It is the package's, no text of a file is in it."""
+    """The only script of the page, which opens figures; it contains no text from a file."""
     return Markup((TEMPLATES / "figures.js.jinja").read_text(encoding="utf-8"))
 
 
 def _digest_of(script: str) -> str:
-    """What the page's policy allows to run: this text alone, whatever else got into the page."""
+    """Digest of the only script that the policy of the page allows to run."""
     digest = b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
     return f"sha256-{digest}"
 
 
 def embedded_json(data: dict[str, Any]) -> Markup:
-    """JSON that may stand in a <script> element: no text in it can end the element."""
+    """JSON for a <script> element, in which no text can end the element."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
@@ -95,7 +95,7 @@ def embedded_json(data: dict[str, Any]) -> Markup:
 
 
 def figures_of(page: Page) -> Figures:
-    """Every picture of the page."""
+    """Draw every picture of the page."""
     sections = {
         "cannot-tell": page.cannot_tell,
         "unexplained": page.unexplained,
@@ -160,18 +160,18 @@ def _environment() -> Environment:
 
 
 def _soft(text: str) -> Markup:
-    """A name, escaped, that may be broken after an underscore, a point or a slash."""
+    """A name, escaped, with possible line breaks after underscores, points and slashes."""
     parts = re.split(r"(?<=[_./])", text)
     return Markup("<wbr>").join(parts)
 
 
 def _emphasise_names(text: str, names: Iterable[str]) -> Markup:
-    """A sentence, escaped, in which whole words that are these names stand out."""
+    """A sentence, escaped, with the whole words among `names` in bold."""
     known = set(names)
     parts = re.split(r"(\w+)", text)
     return Markup("").join(Markup("<b>{}</b>").format(p) if p in known else p for p in parts)
 
 
 def _share(whole: float, part: float) -> str:
-    """Part of a whole in percent, at most all of it, for the length of a bar."""
+    """Part of a whole in percent, 0 to 100, as the length of a bar."""
     return f"{min(max(100 * part / whole, 0.0), 100.0) if whole > 0 else 0.0:.1f}"

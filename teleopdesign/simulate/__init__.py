@@ -1,4 +1,4 @@
-"""Simulate a diagram: prescribed motion or closed loop, sampled or continuous controllers."""
+"""Simulate a diagram, with a prescribed motion or in closed loop, sampled or continuous."""
 
 from ..arguments import check_arguments
 from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of

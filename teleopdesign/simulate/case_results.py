@@ -1,4 +1,4 @@
-"""Numbers of many cases as they come, and the labelled data set that they become."""
+"""Results of many cases, collected while they run, and the labelled data set of all."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ REDUCTIONS = {
 
 
 class CaseResults:
-    """Numbers of all cases as they come."""
+    """Results of all cases, collected while they run."""
 
     def __init__(self, cases: int) -> None:
         self.open: np.ndarray = np.ones(cases, dtype=bool)
@@ -46,7 +46,7 @@ class CaseResults:
             self.reasons[case] = reason
 
     def open_rows(self, samples: int, period: float, names: Sequence[str]) -> None:
-        """Room for the samples that are kept."""
+        """Allocate the samples of the kept signals; raises ModelError: too many numbers."""
         if not names:
             return
         cases, rows = len(self.open), samples + 1
@@ -67,7 +67,10 @@ class CaseResults:
         kept: Sequence[str],
         reduced: Sequence[str],
     ) -> None:
-        """Numbers of cases that are done, those of the outcome where `done` is true;  step: s."""
+        """Store the results of `cases`, the rows of the outcome where `done` is true.
+
+        step: inner step of these cases, s
+        """
         self.steps[cases] = step
         for j, name in enumerate(kept):
             self.rows[name][cases] = outcome.kept[done, :, j]
@@ -82,7 +85,11 @@ class CaseResults:
         reduced: Mapping[str, tuple[Any, str]],
         duration: float,
     ) -> xarray.Dataset:
-        """The data set of all cases;  columns: their values;  duration: s."""
+        """The data set of all cases.
+
+        columns: parameter -> value in each case;  reduced: result -> (signal, reduction);
+            duration: s
+        """
         import xarray
 
         units, texts = signal_units(diagram), diagram.texts

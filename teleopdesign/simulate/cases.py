@@ -1,9 +1,9 @@
 """Parameter sets of one diagram as numbers for its compiled laws, grouped by structure.
 
-What is simulated is not the diagram as stated: absent effects are left out, ideal friction
-gets a short bristle, controllers take their sampled form. So cases fall into groups, by which
-effects their values switch off, and some numbers of the simulated form follow from several of a
-case.
+The simulated form of a diagram differs from the stated one; absent effects are left out, ideal
+friction gets a short bristle, and controllers take their sampled form. So cases fall into groups,
+by the effects that their values switch off. Some numbers of the simulated form depend on several
+values of a case.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _CHANGE = 1e-3
 class Group:
     """Cases of one structure.
 
-    cases: their numbers;  diagram: the diagram at the first of them
+    cases: their indices;  diagram: the diagram with the values of the first of them
     """
 
     cases: np.ndarray
@@ -37,7 +37,7 @@ class Group:
 
 
 def columns_of(diagram: Diagram, values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
-    """The values as one array (cases,) for each parameter, single numbers repeated.
+    """The values as one array (cases,) for each parameter; single numbers are repeated.
 
     raises ModelError: no such parameter, arrays of different lengths, no numbers
     """
@@ -69,7 +69,7 @@ def columns_of(diagram: Diagram, values: Mapping[str, ArrayLike]) -> dict[str, n
 
 
 def list_refusals(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, str]:
-    """Case -> why the diagram does not take its values."""
+    """Case -> reason why the diagram does not accept its values."""
     suspect = np.zeros(_cases(columns), dtype=bool)
     for name, column in columns.items():
         lower, upper = bounds_of_value(diagram, name)
@@ -87,7 +87,7 @@ def list_refusals(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[i
 
 
 def _slides_by_itself(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Of each case, whether a friction level is below zero in a direction (`check_levels`)."""
+    """Mask (cases,): whether a friction level is below zero in one direction (`check_levels`)."""
     below = np.zeros(_cases(columns), dtype=bool)
     for part in diagram.bodies:
         body = part.body
@@ -111,7 +111,7 @@ def set_case(diagram: Diagram, columns: Mapping[str, np.ndarray], case: int) -> 
 def groups(
     diagram: Diagram, columns: Mapping[str, np.ndarray], cases: np.ndarray
 ) -> Iterator[Group]:
-    """The cases by structure: by which values leave an effect or an optional parameter out."""
+    """The cases by structure: by the values at which effects or optional parameters are absent."""
     flags = [
         column[cases] == off
         for name, column in columns.items()
@@ -131,10 +131,10 @@ def simulated_values(
     form: Callable[[Diagram], Diagram],
     names: tuple[str, ...],
 ) -> tuple[np.ndarray, dict[int, str]]:
-    """Numbers of the simulated form for each case of the group, and cases that have none.
+    """Parameters of the simulated form for each case of the group, and the cases that have none.
 
-    form: diagram -> the one that is simulated;  names: of its parameters
-    returns: (cases, names), NaN where there is no simulated form; number of the case -> reason
+    form: function from a diagram to its simulated form;  names: parameters of this form
+    returns: (cases, names), NaN where there is no simulated form; index of the case -> reason
     """
     base = form(group.diagram).values
     reasons: dict[int, str] = {}
@@ -177,7 +177,7 @@ def _cases(columns: Mapping[str, np.ndarray]) -> int:
 
 
 def _change_value(diagram: Diagram, name: str) -> Diagram:
-    """The diagram with one value a little off, within its bounds."""
+    """The diagram with one value changed a little, within its bounds."""
     value, (lower, upper) = diagram.values[name], bounds_of_value(diagram, name)
     more = value + _CHANGE * (abs(value) or 1.0)
     less = value - _CHANGE * (abs(value) or 1.0)
@@ -185,7 +185,7 @@ def _change_value(diagram: Diagram, name: str) -> Diagram:
 
 
 def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
-    """Least and largest value of a parameter; infinite where its block knows none."""
+    """Least and largest value of a parameter; infinite where its block states none."""
     block_name, _, within = name.partition(".")
     block = diagram.block(block_name)
     if isinstance(block, Control):
@@ -202,7 +202,7 @@ def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
 
 
 def _absent_values(diagram: Diagram, name: str) -> list[float]:
-    """Values of a parameter at which something is left out of the equations."""
+    """Values of a parameter at which a term is left out of the equations."""
     block_name, _, within = name.partition(".")
     block = diagram.block(block_name)
     stages = getattr(getattr(block, "controller", None), "stages", ())

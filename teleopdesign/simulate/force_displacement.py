@@ -1,4 +1,4 @@
-"""Force against displacement at the user's hand, laid over the environment's curve."""
+"""Force against displacement at the user's hand, compared with the curve of the environment."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Loop:
-    """The loop of a force over a displacement: slope (N/m), and width between both ways (N).
+    """Slope (N/m) of a force over a displacement, and width of the loop between directions (N).
 
-    N m/rad and N m on a revolute axis. Coulomb friction makes the loop twice its level wide.
+    N m/rad and N m on a revolute axis. The width of a loop with Coulomb friction is twice its
+    level.
     """
 
     stiffness: float
@@ -32,12 +33,13 @@ class Loop:
 
 @dataclass(frozen=True, eq=False)
 class ForceDisplacement(ByValue):
-    """What a user feels of an environment.
+    """Force against displacement at the user's hand and at the environment.
 
     data: `force` and `displacement` at the hand, `environment_force` and `environment_displacement`
-    at the environment, over `case` and `time`; forces are those that the user and the tip exert
-    loops: case -> figures of the user's loop;  environment: case -> those of the environment itself
-    rms: case -> rms of the user's force less the environment's at the same time, N
+        at the environment, over `case` and `time`; forces are those that the user and the tip exert
+    loops: case -> slope and width at the hand;  environment: case -> those of the environment
+        itself
+    rms: case -> rms of the user's force minus the force on the environment at the same time, N
     """
 
     data: xarray.Dataset
@@ -46,7 +48,7 @@ class ForceDisplacement(ByValue):
     rms: Mapping[str, float]
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Displacement and force over time, force over displacement."""
+        """Plot displacement and force over time, and force over displacement."""
         from ..plot.force_displacement import plot_force_displacement
 
         return plot_force_displacement(self)
@@ -85,12 +87,13 @@ def force_displacement(
     within: tuple[float, float] | None = None,
     after: float = 0.0,
 ) -> ForceDisplacement:
-    """The user's force over the master's motion, and the tip's force over the slave's.
+    """The user's force over the motion of the master, and the tip's force over the slave's motion.
 
-    simulations: case -> simulation of a teleoperator, all on one grid of time
-    within: displacements between which slope and width are read, m (default: the middle half of
-    the stroke);  after: start of the whole cycles used, s
-    raises ModelError: the motion never passes these displacements both ways
+    simulations: case -> simulation of a teleoperator, all on one time grid
+    within: displacements between which slope and width are fitted, m (default: the middle half of
+        the stroke)
+    after: start of the whole cycles that are used, s
+    raises ModelError: the motion never passes these displacements in both directions
     """
     import xarray
 
@@ -137,11 +140,11 @@ def loop_of(
     *,
     within: tuple[float, float] | None = None,
 ) -> Loop:
-    """Slope and width of a loop, by least squares of k x + F_0 +- width/2 by direction.
+    """Slope and width of a loop, by least squares of k x + F_0 +- width/2 (sign of the direction).
 
-    displacement, force: (n,), m and N;  within: displacements that count, m (default: the middle
-    half of the stroke)
-    raises ModelError: the motion never passes these displacements both ways
+    displacement, force: (n,), m and N
+    within: displacements that are used, m (default: the middle half of the stroke)
+    raises ModelError: the motion never passes these displacements in both directions
     """
     low, high = float(displacement.min()), float(displacement.max())
     first, last = within or (low + (high - low) / 4, high - (high - low) / 4)

@@ -1,4 +1,4 @@
-"""Force against velocity over whole cycles of a motion, case by case."""
+"""Force against velocity over whole cycles of a motion, for each case."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ForceVelocity(ByValue):
-    """A force over a velocity.
+    """Force against velocity.
 
     data: `force` and `velocity` over `case` and `time`
-    rms: case -> rms of the force;  at_peak_speed: case -> mean size of the force at the peaks
+    rms: case -> rms of the force;  at_peak_speed: case -> mean absolute force at the peak speed
     """
 
     data: xarray.Dataset
@@ -32,7 +32,7 @@ class ForceVelocity(ByValue):
     at_peak_speed: Mapping[str, float]
 
     def plot(self) -> matplotlib.figure.Figure:
-        """One panel for each case, top to bottom."""
+        """Plot one panel for each case, from top to bottom."""
         from ..plot.design import plot_force_velocity
 
         return plot_force_velocity(self)
@@ -67,10 +67,12 @@ def force_velocity(
     velocity: str = "L_velocity",
     after: float = 0.0,
 ) -> ForceVelocity:
-    """The force of each simulation against velocity.
+    """The force of each simulation against a velocity.
 
-    simulations: case -> simulation, all on one grid of time
-    force: signal, by default the force error R_D - R_M;  after: start of the whole cycles used, s
+    simulations: case -> simulation, all on one time grid
+    force, velocity: signals; by default the force error R_D - R_M and the velocity of L
+    after: start of the whole cycles that are used, s
+    raises ModelError: no simulation
     """
     import xarray
 

@@ -75,12 +75,12 @@ def simulate_many(
 
 
 class _Mistake(ModelError):
-    """What is asked for is wrong, whatever the values."""
+    """An error in the arguments that does not depend on the values of a case."""
 
 
 @dataclass
 class _Study:
-    """What is simulated and what is wanted of it."""
+    """The diagram, its cases, and the results that the caller wants."""
 
     diagram: Diagram
     columns: Mapping[str, np.ndarray]
@@ -91,19 +91,19 @@ class _Study:
     after: float
 
     def choose_reductions(self, columns: Sequence[str]) -> dict[str, tuple[Any, str]]:
-        """The reductions, with the default in place."""
+        """The reductions that the caller wants; by default the rms of every column."""
         if self.reduce is None:
             return {} if self.keep else {f"{name}_rms": (name, "rms") for name in columns}
         return self.reduce
 
     def reductions_of(self, numbers: Iterable[str]) -> dict[str, tuple[Any, str]]:
-        """The reductions; by default those that there are numbers of."""
+        """The reductions of the result; by default those for which there are numbers."""
         if self.reduce is not None or self.keep:
             return self.choose_reductions(())
         return {name: (name.removesuffix("_rms"), "rms") for name in numbers}
 
     def run_all(self, result: CaseResults) -> None:
-        """Simulate the cases group by group; ModelError where all groups fail."""
+        """Simulate the cases group by group; raises ModelError: no case can be simulated."""
         first_error: ModelError | None = None
         for group in groups(self.diagram, self.columns, np.flatnonzero(result.open)):
             try:
@@ -169,7 +169,7 @@ class _Study:
         reductions: dict[str, Reduction],
         result: CaseResults,
     ) -> dict[GridKey, list[int]]:
-        """Run the cases of a wave; returns those that need a finer grid, by that."""
+        """Run the cases of a wave; returns the cases that need a finer grid, by this grid."""
         from ..realise.side_by_side import execute_many
 
         runs = wave.runs(setup, numbers)
@@ -202,7 +202,7 @@ class _Study:
         outcome: LaneResults,
         result: CaseResults,
     ) -> dict[int, int]:
-        """Steps a sample of each run's case that needs more of them; refuses what fails."""
+        """Index in `cases` -> steps per sample of cases that need finer steps; refuses failures."""
         finer: dict[int, int] = {}
         ladder = setup.ladder(self.long_step, grid[1])
         for i, case in enumerate(map(int, cases)):
@@ -221,7 +221,7 @@ class _Study:
         return simulated_form(diagram, motion=a["motion"], computer=a["computer"], give=a["give"])
 
     def _columns(self, setup: Setup) -> tuple[dict[str, int], dict[str, Reduction]]:
-        """Columns of what is kept and reduced, where this structure has them."""
+        """Columns of the signals that are kept and reduced, if this structure has them."""
         from ..realise.side_by_side import Reduction
 
         layout = setup.program.layout
@@ -263,7 +263,7 @@ class _Study:
 
 
 def _reduction(name: str, what: Any) -> tuple[Any, str]:
-    """(signal, what), or ((force, motion), "energy")."""
+    """A reduction as (signal, kind) or ((force, motion), "energy"), checked."""
     expected = 'expected (signal, "rms") or ((force, motion), "energy")'
     if not (isinstance(what, tuple) and len(what) == 2):
         raise _Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
@@ -280,7 +280,7 @@ def _reduction(name: str, what: Any) -> tuple[Any, str]:
 
 
 def _delays(setup: Setup, names: tuple[str, ...], numbers: np.ndarray) -> list[tuple[float, ...]]:
-    """Delay of each late signal in each case, s."""
+    """Delay of each delayed signal in each case, s."""
     equations = setup.program.equations
     if not equations.delays:
         return [()] * len(numbers)

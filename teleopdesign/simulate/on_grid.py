@@ -1,4 +1,4 @@
-"""What the grid of a simulation makes of durations, delays and inputs."""
+"""Durations, delays and inputs on the time grid of a simulation."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
 
 
 def samples_of(duration: float, period: float) -> int:
-    """Samples of a run, at least one; both in s."""
+    """Number of samples of a run, at least one; duration and period in s."""
     return max(round(duration / period), 1) if 0 < duration < float("inf") else 1
 
 
 def delay_in_steps(delay: float, step: float, *, can_be_between: bool) -> float:
-    """The delay of an analog signal in steps; between two where the signal changes within them."""
+    """The delay of an analog signal in steps; not a whole number only if the signal is smooth.
+
+    raises ModelError: no whole number of steps where one is needed, or below one step
+    """
     count = delay / step
     if not can_be_between or is_whole(count):
         count = float(whole_steps(delay, step, "a delay of an actuator or of a held command"))
@@ -29,7 +32,7 @@ def delay_in_steps(delay: float, step: float, *, can_be_between: bool) -> float:
 
 
 def whole_steps(delay: float, step: float, what: str) -> int:
-    """The delay in steps; if no whole number of them, the force would be silently late."""
+    """The delay in whole steps; raises ModelError: no whole number of steps."""
     count = round(delay / step)
     if abs(count * step - delay) > 0.02 * delay + 1e-12:
         raise ModelError(
@@ -42,7 +45,7 @@ def whole_steps(delay: float, step: float, what: str) -> int:
 def input_table(
     names: tuple[str, ...], signals: Mapping[str, Input], time: np.ndarray
 ) -> np.ndarray:
-    """Inputs (names, n) at times (n,), s; 0 where a signal is missing."""
+    """Inputs (names, n) at times (n,), s; 0 for a signal that is not given a value."""
     table = np.zeros((max(len(names), 1), len(time)))
     for i, name in enumerate(names):
         value = signals.get(name, 0.0)

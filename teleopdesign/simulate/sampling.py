@@ -1,4 +1,4 @@
-"""How a computer samples: its period and delay, its encoders, and how it knows velocity."""
+"""Sampling of a controller: period, computing delay, encoder, and its estimate of the velocity."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..errors import ModelError, did_you_mean
 @check_types
 @dataclass(frozen=True)
 class Sampling:
-    """How a computer samples positions and when its commands act.
+    """How a computer samples positions, and when its commands act.
 
     period: s;  delay: from a sample to the change of the command, s
-    encoder_step: m or rad, 0: none
-    velocity: how velocity is known: "difference" of readings; "filtered": the difference through a
-        first-order low-pass; "observer": of position, velocity and, at order 3, acceleration
-    velocity_bandwidth: of that low-pass or of all poles of the observer, Hz; inf: no low-pass
-    observer_order: 2: least noise, late by two time constants;  3: not late in slow motion
+    encoder_step: m or rad; 0: no quantisation
+    velocity: estimate of the velocity: "difference" of readings; "filtered": the difference through
+        a first-order low-pass; "observer" of position, velocity and, at order 3, acceleration
+    velocity_bandwidth: of the low-pass, or of all poles of the observer, Hz; inf: no low-pass
+    observer_order: 2: least noise, delayed by two time constants; 3: no delay in slow motion
     raises ModelError: another name or order, an observer without bandwidth
     """
 
@@ -55,7 +55,7 @@ class Sampling:
 
     @property
     def observer(self) -> int:
-        """Order of the observer of velocity; 0: there is none."""
+        """Order of the velocity observer; 0: no observer."""
         return self.observer_order if self.velocity == "observer" else 0
 
 

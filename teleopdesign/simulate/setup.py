@@ -1,4 +1,4 @@
-"""A simulation ready to run: program, grid, tables of inputs, and the guard of its step."""
+"""A simulation that is ready to run: program, time grid, tables of inputs, and its step control."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def prepare(
     give: float = 1e-5,
     jit: bool = True,
 ) -> Setup:
-    """Check the arguments of `simulate` and compile the diagram; the simulation does not run yet.
+    """Check the arguments of `simulate` and compile the diagram, without running the simulation.
 
     The arguments are those of `simulate`.
     """
@@ -85,7 +85,7 @@ def _refuse_results(
 
 @dataclass(frozen=True, eq=False)
 class _Same:
-    """A diagram that counts by identity: it is frozen, so what was made of it stays right."""
+    """A diagram compared by identity; it is frozen, so cached results remain valid."""
 
     diagram: Diagram
 
@@ -104,7 +104,7 @@ def _form_and_program(
     give: float,
     jit: bool,
 ) -> tuple[Diagram, Program]:
-    """What is simulated of a diagram, and the loop for its structure."""
+    """The simulated form of a diagram, and the compiled program for its structure."""
     from ..realise.program import program
 
     body = simulated_form(same.diagram, motion=motion, computer=computer, give=give)
@@ -121,7 +121,7 @@ def simulated_form(
     computer: Sampling | Literal["continuous"],
     give: float,
 ) -> Diagram:
-    """The diagram as it is simulated; arguments as in `simulate`."""
+    """The form of a diagram that is simulated; the arguments are those of `simulate`."""
     body = prepare_for_simulation(diagram, give, motion)
     if isinstance(computer, str):
         return with_shared_states(body)
@@ -132,7 +132,8 @@ def simulated_form(
 class Setup:
     """A simulation that is ready to run, with its step or a shorter one.
 
-    duration, step: s;  inputs: signal -> values;  motion: prescribed motions;  initial: SI
+    duration, step: s;  inputs: signal -> values;  motion: prescribed motions
+    initial: state -> start value, SI
     """
 
     diagram: Diagram
@@ -146,21 +147,21 @@ class Setup:
 
     @cached_property
     def delays(self) -> list[float]:
-        """Delay of each late signal, s: of the analog ones, then of the computer's."""
+        """Delay (s) of each delayed signal: of analog signals, then of signals in the computer."""
         values, parameters = self.diagram.values, self.program.equations.parameters
         at = {x: values[n] for x, n in parameters.items()}
         return [float(d.subs(at)) for d in self.program.equations.delays]
 
     @cached_property
     def _of_blocks(self) -> list[bool]:
-        """Whether each analog late signal is that of a delay block, in place of an actuator."""
+        """For each delayed analog signal: whether a delay block delays it, not an actuator."""
         e, names = self.program.equations, {c.name for c in self.diagram.controls}
         late = (d.free_symbols for _, d in e.late.values())
         return [any(e.parameters[x].partition(".")[0] in names for x in d) for d in late]
 
     @property
     def whole_step_delays(self) -> frozenset[str]:
-        """Parameters of delays that are whole steps, which move simulated signals by jumps."""
+        """Delay parameters that are rounded to whole steps: signals jump when they change."""
         e, smooth = self.program.equations, self.program.functions["SMOOTH"]
         flags = zip(self._of_blocks, smooth, strict=False)
         whole = [not (of_block and is_smooth) for of_block, is_smooth in flags]
@@ -169,9 +170,9 @@ class Setup:
         return frozenset(e.parameters[x] for d in jumping for x in d.free_symbols)
 
     def inner(self, delays: Sequence[float] | None = None) -> int:
-        """Steps a sample: as asked for, or the next number at which delay blocks are whole steps.
+        """Steps per sample: as requested, or the next number at which delay blocks are whole steps.
 
-        Where no number up to `_MOST_DIVIDED` times as many is such: delays are interpolated.
+        If no number up to `_MOST_DIVIDED` times the requested one suits, delays are interpolated.
         """
         least = max(-int(-self.sampling.period * (1 - 1e-9) // self.step), 1)
         delays = self.delays if delays is None else delays
@@ -184,11 +185,11 @@ class Setup:
     def ladder(
         self, long_step: Literal["refine", "refuse"], delays: Sequence[float] | None = None
     ) -> StepLadder:
-        """Which steps a run may take;  delays: default `delays`, s."""
+        """The steps that a run may take;  delays: s, by default `self.delays`."""
         return StepLadder(self.step, self.sampling.period, self.inner(delays), long_step)
 
     def timing(self, inner: int, delays: Sequence[float] | None = None) -> Timing:
-        """The grid with that many inner steps a sample;  delays: default `delays`, s."""
+        """The grid with `inner` steps per sample;  delays: s, by default `self.delays`."""
         from ..realise.kernel import Timing, velocity_smoothing
 
         s = self.sampling
@@ -228,7 +229,7 @@ class Setup:
         return any(callable(x) or np.ndim(x) > 0 for x in listed)
 
     def arguments(self, timing: Timing) -> dict[str, Any]:
-        """Inputs on the grid of that timing, as the kernel takes them."""
+        """Inputs on the grid of a timing, in the form that the kernel takes."""
         layout, n = self.program.layout, 2 * timing.steps + 1
         # a fine grid has 10^7 rows: one column is what is held throughout
         half = 0.5 * timing.step * np.arange(n if self._varying else 1)
@@ -243,9 +244,9 @@ class Setup:
     def run(
         self, timing: Timing, *, every_step: bool = False, limit: float = math.inf
     ) -> tuple[np.ndarray, float]:
-        """Rows of the program's columns and the measure of how well bristles are resolved.
+        """Rows of the program's columns, and the measure of how well bristles are resolved.
 
-        limit: a run whose measure is above it may end there, see `StepLadder`
+        limit: a run whose measure exceeds this value may stop early, see `StepLadder`
         """
         from ..realise.kernel import execute
 
@@ -260,13 +261,13 @@ class Setup:
         )
 
     def table_size(self, timing: Timing) -> int:
-        """How many numbers the table of inputs of one run holds."""
+        """Number of values in the table of inputs of one run."""
         return 2 * timing.steps * len(self.program.layout.inputs) if self._varying else 0
 
     def check_size(self, timing: Timing, *, every_step: bool = False) -> None:
-        """ModelError where tables of one run could hold more than `MOST_NUMBERS`.
+        """Raise ModelError if the tables of one run could hold more than `MOST_NUMBERS` values.
 
-        Inputs count where they are held too: a run of so many steps would not end.
+        Constant inputs count as well; a run of so many steps would not end.
         """
         layout = self.program.layout
         numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)
@@ -279,7 +280,10 @@ class Setup:
     def run_resolved(
         self, *, long_step: Literal["refine", "refuse"], every_step: bool = False
     ) -> tuple[np.ndarray, Timing]:
-        """Run with a step that resolves oscillations and bristles, or refuse a longer one."""
+        """Run with a step that resolves oscillations and bristles; refine or refuse a longer step.
+
+        raises ModelError: the step is refused, or no step resolves the signals
+        """
         from ..realise.kernel import fastest_rate
 
         ladder = self.ladder(long_step)

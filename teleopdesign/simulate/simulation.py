@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 class Simulation(ByValue):
     """Signals over time.
 
-    data: one variable for each signal and hidden state over `time` (s), units in the attributes; at
-    a sample, sensed signals are those just before the command changes
+    data: one variable for each signal and hidden state over `time` (s), with units in the
+        attributes; at a sample, the measured signals are those just before the command changes
     """
 
     diagram: Diagram
@@ -61,7 +61,7 @@ class Simulation(ByValue):
         return self.data[name]
 
     def plot(self, *names: str) -> matplotlib.figure.Figure:
-        """Signals against time, one panel each; default: motion, commanded force, interaction."""
+        """Plot signals over time, one panel each; default: motion, commanded force, interaction."""
         from ..plot.design import plot_simulation
 
         return plot_simulation(self, names)
@@ -147,7 +147,7 @@ def simulate(
 
 
 def _step_errors(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> np.ndarray:
-    """Largest difference of each column between the step, its half and its quarter, over its size.
+    """Largest relative difference of each column between the step, its half and its quarter.
 
     Three runs, not two: where laws have kinks the error depends on where in a step they fall, and
     may be as large with half the step. Of 1684 signals of 1000 drawn machines two runs fell below
@@ -163,7 +163,7 @@ def _step_errors(setup: Setup, rows: np.ndarray, timing: Timing, every_step: boo
 
 
 def _label_rows(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
-    """Rows as labelled arrays with units, labelled when they are asked for."""
+    """A simulation whose data set is made from the rows when it is first used."""
     result = object.__new__(Simulation)
     make = partial(_dataset, setup, rows, timing, every_step)
     result.__dict__.update(diagram=setup.diagram, _make=make)

@@ -1,4 +1,4 @@
-"""How many steps a sample a run takes, and the next one where that does not resolve its signals."""
+"""Number of steps per sample of a run, and the next number if they do not resolve its signals."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StepLadder:
-    """The step that was asked for, and those by which `realise.kernel.FINER` divides it.
+    """The requested step, and the steps by which `realise.kernel.FINER` divides it.
 
-    step, period: the step that was asked for and that of samples, s
-    least: steps a sample, of that step
+    step, period: requested step and sample period, s;  least: steps per sample at the requested
+        step
     """
 
     step: float
@@ -27,9 +27,9 @@ class StepLadder:
     long_step: Literal["refine", "refuse"] = "refine"
 
     def first(self, rate: float, state: str) -> int:
-        """Steps a sample that resolve this rate, 1/s, in which the state takes part most.
+        """Steps per sample that resolve a rate (1/s); state: the one that takes part in it most.
 
-        raises ModelError: the step is refused, or none would do
+        raises ModelError: the step is refused, or no step is short enough
         """
         from ..realise.kernel import FASTEST, JUMP, long_step_error, refine_factor, round_up_steps
 
@@ -50,10 +50,10 @@ class StepLadder:
         return inner
 
     def next(self, timing: Timing, worst: float, is_finite: bool) -> int:
-        """Steps a sample for the next run; as they were, where this run resolved its bristles.
+        """Steps per sample for the next run; unchanged if this run resolved its bristles.
 
-        worst: measure of their reload, see `realise.kernel`
-        raises ModelError: signals are not finite, the step is refused, or none would do
+        worst: measure of the bristles' reload, see `realise.kernel`
+        raises ModelError: signals are not finite, the step is refused, or no step is short enough
         """
         from ..realise.kernel import FINER, RELOAD, long_step_error, refine_factor, round_up_steps
 
@@ -78,10 +78,10 @@ class StepLadder:
         return inner
 
     def limit(self, inner: int) -> float:
-        """Measure of the reload above which no step would do: a run may end there.
+        """Measure of the reload above which no step would suffice: a run may stop there.
 
-        Only a run that another one asked for, which was finite: a first one is run to its end, so
-        that signals which grow beyond all bounds are called so.
+        This holds for refined runs, after a run with finite signals. A first run goes to its end,
+        so that signals which grow without bound are reported as such.
         """
         from ..realise.kernel import worst_reload
 

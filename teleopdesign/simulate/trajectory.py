@@ -1,4 +1,4 @@
-"""Prescribed motions: position with the velocity and acceleration that belong to it."""
+"""Prescribed motions: a position with its velocity and acceleration."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ TimeFunction = Callable[[np.ndarray], np.ndarray]
 class Trajectory:
     """A motion as functions of time (s): position (m or rad) and its two derivatives.
 
-    Each function takes and returns arrays (n,). `sine` and `sampled_motion` make one. Called with
-    times, it gives the position: as an input of a simulation it is a force that varies so.
+    Each function takes and returns arrays (n,). `sine` and `sampled_motion` return a Trajectory. As
+    an input of a simulation, a Trajectory is a force that varies like its position.
     """
 
     position: TimeFunction

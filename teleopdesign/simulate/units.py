@@ -43,10 +43,11 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
 
 
 def _quantities(diagram: Diagram) -> dict[str, str]:
-    """Quantity of each signal: of bodies, and carried on by sums; of a controller by what takes it.
+    """Quantity of each signal, from bodies through sums; of a controller's output, from its target.
 
-    What a controller brings to a sum is what the sum is of: a position, where it is compared with
-    one. What goes to controllers alone is what came in: a filter.
+    The output of a controller that enters a sum has the quantity of the sum, a position if it is
+    compared with one. An output that enters only controllers has the quantity of the input: a
+    filter.
     """
     by_signal = dict(diagram.outside)
     for block in diagram.blocks:
@@ -80,7 +81,7 @@ def _feeds_controllers_alone(diagram: Diagram, signal: str) -> bool:
 
 
 def _axes(diagram: Diagram) -> dict[str, str]:
-    """Axis of each signal: that of its body, carried on by blocks and sums."""
+    """Axis of each signal: the axis of its body, passed on by blocks and sums."""
     axis_of = {k.output: k.axis for k in diagram.kinematics}
     for block in diagram.bodies:
         axis = getattr(block.body, "axis", None)

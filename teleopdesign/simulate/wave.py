@@ -1,4 +1,4 @@
-"""Cases side by side that run at once, those of coarse grids beside those of finer ones."""
+"""Cases that run at the same time, those on coarse grids beside those on fine grids."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ _MOST_AT_ONCE = 50_000_000
 
 @dataclass(frozen=True)
 class Wave:
-    """Cases that run at once, so that the few that need fine steps leave no core without work.
+    """Cases that run at the same time, so that the few with fine steps leave no core without work.
 
-    todo: grid -> its cases, by their numbers in a group
-    is_first: no run has asked for these grids
+    todo: grid -> indices of its cases in a group
+    is_first: True: these grids are not refined after another run
     """
 
     todo: Mapping[GridKey, list[int]]
     is_first: bool
 
     def split(self, setup: Setup) -> tuple[Wave, Wave]:
-        """The coarsest grids, as many as tables of inputs leave room for, and all others."""
+        """The coarsest grids, as many as the memory for input tables allows, and all others."""
         now: dict[GridKey, list[int]] = {}
         numbers = 0
         for grid in sorted(self.todo):
@@ -45,7 +45,7 @@ class Wave:
         return replace(self, todo=now), replace(self, todo=later)
 
     def runs(self, setup: Setup, numbers: np.ndarray) -> list[GridRun]:
-        """A run on each grid; one that a run before asked for may end at its limit.
+        """One run for each grid; a refined run may stop at its limit.
 
         numbers: (cases of the group, parameters of the layout)
         """

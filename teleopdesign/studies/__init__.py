@@ -1,4 +1,4 @@
-"""Parameter studies: a model at every point of named axes, measured, on one machine or many.
+"""Parameter studies: measures of a model at every point of named axes, on one machine or a cluster.
 
 import teleopdesign as td
 

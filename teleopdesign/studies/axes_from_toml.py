@@ -1,4 +1,4 @@
-"""The points of a study from its file: a value, a list or a grid of each axis, or samples."""
+"""The axes of a study from its file: a value, a list or a grid for each parameter, or samples."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _SCALES = ("linear", "log")
 
 
 def read_axes(root: Table) -> list[Any]:
-    """Axes of a study: those of the table [axes] in one mapping, then the samples of [samples]."""
+    """Axes of a study: one mapping from the table [axes], then the samples of [samples]."""
     table = root.table("axes")
     parts: list[Any] = []
     if table.content:
@@ -40,7 +40,7 @@ def read_axes(root: Table) -> list[Any]:
 
 
 def _read_axis(table: Table, name: str) -> Any:
-    """A list, one value, or { from, to, points, scale }."""
+    """Read a list, one value, or { from, to, points, scale }."""
     content = table.content[name]
     if isinstance(content, dict):
         grid = table.table(name)
@@ -85,7 +85,7 @@ def _read_samples(table: Table) -> Samples:
 
 
 def _read_range(table: Table) -> Any:
-    """{ from, to }, { from, to, scale = "log" }, { from, to, step } or a normal distribution."""
+    """Read { from, to }, with scale = "log" or step if wanted, or { mean, standard_deviation }."""
     from scipy.stats import loguniform, norm
 
     if "mean" in table.content:
@@ -115,7 +115,7 @@ def _read_scale(table: Table) -> str:
 
 
 def read_whole(table: Table, key: str) -> int:
-    """The whole number of a key, 0 or more; ExperimentError where it is none."""
+    """The whole number under a key, 0 or more; raises ExperimentError: another number."""
     number = table.number(key)
     if number != int(number) or number < 0:
         raise ExperimentError(f"{table.where(key)}: found {number:g}, expected a whole number")

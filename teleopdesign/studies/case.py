@@ -1,4 +1,4 @@
-"""The simulation at a point: a diagram with all arguments of `simulate`.
+"""The simulation at a point of a study: a diagram with all arguments of `simulate`.
 
 A parameter is named as in `Diagram.values` ("C.dahl.level"), or is one of the simulation:
 
@@ -35,9 +35,9 @@ _OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}
 @check_types
 @dataclass(frozen=True, eq=False)
 class SimulatedCase(ByValue):
-    """A diagram and how it is simulated; arguments as of `simulate`.
+    """A diagram and the settings of its simulation; the arguments are those of `simulate`.
 
-    duration: s; 0: nothing is simulated, measures that need a motion are refused
+    duration: s; 0: no simulation; measures that need a motion are then refused
     """
 
     diagram: Diagram
@@ -51,19 +51,19 @@ class SimulatedCase(ByValue):
     every_step: bool = False
 
     def simulate(self) -> Simulation:
-        """The simulation; raises ModelError where the case has no duration, and as `simulate`."""
+        """Run the simulation; raises ModelError: no duration, or the errors of `simulate`."""
         if not self.duration:
             raise ModelError("study: found no duration, expected the time to simulate, s")
         return simulate(self.diagram, **self.settings())
 
     def setup(self) -> Setup:
-        """The simulation ready to run; raises ModelError as `simulate`."""
+        """The simulation, ready to run; raises ModelError as `simulate` does."""
         settings = self.settings()
         del settings["every_step"]  # which rows are kept is no matter of the setup
         return prepare(self.diagram, **settings)
 
     def names(self) -> tuple[str, ...]:
-        """Every parameter that can be varied; states at the start by those stated."""
+        """Names of the parameters that can be varied; of initial states, only stated ones."""
         computer = [] if isinstance(self.computer, str) else [f"computer.{n}" for n in _COMPUTER]
         inputs = [f"inputs.{s}" for s in self.diagram.outside if s not in self.motion]
         initial = [f"initial.{s}" for s in self.initial]
@@ -71,7 +71,7 @@ class SimulatedCase(ByValue):
         return (*self.diagram.values, *computer, *inputs, *initial, *motions, *_OF_SIMULATION)
 
     def check_names(self, names: Iterable[str]) -> None:
-        """Refuse with ModelError, and the nearest name, what is no parameter."""
+        """Raise ModelError, with the nearest name, for a name that is no parameter."""
         known = self.names()
         for name in names:
             if name in known or (name.startswith("initial.") and name.count(".") == 1):
@@ -87,7 +87,7 @@ class SimulatedCase(ByValue):
             )
 
     def with_values(self, values: Mapping[str, Any]) -> SimulatedCase:
-        """The case with other values, by the names in `names`."""
+        """The case with other values, by the names of `names`."""
         self.check_names(values)
         changes: dict[str, Any] = {n: values[n] for n in _OF_SIMULATION if n in values}
         computer: dict[str, float] = {}
@@ -131,7 +131,7 @@ class SimulatedCase(ByValue):
         return units(rest)
 
     def value(self, name: str) -> Any:
-        """Value of a parameter as it is; None of an input that is no number."""
+        """Present value of a parameter; None for an input that is no number."""
         stem, _, rest = name.partition(".")
         if name in self.diagram.values:
             return self.diagram.values[name]
@@ -146,12 +146,12 @@ class SimulatedCase(ByValue):
         return float(start) if np.ndim(start) == 0 and not callable(start) else None
 
     def settings(self) -> dict[str, Any]:
-        """How it is simulated, without the diagram: plain where it is."""
+        """The settings of the simulation by name, without the diagram."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "diagram"}
 
 
 def case_of(diagram: Diagram | SimulatedCase, **settings: Any) -> SimulatedCase:
-    """The diagram and how it is simulated; a case as it is."""
+    """The diagram with settings of its simulation; a case is returned unchanged."""
     if isinstance(diagram, SimulatedCase):
         return diagram
     kept = {n: v for n, v in settings.items() if v is not None}

@@ -30,7 +30,8 @@ class Measure(ByValue):
 
     name: of its values in the result
     function: takes a `Point` (measures of the package), or the result of the point
-    signals: all that it needs of a simulation; none: it may need anything
+    of_package: whether the measure is one of the package
+    signals: all signals of a simulation that it needs; empty: unknown, it may need any
     """
 
     name: str
@@ -71,7 +72,7 @@ def measure(name: str, **options: Any) -> Measure:
 
 
 def measures_of(content: Any) -> tuple[Measure, ...]:
-    """One measure or several, by name where there is a mapping.
+    """One measure or several; a mapping gives their names.
 
     raises ModelError: a name twice, something that is no measure, none at all
     """
@@ -106,7 +107,7 @@ def _measure_of(content: Any, name: str = "") -> Measure:
 
 
 def _amount(value: Any, where: str) -> Amount:
-    """A value of a user's measure as the package keeps it."""
+    """A value that a user's measure returned, as an `Amount`."""
     if isinstance(value, Amount):
         return value
     if hasattr(value, "dims") and hasattr(value, "attrs"):  # a labelled array

@@ -1,4 +1,4 @@
-"""Points on an existing Dask cluster: the same task in its workers."""
+"""Points of a study on an existing Dask cluster: its workers run the same task."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _AHEAD = 3
 
 
 def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str) -> None:
-    """Points in the workers of the scheduler at that address, such as "tcp://10.0.0.1:8786".
+    """Evaluate points in the workers of the scheduler at an address, such as "tcp://10.0.0.1:8786".
 
     raises ExperimentError: no scheduler there, no worker, dask is not installed
-    raises ModelError: workers have another version of the package
+    raises ModelError: workers have another version of a package
     """
     try:
         from distributed import Client, as_completed
@@ -85,7 +85,7 @@ def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str)
 def _take_batch(
     waiting: deque[Unit], deaths: dict[Unit, int], seconds_each: float, threads: int
 ) -> list[Unit]:
-    """Units for one task, taken off those that wait; one that may end a worker goes alone."""
+    """Units for one task, removed from `waiting`; a unit that may end a worker goes alone."""
     size = int(_TASK_TIME / seconds_each) if seconds_each else 1
     share = -(-len(waiting) // threads)
     size = min(max(size, 1), _MOST_IN_TASK, max(share, 1), len(waiting))
@@ -111,7 +111,7 @@ def _check_versions(client: Any, address: str) -> None:
 
 
 def _evaluate_units(payload: bytes, batch: Sequence[Unit]) -> tuple[list[PointOutcome], float]:
-    """In a worker: the outcomes, and the time that they took, s."""
+    """In a worker: the outcomes of a batch, and the time that they took, s."""
     task, start = _task(payload), time.monotonic()
     with one_thread():
         outcomes = [outcome for unit in batch for outcome in evaluate_unit(task, unit)]

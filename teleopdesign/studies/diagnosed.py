@@ -1,4 +1,4 @@
-"""Diagnoses as points of a study: one recording each, by its folder."""
+"""Diagnoses as points of a study: one recording per point, named by its folder."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""How simulated signals change with parameters: differences of simulations side by side.
+"""Slopes of simulated signals in parameters, from differences of simulations side by side.
 
-A slope is computed with five sizes of difference, each an eighth of the one before. The slope is
-read where two neighbouring sizes agree best. A difference that is too large has an error from
-curvature. A difference that is too small has an error from rounding. Where an encoder rounds, or
-motion sticks and slips, it has an error from jumps. There no two sizes agree, so the disagreement
-of the two sizes is given with each slope.
+A slope is computed with five sizes of difference, each an eighth of the one before, and taken where
+two neighbouring sizes agree best. A difference that is too large has an error from curvature. A
+difference that is too small has an error from rounding. Where an encoder rounds, or motion sticks
+and slips, jumps cause an error. There no two sizes agree; so the disagreement of the two sizes is
+reported with each slope.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ class SignalSlopes:
     """Signals and their slopes in parameters.
 
     time: (rows,), s;  signals: (signals, rows);  slopes: (parameters, signals, rows), SI
-    apart: (parameters, signals) rms difference of the slopes of two sizes of difference, over
-        the rms of the slope; 0 where the signal does not follow, inf where no two could be formed
-    sizes: (parameters, signals) of the difference that is read, SI
+    apart: (parameters, signals) rms difference between the slopes of two sizes of difference, over
+        the rms of the slope; 0 where the signal does not depend on the parameter, inf where no two
+        slopes could be formed
+    sizes: (parameters, signals) of the difference that is used, SI
     """
 
     time: np.ndarray
@@ -47,7 +48,7 @@ class SignalSlopes:
 
 
 def check_slopes_exist(case: SimulatedCase, names: Sequence[str], signals: Sequence[str]) -> None:
-    """ModelError where there is no such signal, or none follows a parameter but by jumps."""
+    """Raise ModelError for an unknown signal, or for a parameter that changes signals by jumps."""
     case.check_names(names)
     setup = case.setup()
     known = setup.program.layout.columns
@@ -74,7 +75,7 @@ def simulated_signals(
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Time (rows,), signals (points, signals, rows), and why a point has none (NaN then).
 
-    points: (points, names);  all are simulated on the finest grid that one of them asks for
+    points: (points, names); all are simulated on the finest grid that one of them needs
     """
     table = {n: points[:, k] for k, n in enumerate(names)}
     time, rows, steps, reasons = _simulate(case, table, signals)
@@ -88,7 +89,7 @@ def simulated_signals(
 def _simulate(
     case: SimulatedCase, table: dict[str, np.ndarray], signals: tuple[str, ...]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[str]]:
-    """Time, signals, steps (s) and reasons of all rows of a table."""
+    """Time, signals, steps (s) and reasons of failure for all rows of a table."""
     many = len(next(iter(table.values())))
     reasons, steps = [""] * many, np.full(many, np.nan)
     time: np.ndarray = np.zeros(0)
@@ -120,9 +121,9 @@ def slopes_of(
     scales: np.ndarray,
     signals: tuple[str, ...],
 ) -> SignalSlopes:
-    """Slopes of the signals at values of parameters.
+    """Slopes of the signals at some values of the parameters.
 
-    at: (names,);  scales: (names,) what a change is small beside, more than 0
+    at: (names,);  scales: (names,) above 0: a change is small if it is small beside its scale
     raises ModelError: the case has no simulation at `at`
     """
     offsets = np.stack([_offsets(case, n, x, s) for n, x, s in zip(names, at, scales, strict=True)])
@@ -141,7 +142,7 @@ def slopes_of(
 
 
 def _offsets(case: SimulatedCase, name: str, value: float, scale: float) -> np.ndarray:
-    """Two changes of a parameter for each size, (sizes, 2): to either side where bounds let."""
+    """Two changes of a parameter for each size, (sizes, 2): to both sides if bounds allow."""
     lower, upper = -np.inf, np.inf
     if name in case.diagram.values:
         lower, upper = bounds_of_value(case.diagram, name)
@@ -153,7 +154,7 @@ def _offsets(case: SimulatedCase, name: str, value: float, scale: float) -> np.n
 
 
 def _difference(centre: np.ndarray, beside: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Slopes at the centre of the parabolas through it and two points beside it.
+    """Slope at the centre of the parabola through the centre and two points beside it.
 
     centre: (signals, rows);  beside: (parameters, sizes, 2, signals, rows);  offsets: alike
     """
@@ -163,7 +164,7 @@ def _difference(centre: np.ndarray, beside: np.ndarray, offsets: np.ndarray) -> 
 
 
 def _find_best(ladder: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Slopes, how far apart, and sizes, where two neighbours of a ladder agree best.
+    """Slopes, their relative difference, and sizes, where two neighbouring sizes agree best.
 
     ladder: (parameters, sizes, signals, rows);  sizes: (parameters, sizes)
     """

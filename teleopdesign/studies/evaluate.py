@@ -20,10 +20,10 @@ _LONGEST_REASON = 300  # most characters of the reason of a failure
 
 @dataclass(frozen=True)
 class StudyTask:
-    """A study as every process gets it.
+    """A study in the form that every process receives.
 
     model: a case, whose parameters are varied, or a function of the parameters
-    case: how a diagram that the function returns is simulated
+    case: settings of the simulation for a diagram that the function returns
     """
 
     model: SimulatedCase | Callable[..., Any]
@@ -34,7 +34,7 @@ class StudyTask:
 
 
 def evaluate(task: StudyTask, index: int) -> PointOutcome:
-    """What becomes of a point: its values, or the reason why it failed."""
+    """The outcome of a point: its values, or the reason why it failed."""
 
     def point() -> Point:
         values = task.points.at(index)
@@ -44,7 +44,7 @@ def evaluate(task: StudyTask, index: int) -> PointOutcome:
 
 
 def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointOutcome:
-    """Measures of a point.
+    """The measures of a point.
 
     Any exception of a model or a measure becomes the reason of a failure: one point never ends a
     study.
@@ -76,7 +76,7 @@ def _content(task: StudyTask, values: Mapping[str, Any]) -> Any:
 
 
 def check_parameters(model: Callable[..., Any], points: Points) -> None:
-    """Refuse with ModelError parameters that a model's function does not take, or that it lacks."""
+    """Raise ModelError for parameters that a model's function does not take, or that it lacks."""
     try:
         signature = inspect.signature(model)
     except (TypeError, ValueError):  # a function of C says nothing of its arguments

@@ -1,4 +1,4 @@
-"""Fingerprint of a study: one number, equal for equal model, axes and measures.
+"""Fingerprint of a study: one text, equal for equal model, axes and measures.
 
 Numbers and texts count by value. A function counts by its source, together with all names of the
 same module, or of the enclosing function, that it uses: a changed constant above the function makes
@@ -113,7 +113,7 @@ def _parts_of_function(function: types.FunctionType, above: set[int]) -> Iterato
 
 
 def _names(code: types.CodeType) -> set[str]:
-    """Names that a function uses, those of functions within it included."""
+    """Names that a function uses, including those of functions within it."""
     inner = (c for c in code.co_consts if isinstance(c, types.CodeType))
     return set(code.co_names).union(*(_names(c) for c in inner))
 

@@ -1,8 +1,8 @@
-"""Many recordings diagnosed: an answer file for each, kept from run to run.
+"""Diagnosis of many recordings: an answer file for each, kept from run to run.
 
 Each folder is a point of a study. The number of the point comes from the content of the folder, the
-search and the versions. So an unchanged folder is not diagnosed again; a folder that has changed or
-failed is.
+search and the versions. So an unchanged folder is not diagnosed again, but a folder that has
+changed or failed is.
 """
 
 from __future__ import annotations
@@ -40,10 +40,9 @@ _DIGITS = 15
 
 @dataclass(frozen=True)
 class FolderSearch:
-    """How each folder is diagnosed.
+    """Settings of the diagnosis of each folder.
 
-    known: effects by name;  among: names of the candidates, None: all
-    quick: a first look alone
+    known: effects by name;  among: names of the candidates, None: all;  quick: only a first look
     """
 
     known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS)
@@ -55,9 +54,9 @@ class FolderSearch:
 class DiagnosedFolder(ByValue):
     """Result of the diagnosis of a folder.
 
-    answer: its file;  verdict, missing: as the diagnosis says; "" where it failed
-    before, after: check error of the model as stated and with what was added; NaN where it failed
-    failure: why it failed, "" where it did not
+    answer: file of the answer;  verdict, missing: of the diagnosis; "" if it failed
+    before, after: check error of the stated model, and with the added effects; NaN if it failed
+    failure: reason of the failure; "" if there is none
     """
 
     folder: Path
@@ -79,9 +78,10 @@ def diagnose_folders(
 ) -> tuple[DiagnosedFolder, ...]:
     """Diagnose the experiment of every folder; each answer is written to the output folder.
 
-    workers: processes; None: as many as the machine has cores, where that is faster
+    workers: processes; None: as many as the machine has cores, if that is faster
+    progress: called with the progress of the work
     Finished folders are kept in the output folder: the same call continues from there.
-    raises ExperimentError: two folders that are one, an output that cannot be written
+    raises ExperimentError: the same folder twice, an output that cannot be written
     """
     chosen = FolderSearch() if search is None else search
     answers = answer_files(folders, output)
@@ -126,9 +126,9 @@ def diagnose_folders(
 
 
 def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
-    """Folder -> file of its answer, named after the folder, and those above where names are alike.
+    """Folder -> file of its answer, named after the folder, with parents where names are equal.
 
-    raises ExperimentError: the same folder twice
+    raises ExperimentError: the same folder twice, or two folders with the same file
     """
     parts = {f: follow_links(f).parts[1:] for f in folders}
     by_place: dict[tuple[str, ...], Path] = {}
@@ -151,7 +151,7 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
 def _write_answer(
     experiment: str, files: Mapping[str, Path], search: FolderSearch
 ) -> Diagnosis | ArmDiagnosis:
-    """The diagnosis of a folder, whose answer is written."""
+    """Diagnose a folder and write the answer; returns the diagnosis."""
     from ..diagnose import find_missing, find_missing_in_arm
     from ..diagnose.answer import write_answer
     from ..diagnose.search_plan import PLAN, QUICK

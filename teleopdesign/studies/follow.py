@@ -1,4 +1,4 @@
-"""Search for values with which simulated signals follow measured ones, and their errors."""
+"""Search for values with which simulated signals follow measured ones, and standard errors."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ class Target:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The simulated signals that are followed."""
+        """Names of the signals that the simulation should follow."""
         return tuple(self.signals)
 
     @property
     def values(self) -> np.ndarray:
-        """Of all signals, (signals, n); NaN where there is no sample."""
+        """All measured signals, (signals, n); NaN where there is no sample."""
         return np.stack(list(self.signals.values()))
 
     @property
@@ -73,13 +73,13 @@ class Target:
         return np.asarray(np.nanstd(self.values, axis=1))
 
     def at_times(self, time: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Simulated signals (..., rows) at the measured times, linear between samples."""
+        """Simulated signals (..., rows) at the measured times (n,), linear between samples."""
         k = np.clip(np.searchsorted(time, self.time, side="right") - 1, 0, len(time) - 2)
         part = (self.time - time[k]) / (time[k + 1] - time[k])
         return np.asarray(rows[..., k] * (1 - part) + rows[..., k + 1] * part)
 
     def blocks(self) -> np.ndarray:
-        """Number of the block of each instant, (n,), for errors that are correlated within one."""
+        """Block number of each instant, (n,); errors are correlated within a block."""
         lasts = self.time[-1] - self.time[0]
         numbers = ((self.time - self.time[0]) / min(BLOCK, lasts / _BLOCKS)).astype(int)
         return np.asarray(np.unique(numbers, return_inverse=True)[1])
@@ -89,10 +89,11 @@ class Target:
 class Followed:
     """Result of a search.
 
-    values, errors: (p,) SI; errors NaN at ends of intervals, where not `is_determined`, and all of
-        them where the slopes of one parameter are more than MOST_APART apart
-    apart: (p,) of the slopes, see `SignalSlopes`, over all signals
-    at_start: (signals, n) simulated with the diagram's values, NaN where they have none
+    values, errors: (p,) SI; errors are NaN at ends of intervals, where not `is_determined`, and all
+        of them if the slopes of one parameter are more than MOST_APART apart
+    apart: (p,) of the slopes over all signals, see `SignalSlopes`
+    at_start: (signals, n) simulated with the diagram's values, NaN where they have no simulation
+    searches: number of searches;  agreeing: searches with the same result
     """
 
     values: np.ndarray
@@ -108,7 +109,7 @@ class Followed:
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """Residuals of weighed signals over shares of the parameters' intervals."""
+    """Residuals of weighted signals over shares (0 to 1) of the parameters' intervals."""
 
     case: SimulatedCase
     box: ValueBox
@@ -125,12 +126,12 @@ class _Search:
         return self.target.at_times(time, rows) if len(time) else np.full(many, np.nan), reasons
 
     def flat(self, values: np.ndarray) -> np.ndarray:
-        """Weighed signals (..., signals, n) where there are samples, in one row, (..., m)."""
+        """Weighted signals (..., signals, n) where there are samples, flattened to (..., m)."""
         is_there = np.isfinite(self.target.values)
         return np.asarray((values * self.weights[:, None])[..., is_there])
 
     def residual(self, shares: np.ndarray) -> np.ndarray:
-        """(m,); NaN where there is no simulation: the search then takes a shorter step."""
+        """Weighted residual (m,); NaN without a simulation, so that the search steps back."""
         signals, _ = self.simulate(shares)
         return self.flat(signals[0] - self.target.values)
 
@@ -140,13 +141,13 @@ class _Search:
         return slopes_of(self.case, self.box.names, values, units, self.target.names)
 
     def jacobian(self, shares: np.ndarray, of: SignalSlopes | None = None) -> np.ndarray:
-        """(m, p) by shares."""
+        """Derivatives of the residual by the shares, (m, p)."""
         of = self.slopes(shares) if of is None else of
         units = units_at(self.box, values_at(self.box, shares))
         return np.asarray(self.flat(self.target.at_times(of.time, of.slopes)).T * units)
 
     def minimise(self, shares: np.ndarray) -> tuple[float, np.ndarray]:
-        """Sum of squares and shares where a search from these ends."""
+        """Sum of squares and shares at the end of a search from these shares."""
         from scipy.optimize import least_squares
 
         there = least_squares(
@@ -161,7 +162,10 @@ class _Search:
 
 
 def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed: int) -> Followed:
-    """Find values in the box with which the simulation follows the target most closely."""
+    """Search the box for values with which the simulation follows the target most closely.
+
+    raises ModelError: no simulation at any of the points
+    """
     search = _Search(case, box, target, 1 / _noise(target, target.size))
     first = shares_of(box, start_values(case, box))
     points = np.vstack([first, unit_box(box.names).inside(starts, seed)])
@@ -184,7 +188,7 @@ def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed
 def _judge(
     search: _Search, shares: np.ndarray, at_start: np.ndarray, searches: tuple[int, int]
 ) -> Followed:
-    """The values with what is known of them."""
+    """The result of a search, with standard errors and the parameters that are determined."""
     of, target = search.slopes(shares), search.target
     jacobian = search.jacobian(shares, of)
     residual = search.flat(target.at_times(of.time, of.signals) - target.values)
@@ -208,7 +212,7 @@ def _judge(
 
 
 def _is_determined(jacobian: np.ndarray, is_free: np.ndarray) -> np.ndarray:
-    """Which parameters are no part of a combination without influence, (p,)."""
+    """Mask (p,) of the parameters that take no part in a combination without influence."""
     size = np.linalg.norm(jacobian, axis=0)
     follows = is_free & (size > 0)
     determined = size > 0
@@ -221,10 +225,10 @@ def _is_determined(jacobian: np.ndarray, is_free: np.ndarray) -> np.ndarray:
 
 
 def _noise(target: Target, otherwise: np.ndarray) -> np.ndarray:
-    """Standard deviation by which each signal is weighed, (signals,)."""
+    """Standard deviation by which each signal is weighted, (signals,)."""
     return np.array([target.noise.get(n, x) for n, x in zip(target.names, otherwise, strict=True)])
 
 
 def rms_of(values: np.ndarray) -> np.ndarray:
-    """Root mean square along the last axis, without what is no number."""
+    """Root mean square along the last axis; NaN values are skipped."""
     return np.asarray(np.sqrt(np.nanmean(values**2, axis=-1)))

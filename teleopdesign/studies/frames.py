@@ -1,4 +1,4 @@
-"""Messages between the process of a study and its workers, over pipes: length, then a pickle."""
+"""Messages between a study and its worker processes, over pipes: length, then a pickle."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ _LENGTH = struct.Struct("<Q")
 
 
 def send(pipe: BinaryIO, message: Any) -> None:
-    """Write a message; raises OSError where nobody reads."""
+    """Write a message; raises OSError: no process reads it."""
     body = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
     pipe.write(_LENGTH.pack(len(body)) + body)
     pipe.flush()
 
 
 def receive(pipe: BinaryIO) -> Any:
-    """The next message; raises EOFError where there is none any more."""
+    """The next message; raises EOFError: there are no more messages."""
     head = pipe.read(_LENGTH.size)
     if len(head) < _LENGTH.size:
         raise EOFError

@@ -1,4 +1,4 @@
-"""A study from a TOML file, without Python; the page "Parameter studies" has the format.
+"""A study from a TOML file, without Python; the page "Parameter studies" describes the format.
 
 [study]
 model = "late.toml"                 # a diagram's file, or a shipped diagram
@@ -52,7 +52,8 @@ class SineInput:
 def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> dict[str, Any]:
     """The arguments of `study` that a file describes.
 
-    raises ExperimentError: what cannot be read or has no meaning
+    effects: known effects by name
+    raises ExperimentError: the file cannot be read, or an entry has no meaning
     """
     path = Path(path)
     root = read_toml(path, path.name)
@@ -96,7 +97,7 @@ def _read_model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dic
 
 
 def _list_folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
-    """Folders of experiments, patterns with * resolved."""
+    """Folders of experiments, with patterns that contain * resolved."""
     folders: list[str] = []
     for text in patterns:
         matches = sorted(home.glob(text)) if "*" in text and text[0] != "/" else [home / text]
@@ -180,7 +181,7 @@ def _read_sine(table: Table, *more: str) -> dict[str, float]:
 
 
 def _read_measures(table: Table) -> dict[str, Measure]:
-    """Name -> measure; its name is that of a measure, or its table says which."""
+    """Name -> measure; the name is that of a measure, or the table names the measure."""
     measures: dict[str, Measure] = {}
     for name in table.content:
         entry = table.table(name)

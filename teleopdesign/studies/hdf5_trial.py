@@ -54,10 +54,10 @@ except Exception:
 
 
 def read_on_trial(path: str | Path, *, largest: float) -> None:
-    """Read an HDF5 file once in a separate process, which is ended if the reading does not end.
+    """Read an HDF5 file once in a separate process, which is ended if it does not finish.
 
-    largest: bytes of all data; of a file with more of it no data are read
-    raises ExperimentError: the HDF5 library ends the process, or goes on without end
+    largest: bytes; the data of a file with more data are not read
+    raises ExperimentError: the HDF5 library ends the process, or does not finish
     """
     try:
         size = os.stat(path).st_size

@@ -28,13 +28,13 @@ except ImportError:  # no such thing on Windows: there two processes are not kep
 
 
 class Journal:
-    """Outcomes by point, also on disk where there is a path."""
+    """Outcomes by point, also on disk if there is a path."""
 
     def __init__(self, path: Path | None, study: str, points: int) -> None:
-        """Open the journal, with what an earlier run has left of the same study.
+        """Open the journal, with the outcomes of an earlier run of the same study.
 
-        points: how many it has; their numbers may be higher, where they come from their content
-        raises ExperimentError: it is of another study, in use, or cannot be written
+        points: number of points; point numbers may be higher if they come from contents
+        raises ExperimentError: it belongs to another study, is in use, or cannot be written
         """
         self.path, self.study, self.points = path, study, points
         self.outcomes = Outcomes(points)
@@ -67,7 +67,7 @@ class Journal:
             raise
 
     def _read(self, path: Path) -> int:
-        """Take up every whole line; returns where they end."""
+        """Read every complete line; returns the position after the last of them."""
         assert self._file is not None
         end = 0
         with os.fdopen(os.dup(self._file), "rb") as file:
@@ -90,7 +90,7 @@ class Journal:
         return end
 
     def _knows(self, content: Mapping[str, Any]) -> bool:
-        """Whether a line is a form, or a point that failed or whose form stands above."""
+        """Whether a line is a form, a failed point, or a point whose form precedes it."""
         if "point" in content:
             return "reason" in content or content.get("form") in self._forms
         return "form" in content and "values" in content
@@ -104,7 +104,7 @@ class Journal:
         self.outcomes.keep(outcome)  # a failure that was forgotten may have a later line
 
     def add(self, outcome: PointOutcome) -> None:
-        """Keep an outcome; raises ExperimentError where the disk refuses."""
+        """Store an outcome; raises ExperimentError: the file cannot be written."""
         if outcome.point in self.outcomes:
             return
         if self._file is not None:
@@ -117,7 +117,7 @@ class Journal:
         self.outcomes.keep(outcome)
 
     def _name_form(self, form: tuple[Any, ...]) -> str:
-        """Name of a form, which is written before its first use."""
+        """Name of a form; the form is written before its first use."""
         name = f"{zlib.crc32(json.dumps(form).encode()):08x}"
         if name not in self._forms:
             self._write({"form": name, "values": form})
@@ -138,25 +138,25 @@ class Journal:
             ) from error
 
     def forget_failures(self) -> None:
-        """Take failed points as not done: they may be computed again."""
+        """Drop failed points, so that they are computed again."""
         for point in self.outcomes.failed_points():
             self.outcomes.drop(point)
 
     def close(self) -> None:
-        """Close the file; what it holds stays."""
+        """Close the file without removing it."""
         if self._file is not None:
             os.close(self._file)
             self._file = None
 
     def remove(self) -> None:
-        """Close the file and remove it: its content is elsewhere."""
+        """Close the file and remove it, once its content is stored elsewhere."""
         if self._file is not None and self.path is not None:
             self.path.unlink(missing_ok=True)
         self.close()
 
 
 def _content(line: bytes) -> dict[str, Any] | None:
-    """What a line says; None where it is not whole."""
+    """The content of a line; None if the line is incomplete or damaged."""
     head, _, body = line.removesuffix(b"\n").partition(b" ")
     try:
         if not line.endswith(b"\n") or int(head, 16) != zlib.crc32(body):
@@ -168,5 +168,5 @@ def _content(line: bytes) -> dict[str, Any] | None:
 
 
 def _tuples(value: Any) -> Any:
-    """Lists of JSON as the tuples that they were."""
+    """Lists from JSON as tuples, at any depth."""
     return tuple(_tuples(v) for v in value) if isinstance(value, list | tuple) else value

@@ -1,4 +1,4 @@
-"""Limits of a search: a claim, a margin of a loop, or a bound of a measure.
+"""Limits of a search: on the margin of a claim, on the margin of a loop, or on a measure.
 
 limit("passive")                                     at all ports, margin >= 0
 limit("passive", over={"Z_M.inertia": (0.1, 0.3)})   for all values in the intervals
@@ -33,10 +33,10 @@ LOOP_MARGINS = {"delay margin": "s", "gain margin": "1", "phase margin": "deg"}
 
 @dataclass(frozen=True, eq=False)
 class TuningLimit(ByValue):
-    """A bound on a claim's margin, a loop's margin or a measure, from below or from above.
+    """A bound, from below or above, on the margin of a claim, the margin of a loop or a measure.
 
-    over: intervals of values for all of which it is to hold;  controller: whose loop
-    measure: what is measured; None: `name` is a claim or a margin of a loop
+    over: intervals of values, for all of which the limit must hold;  controller: of the loop
+    measure: the bounded measure; None: `name` is a claim or a margin of a loop
     """
 
     name: str
@@ -48,13 +48,13 @@ class TuningLimit(ByValue):
 
     @property
     def unit(self) -> str:
-        """Of its margin; of a measure it is known when it is measured."""
+        """Unit of the margin; "" for a measure, whose unit is known only after an evaluation."""
         return {**CLAIMS, **LOOP_MARGINS}.get(self.name, "")
 
     def excess(self, value: float) -> float:
-        """Distance of a value from the bound, in the unit of both; < 0: beyond the bound.
+        """Distance of a value from the bound, in the unit of both; < 0: the limit is violated.
 
-        -inf where the value is NaN: a value that could not be computed violates every limit.
+        -inf for NaN: a value that could not be computed violates every limit.
         """
         excess = self.bound - value if self.from_above else value - self.bound
         return float(excess) if not np.isnan(excess) else -np.inf
@@ -79,8 +79,9 @@ def limit(
 
     what: "passive", "absolutely stable" or "stable" (margins in N s/m, 1 and 1/s, at least 0);
         "delay margin" (s), "gain margin" (factor up or down), "phase margin" (degrees); a measure
-    least, most: one of them, in SI;  over: intervals of values for all of which it is to hold
-    controller: whose loop a margin is of
+    least, most: lower or upper bound, one of them, in the unit of the margin or measure
+    over: intervals of values, for all of which the limit must hold
+    controller: name of the controller whose loop has the margin
     raises ModelError: no measure of that name, no bound or two
     """
     known = isinstance(what, str) and what in (*CLAIMS, *LOOP_MARGINS)
@@ -97,12 +98,12 @@ def limit(
 
 
 def limit_of(content: Any) -> TuningLimit:
-    """A limit, or the name of a claim as one."""
+    """A limit; the name of a claim becomes a limit."""
     return content if isinstance(content, TuningLimit) else limit(content)
 
 
 def loop_margin(diagram: Diagram, name: str, controller: str) -> float:
-    """Margin of a controller's loop; -inf where it is unstable, inf where nothing limits it."""
+    """Margin of a controller's loop; -inf: the loop is unstable, inf: nothing limits the margin."""
     margin = {
         "delay margin": delay_margin,
         "phase margin": phase_margin,
@@ -117,9 +118,9 @@ def loop_margin(diagram: Diagram, name: str, controller: str) -> float:
 def margin_function(
     limited: TuningLimit, diagram: Diagram, box: ValueBox
 ) -> Callable[[dict[str, float]], float]:
-    """The margin of a claim or a loop at values of a diagram, made once for a whole search.
+    """The margin of a claim or a loop as a function of the diagram's values, made once per search.
 
-    box: of all values that vary: of a linear diagram the margin is compiled over it
+    box: of all values that vary; for a linear diagram the margin is compiled over this box
     """
     if limited.name in LOOP_MARGINS:
         return lambda v: loop_margin(diagram.with_values(v), limited.name, limited.controller)

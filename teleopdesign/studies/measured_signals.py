@@ -1,4 +1,4 @@
-"""Measured signals beside simulated ones: arrays, a data set, or a record of an experiment."""
+"""Measured signals for a fit of simulations: arrays, a data set, or a record of an experiment."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LATE = 10.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeasuredCourse(ByValue):
-    """An input as it was measured: linear between samples (n,), held beyond both ends."""
+    """A measured input: linear between samples (n,), constant beyond both ends."""
 
     time: np.ndarray
     values: np.ndarray
@@ -36,13 +36,13 @@ class MeasuredCourse(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class MeasuredSignals:
-    """Columns (n,) over one time (n,), s, that increases from 0 or later."""
+    """Columns (n,) over one time (n,), s, which increases from 0 or later."""
 
     time: np.ndarray
     columns: Mapping[str, np.ndarray]
 
     def column(self, name: str) -> np.ndarray:
-        """The samples of that name; raises ModelError where there are none."""
+        """The samples of a column; raises ModelError: no such column."""
         if name not in self.columns:
             raise ModelError(
                 f'fit_simulation: data: no "{name}", has {", ".join(self.columns)}'
@@ -51,21 +51,22 @@ class MeasuredSignals:
         return self.columns[name]
 
     def course(self, name: str) -> MeasuredCourse:
-        """The samples of that name as an input; raises ModelError where one is no number."""
+        """The samples of a column as an input; raises ModelError: a sample that is no number."""
         values = self.column(name)
         if not np.isfinite(values).all():
             raise ModelError(f'fit_simulation: "{name}" has samples that are no numbers')
         return MeasuredCourse(self.time, values)
 
     def motion(self, name: str) -> Trajectory:
-        """The samples of that name as a motion that is prescribed."""
+        """The samples of a column as a prescribed motion."""
         return sampled_motion(self.time, self.column(name))
 
 
 def measured_signals(data: Any) -> MeasuredSignals:
-    """What was measured, from columns with "time", a data set over `time`, a record, a simulation.
+    """Measured signals from columns with "time", a data set over `time`, a record, a simulation.
 
-    A record's time is counted from its first sample.
+    The time of a record is counted from its first sample.
+
     raises ModelError: no time, another shape, times that do not increase or that count from long
         before the record, a record with gaps
     """

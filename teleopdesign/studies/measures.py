@@ -1,4 +1,7 @@
-"""The package's measures: a function of a point each, and its line in `MEASURES`."""
+"""The measures of the package: one function of a point each, listed in `MEASURES`.
+
+The first line of each function's docstring is printed as the help text of its measure.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from .point import Amount, Kind, Point
 
 
 def _rows(point: Point, signal: str, after: float) -> tuple[np.ndarray, str]:
-    """A signal from that time on, and its unit."""
+    """The samples of a signal from the time `after` (s) on, and its unit."""
     rows = point.signal(signal)
     kept = rows.time >= after - 1e-9
     if not kept.any():

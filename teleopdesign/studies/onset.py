@@ -1,4 +1,4 @@
-"""Onset of instability: whether an oscillation grows, and the least parameter at which it does."""
+"""Onset of instability: whether an oscillation grows, and the smallest parameter for that."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ DIED_OUT = 1e-3
 def growth(simulated: Callable[[], Simulation], signal: str) -> float:
     """Range of the signal in the last third of the simulation over the middle third, less 1.
 
-    -1 where the oscillation has died out;  infinite where signals grow beyond all bounds
+    -1: the oscillation has died out;  inf: signals grow without bound
     """
     return growth_of(lambda: np.asarray(simulated()[signal].values))
 
 
 def growth_of(samples: Callable[[], np.ndarray]) -> float:
-    """The same of the samples of a signal, (rows,)."""
+    """As `growth`, from the samples of a signal, (rows,)."""
     try:
         values = samples()
     except GrowsWithoutBound:
@@ -36,7 +36,7 @@ def growth_of(samples: Callable[[], np.ndarray]) -> float:
 
 
 def find_onset(grows: Callable[[float], bool], *, within: tuple[float, float], steps: int) -> float:
-    """Least value from which a simulation grows; NaN where no such value lies within the ends.
+    """Smallest value at which a simulation grows; NaN if no such value lies between the ends.
 
     grows: whether the simulation with a value grows;  within: lowest and highest value, > 0
     steps: halvings of the logarithm: the result is within (high/low)^(2^-steps) of the onset

@@ -1,7 +1,7 @@
-"""Results of the points of a study, in few bytes a point.
+"""Results of the points of a study, in few bytes per point.
 
-Points whose measures are plain numbers, as most do, are rows of one array; texts, arrays and
-reasons of failures are kept as they are.
+Points whose measures are plain numbers, as for most measures, are rows of one array. Texts, arrays
+and reasons of failures are stored unchanged.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _NOWHERE, _APART = 0, -1
 class PointOutcome:
     """Result of a point.
 
-    form: what its values are: (name, kind, unit, text, dimension ...) of each;  values: in that
-    order;  reason: why it failed, "" where it did not
+    form: description of each value: (name, kind, unit, text, dimension ...)
+    values: in the order of `form`;  reason: of a failure; "" if the point did not fail
     """
 
     point: int
@@ -36,7 +36,7 @@ class PointOutcome:
 class Outcomes(Mapping[int, PointOutcome]):
     """Outcome by number of the point.
 
-    points: those below are kept in arrays; what has a higher number, such as a digest, one by one
+    points: lower numbers are stored in arrays; higher numbers, such as digests, one by one
     """
 
     def __init__(self, points: int) -> None:
@@ -48,7 +48,7 @@ class Outcomes(Mapping[int, PointOutcome]):
         self._many = 0
 
     def keep(self, outcome: PointOutcome) -> None:
-        """Keep an outcome, in place of an earlier one of that point."""
+        """Store an outcome, in place of an earlier one of the same point."""
         index = outcome.point
         if index not in self:
             self._many += 1
@@ -62,18 +62,18 @@ class Outcomes(Mapping[int, PointOutcome]):
             self._rows[number - 1][index] = outcome.values
 
     def drop(self, index: int) -> None:
-        """Forget what became of a point."""
+        """Drop the outcome of a point."""
         self._many -= index in self
         if self._is_counted(index):
             self._places[index] = _NOWHERE
         self._apart.pop(index, None)
 
     def failed_points(self) -> list[int]:
-        """Points that have a reason."""
+        """Numbers of the points that failed."""
         return [index for index, outcome in self._apart.items() if outcome.reason]
 
     def _form_number(self, outcome: PointOutcome) -> int:
-        """Number of the form whose rows take the outcome."""
+        """Number of the form whose array stores the outcome."""
         plain = self._is_counted(outcome.point) and all(type(v) is float for v in outcome.values)
         if outcome.reason or not plain:
             return _APART

@@ -1,4 +1,4 @@
-"""A point of a study as measures see it, and what a measure is: its value with unit and text."""
+"""A point of a study as measures receive it, and the value of a measure with unit and text."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from .case import SimulatedCase
 
 @dataclass(frozen=True)
 class Amount:
-    """A measured value: number, text, or numbers over one dimension.
+    """The value of a measure: a number, a text, or numbers over one dimension.
 
-    unit: SI; "": not known at this point, taken from another one
-    over: (dimension, its values, its unit) of an array (n,)
+    unit: SI; "": not known at this point, taken from another point
+    text: meaning in words;  over: (dimension, its values, its unit) of an array (n,)
     """
 
     value: Any
@@ -41,12 +41,12 @@ class SignalRows:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """One point as measures see it.
+    """One point of a study as measures receive it.
 
-    content: what the model gave there: a `SimulatedCase`, or anything that its function returned
-    values: parameter -> value;  seed: of this point, the same wherever it is computed
-    simulated: returns the simulation, where it was computed with those of other points;  rows:
-        alike one signal of it, without a labelled array for each point, which takes 0.3 ms
+    content: result of the model: a `SimulatedCase`, or anything that its function returned
+    values: parameter -> value;  seed: of this point, the same on every machine
+    simulated: returns the simulation if it was computed together with other points;  rows: returns
+        one signal of it, without a labelled array for each point, which would take 0.3 ms
     """
 
     content: Any
@@ -57,7 +57,7 @@ class Point:
 
     @property
     def case(self) -> SimulatedCase:
-        """The case; ModelError where the model gave something else."""
+        """The case; raises ModelError: the model returned something else."""
         if not isinstance(self.content, SimulatedCase):
             raise ModelError(f"study: found {describe_value(self.content)}, expected a diagram")
         return self.content
@@ -78,13 +78,13 @@ class Point:
 
     @property
     def result(self) -> Any:
-        """The argument of a user's measure."""
+        """The argument for a user's measure."""
         if not isinstance(self.content, SimulatedCase):
             return self.content
         return self.simulation if self.content.duration else self.content.diagram
 
     def rng(self) -> np.random.Generator:
-        """Randomness of this point."""
+        """Random generator of this point."""
         return np.random.default_rng(self.seed)
 
 
@@ -95,8 +95,8 @@ PointFunction = Callable[..., Any]
 class Kind(ByValue):
     """A measure of the package: function(point, **options) -> Amount, or several by name.
 
-    options: name -> default; `...` where it is required
-    signals: all that it needs of a simulation: signals, or options that name them
+    options: name -> default; `...` if required
+    signals: all that it needs of a simulation: signals, or options that name signals
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The points of a study: the product of grids and of points drawn together."""
+"""The points of a study: the product of grids and of jointly drawn points."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Axes = Mapping[str, Any] | Samples | Sequence[Mapping[str, Any] | Samples]
 
 @dataclass(frozen=True)
 class Column:
-    """A parameter's values along the dimension that it varies with."""
+    """The values of a parameter along its dimension."""
 
     dimension: str
     values: np.ndarray
@@ -32,10 +32,10 @@ class Column:
 
 @dataclass(frozen=True)
 class Points:
-    """Every point of a study, by its number in the order of rows (the last dimension runs first).
+    """Every point of a study, numbered in row order (the last dimension varies fastest).
 
     sizes: dimension -> length;  columns: parameters that vary;  fixed: those that do not
-    samples: points drawn together, None where there are none
+    samples: jointly drawn points, None where there are none
     """
 
     sizes: Mapping[str, int]
@@ -55,13 +55,13 @@ class Points:
         return int(np.prod([*self.shape], dtype=object)) if self.sizes else 1
 
     def at(self, index: int) -> dict[str, Any]:
-        """Parameter -> value at the point of that number."""
+        """Parameter -> value at the point `index`."""
         where = dict(zip(self.sizes, np.unravel_index(index, self.shape), strict=True))
         varied = {n: _plain_number(c.values[where[c.dimension]]) for n, c in self.columns.items()}
         return {**varied, **self.fixed}
 
     def table(self, first: int, last: int) -> dict[str, np.ndarray]:
-        """Parameter -> its values at the points of these numbers, (last - first,)."""
+        """Parameter -> values at the points from `first` to below `last`, (last - first,)."""
         where = dict(
             zip(self.sizes, np.unravel_index(np.arange(first, last), self.shape), strict=True)
         )
@@ -111,7 +111,7 @@ def points_of(axes: Axes) -> Points:
 
 
 def _values(name: str, content: Any) -> np.ndarray | None:
-    """Values of an axis, (n,) of numbers or texts; None where it is one value."""
+    """Values of an axis, (n,) of numbers or texts; None if there is only one value."""
     if hasattr(content, "ppf"):
         raise ModelError(
             f"study: {name}: found the distribution {distribution_text(content)}, expected values; "
@@ -145,5 +145,5 @@ def _values(name: str, content: Any) -> np.ndarray | None:
 
 
 def _plain_number(value: Any) -> Any:
-    """A number of numpy as one of Python."""
+    """A number of numpy as a Python number; other values unchanged."""
     return value.item() if isinstance(value, np.generic) else value

@@ -1,4 +1,4 @@
-"""Points of a search: limits first, then simulations, many side by side."""
+"""Evaluation of the points of a search: first the limits, then simulations side by side."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ _SLACK = 1e-6
 class TrialPoint:
     """A point that was evaluated.
 
-    excesses: of every limit, < 0 where it is beyond its bound, NaN where it was not looked at
-    objectives: NaN where not measured, as a limit was missed or the simulation failed
+    excesses: of every limit; < 0: violated, NaN: not evaluated
+    objectives: NaN if not measured, because a limit was violated or the simulation failed
     """
 
     values: tuple[float, ...]
@@ -43,7 +43,7 @@ class TrialPoint:
 
     @property
     def violation(self) -> float:
-        """0 where every limit is kept and all objectives are numbers."""
+        """0 if every limit holds and all objectives are numbers; else above 0."""
         missed = [x for x in self.excesses if not x >= 0]
         if not missed and all(np.isfinite(self.objectives)):
             return 0.0
@@ -72,7 +72,7 @@ class Problem:
         self.slack = [_SLACK] * len(self.limits)
 
     def tries(self, points: np.ndarray) -> list[TrialPoint]:
-        """Each point evaluated once; those that keep the claims are simulated side by side."""
+        """Evaluate each point once; points that satisfy the claims are simulated side by side."""
         keys = [tuple(map(float, p)) for p in points]
         new = [k for k in dict.fromkeys(keys) if k not in self.trials]
         excesses = {k: self._claims(k) for k in new}
@@ -91,30 +91,30 @@ class Problem:
     def measured_at(
         self, values: tuple[float, ...], others: dict[str, float], one: TuningLimit
     ) -> float:
-        """The measure of a limit at a point, with other values as said."""
+        """The measure of a limit at a point, with the values `others` in addition."""
         assert one.measure is not None
         return self._study([values], others, (one.measure,))[values].get(one.name, np.nan)
 
     def start_values(self) -> np.ndarray:
-        """The case's values of the parameters, brought into their intervals."""
+        """The case's values of the parameters, clipped to their intervals."""
         return start_values(self.case, self.parameters)
 
     def start(self) -> TrialPoint:
-        """The case's values, evaluated."""
+        """Evaluate the point of the case's values."""
         return self.tries(self.start_values()[None])[0]
 
     def within(self, values: Sequence[float]) -> SimulatedCase:
-        """The case at these values."""
+        """The case with these values of the parameters."""
         return self.case.with_values(self.parameters.named(np.array(values)))
 
     def best(self, key: Callable[[TrialPoint], float] | None = None) -> TrialPoint:
-        """Of all that keep the limits the least objective; where none does, the least violation."""
+        """The point with the least objective within limits; else the least violation."""
         if kept := self.points_within_limits():
             return min(kept, key=key or (lambda t: t.objectives[0]))
         return min(self.trials.values(), key=lambda t: t.violation)
 
     def points_within_limits(self) -> list[TrialPoint]:
-        """Points that keep all limits, claims by more than rounding where there are such points."""
+        """Points within all limits; only those that satisfy claims clearly, if there are any."""
         kept = [t for t in self.trials.values() if t.violation == 0]
         least = [
             share * self.spread(k) if one.measure is None else 0.0
@@ -124,12 +124,12 @@ class Problem:
         return clear or kept
 
     def spread(self, k: int) -> float:
-        """Between the largest and the smallest excess of that limit, of all points."""
+        """Largest minus smallest excess of the limit `k` over all points."""
         finite = [x for t in self.trials.values() if np.isfinite(x := t.excesses[k])]
         return max(finite) - min(finite) if finite else 0.0
 
     def _claims(self, key: tuple[float, ...]) -> tuple[float, ...]:
-        """Excess of each limit over its scenarios; NaN of measures, and after one that fails."""
+        """Least excess of each limit over its scenarios; NaN: a measure, or after a violation."""
         here = self.parameters.named(np.array(key))
         within = {n: v for n, v in here.items() if n in self.case.diagram.values}
         excesses = []
@@ -147,7 +147,7 @@ class Problem:
     def _measure(
         self, keys: Sequence[tuple[float, ...]]
     ) -> dict[tuple[float, ...], dict[str, float]]:
-        """Name of a measure -> its number, the worst over the scenarios of a limit on it."""
+        """Point -> measure -> number; for a limit on a measure, the worst over its scenarios."""
         amounts = self._study(list(keys), {}) if keys else {}
         for one, points in zip(self.limits, self.scenarios, strict=True):
             if one.measure is None or not one.over or not keys:
@@ -167,7 +167,7 @@ class Problem:
         values: dict[str, float],
         measures: tuple[Measure, ...] = (),
     ) -> dict[tuple[float, ...], dict[str, float]]:
-        """The measures at these points, other values as said."""
+        """The measures at these points, with the values `values` in addition."""
         self.simulated += len(keys)
         limited = [one.measure for one in self.limits if one.measure is not None]
         listed = measures or tuple({m.name: m for m in (*self.objectives, *limited)}.values())
@@ -184,7 +184,7 @@ class Problem:
         return {k: self._numbers(outcomes[i]) for i, k in enumerate(keys)}
 
     def _numbers(self, outcome: PointOutcome) -> dict[str, float]:
-        """Number by measure of a point; none where it failed."""
+        """Measure -> number at a point; empty if the point failed."""
         numbers = {}
         for (name, kind, unit, *_), value in zip(outcome.form, outcome.values, strict=True):
             if kind != "number" or isinstance(value, tuple):
@@ -204,7 +204,7 @@ class Problem:
         return [box.named(p) for p in points]
 
     def _margin(self, one: TuningLimit) -> Callable[[dict[str, float]], float] | None:
-        """Of a claim or a loop; None of a measure."""
+        """The margin of a claim or a loop as a function of values; None for a measure."""
         if one.measure is not None:
             return None
         diagram = self.case.diagram
@@ -220,13 +220,13 @@ class Problem:
 
 
 def box_over(one: TuningLimit) -> ValueBox:
-    """The box of a limit's intervals."""
+    """The box of the intervals of a limit."""
     ends = one.over.values()
     return ValueBox(tuple(one.over), tuple(a for a, _ in ends), tuple(b for _, b in ends))
 
 
 def start_values(case: SimulatedCase, box: ValueBox) -> np.ndarray:
-    """The case's values of the parameters (n,), brought into their intervals."""
+    """The case's values of the parameters (n,), clipped to their intervals."""
     listed = [case.value(n) for n in box.names]
     numbers = [np.nan if x is None else float(x) for x in listed]
     inside = np.where(np.isnan(numbers), box.centre, numbers)

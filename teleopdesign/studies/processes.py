@@ -1,8 +1,8 @@
-"""Points on all cores of this machine: processes that compute them, one after the other.
+"""Points of a study on all cores of this machine, computed in worker processes.
 
-Each point is computed by the same code with the same numbers wherever it is: how many processes
-there are changes the time alone. A process that dies is started again; a point at which that
-happens twice is recorded as failed.
+Each point is computed by the same code with the same numbers in any process; the number of
+processes changes only the time. A process that dies is started again; a point at which that happens
+twice is recorded as failed.
 """
 
 from __future__ import annotations
@@ -54,16 +54,16 @@ _ONE_THREAD = {
 
 
 def cores() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def pack_task(task: StudyTask) -> bytes:
-    """The task for another process; functions of a script or a notebook go with their code.
+    """The task as bytes for another process, with the code of functions from scripts and notebooks.
 
-    raises ModelError: something in it is code that cannot be sent
+    raises ModelError: a part of the task cannot be sent
     """
     import cloudpickle
 
@@ -80,10 +80,10 @@ def pack_task(task: StudyTask) -> bytes:
 
 @contextmanager
 def _shield_from_ctrl_c() -> Iterator[None]:
-    """A process started meanwhile never hears Ctrl-C, not even before its first line of Python.
+    """Start processes that never receive Ctrl-C, not even before their first line of Python.
 
-    Ctrl-C goes to all processes of a terminal; the one that asked decides what happens. It hears
-    its Ctrl-C afterwards.
+    Ctrl-C goes to all processes of a terminal; the calling process alone decides what happens. It
+    receives its Ctrl-C afterwards.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
@@ -97,7 +97,7 @@ def _shield_from_ctrl_c() -> Iterator[None]:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """No threads of libraries, and none that simulate side by side."""
+    """Allow no threads of libraries, and none that simulate side by side."""
     from threadpoolctl import threadpool_limits
 
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
@@ -116,7 +116,7 @@ def one_thread() -> Iterator[None]:
 def run_here(
     task: StudyTask, units: Iterable[Unit], sink: Sink, *, until: float = float("inf")
 ) -> int:
-    """Points in this process, for at most `until` s; returns how many units were done."""
+    """Evaluate points in this process, for about `until` s; returns the number of units done."""
     start, count = time.monotonic(), 0
     with one_thread():
         for unit in units:
@@ -129,7 +129,7 @@ def run_here(
 
 
 def run_in_processes(task: StudyTask, units: list[Unit], sink: Sink, workers: int) -> None:
-    """Points in that many processes beside this one."""
+    """Evaluate points in `workers` processes beside this one."""
     pool = _Pool(pack_task(task), units, sink)
     try:
         pool.run(workers)
@@ -140,7 +140,10 @@ def run_in_processes(task: StudyTask, units: list[Unit], sink: Sink, workers: in
 def run_on_this_machine(
     task: StudyTask, units: list[Unit], sink: Sink, workers: int | None
 ) -> None:
-    """Points in as many processes as there are cores; in this one where that is as fast."""
+    """Evaluate points in one process per core, or in this process if that is as fast.
+
+    workers: number of processes; None: chosen by the time of the first points
+    """
     if workers is None:
         count = cores()
         # the first unit alone compiles what the others find in the cache
@@ -160,7 +163,7 @@ def run_on_this_machine(
 
 @dataclass
 class _Worker:
-    """A process with what it was asked and has not answered yet."""
+    """A process with the units that it received and has not answered yet."""
 
     process: subprocess.Popen[bytes]
     batch: deque[Unit] = field(default_factory=deque)
@@ -179,7 +182,7 @@ class _Pool:
         self.each = 0.0  # s a unit, from the latest batch
 
     def run(self, count: int) -> None:
-        """Until every point is done: one process first, which fills the cache for the others."""
+        """Run until every point is done; the first process fills the cache for the others."""
         self._start()
         while self.left:
             worker, what, content = self.answers.get()
@@ -223,7 +226,7 @@ class _Pool:
         self._ask(worker)
 
     def _listen(self, worker: _Worker) -> None:
-        """Hand on what a process says, to the end."""
+        """Pass on all messages of a process until it ends."""
         pipe = cast(BinaryIO, worker.process.stdout)
         try:
             while True:
@@ -248,7 +251,7 @@ class _Pool:
             return  # its listener says that it died; the batch is taken back there
 
     def _bury(self, worker: _Worker) -> None:
-        """Take back what a dead process had not answered, and start another."""
+        """Take back the unanswered units of a dead process, and start another one."""
         status = worker.process.wait()
         self.workers.remove(worker)
         _close(worker.process)
@@ -274,7 +277,7 @@ class _Pool:
             self._start()
 
     def close(self) -> None:
-        """End every process; what they were at is dropped."""
+        """End every process; units without an answer are dropped."""
         for worker in self.workers:
             worker.process.kill()
         for worker in self.workers:

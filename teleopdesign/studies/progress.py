@@ -1,4 +1,4 @@
-"""How far a study is: the reports to a caller while it runs."""
+"""Progress reports to the caller of a study while it runs."""
 
 from __future__ import annotations
 
@@ -18,12 +18,11 @@ _REMEMBERED = 20
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is.
+    """Progress of a study.
 
-    done, total: numbers of points;  failed: of those done;  kept: of an earlier run
-    rate: points a second
-    left: s until the end at that rate, NaN where no rate is known yet
-    things: what the points are
+    done, total: numbers of points;  failed: of those done;  kept: points of an earlier run
+    rate: points per second;  left: s until the end at that rate, NaN: no rate is known yet
+    things: what the points are, as a noun
     """
 
     done: int
@@ -46,7 +45,7 @@ class Progress:
 
 
 class Clock:
-    """Counts outcomes, and tells the caller now and then."""
+    """Counts outcomes, and reports the progress to the caller from time to time."""
 
     def __init__(
         self,
@@ -64,7 +63,7 @@ class Clock:
         self._recent: deque[tuple[float, int]] = deque([(self.last, kept)], maxlen=_REMEMBERED)
 
     def count(self, outcome: PointOutcome) -> None:
-        """One more outcome."""
+        """Count one more outcome, and report if a report is due."""
         self.done += 1
         self.failed += bool(outcome.reason)
         now = time.monotonic()
@@ -74,7 +73,7 @@ class Clock:
             self.tell(self.now())
 
     def now(self) -> Progress:
-        """How far it is."""
+        """The present progress."""
         start, before = self._recent[0]
         passed, fresh = time.monotonic() - start, self.done - before
         rate = fresh / passed if passed > 0 else 0.0

@@ -1,4 +1,4 @@
-"""Limits of a tuned point, checked again by the strictest method available."""
+"""Last check of the limits at a tuned point, by the strictest method available."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ _ACTIVE = 0.02
 class CheckedLimit(ByValue):
     """A limit of a search, checked at the best point.
 
-    value: the worst within the intervals of the limit;  how: what shows this value
-    active: whether it holds the search back: its value is beside the bound
+    value: the worst within the intervals of the limit;  worst: values at which it occurs
+    how: method that shows the value
+    active: whether the limit holds the search back: its value is near the bound
     """
 
     limit: TuningLimit
@@ -47,7 +48,7 @@ class CheckedLimit(ByValue):
 
 
 def recheck(problem: Problem, trial: TrialPoint) -> tuple[CheckedLimit, ...]:
-    """Every limit at that point."""
+    """Check every limit at a point."""
     return tuple(_check(problem, trial, k) for k in range(len(problem.limits)))
 
 
@@ -82,7 +83,7 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
 
 
 def _value(one: TuningLimit, excess: float) -> float:
-    """The measure whose excess that is."""
+    """The measure that has this excess."""
     return one.bound - excess if one.from_above else one.bound + excess
 
 

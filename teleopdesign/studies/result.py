@@ -1,4 +1,4 @@
-"""The result of a study: one labelled data set, and figures of it."""
+"""The result of a study: one labelled data set, and its figures."""
 
 from __future__ import annotations
 
@@ -36,8 +36,9 @@ class Study(ByValue):
     """Measures over the points of a study.
 
     data: one variable for each measure over the axes, NaN (or "") where the point failed, and
-    `failure` with the reason. Parameters of points drawn together stand over `sample`. Units are
-    attributes of variables; attributes of the whole: fixed values, settings, seed, versions, hashes
+        `failure` with the reason. Parameters of jointly drawn points are coordinates over `sample`.
+        Units are attributes of variables; attributes of the data set: fixed values, settings, seed,
+        versions, hashes
     """
 
     data: xarray.Dataset
@@ -55,17 +56,17 @@ class Study(ByValue):
 
     @property
     def measures(self) -> tuple[str, ...]:
-        """Names of what was measured."""
+        """Names of the measures."""
         return tuple(str(n) for n in self.data.data_vars if n != REASON)
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Parameters that vary."""
+        """Names of the parameters that vary."""
         return tuple(json.loads(self.data.attrs["axes"]))
 
     @property
     def failures(self) -> dict[str, int]:
-        """Reason -> at how many points, most frequent first."""
+        """Reason -> number of points that failed, most frequent first."""
         reasons, counts = np.unique(self.data[REASON].values.astype(str), return_counts=True)
         counted = {str(r): int(n) for r, n in zip(reasons, counts, strict=True) if r}
         return dict(sorted(counted.items(), key=lambda one: -one[1]))
@@ -78,15 +79,15 @@ class Study(ByValue):
 
     @property
     def plot(self) -> StudyPlots:
-        """Figures: .curves(), .map(), .panels(), .sensitivity(); .plot() takes what fits."""
+        """Figures: .curves(), .map(), .panels(), .sensitivity(); .plot() selects a suitable one."""
         from ..plot.studies import StudyPlots
 
         return StudyPlots(self.data)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write everything to a netCDF file, which `read_study` reads.
+        """Write the study to a netCDF file, which `read_study` reads.
 
-        raises ExperimentError: it cannot be written, or h5netcdf is not installed
+        raises ExperimentError: the file cannot be written, or h5netcdf is not installed
         """
         check_netcdf()
         with write_beside(path) as part:
@@ -150,7 +151,7 @@ def read_study(path: str | Path) -> Study:
 
 
 def _check_size(path: str | Path) -> None:
-    """Refuse a file that says more than it holds: blocks never written take no place in it."""
+    """Refuse a file that states too much data; blocks that were not written take no space."""
     import h5py
 
     sizes = []
@@ -168,7 +169,7 @@ def _check_size(path: str | Path) -> None:
 
 
 def check_netcdf() -> None:
-    """Refuse with ExperimentError where netCDF files cannot be written."""
+    """Raise ExperimentError if netCDF files cannot be written."""
     from importlib.util import find_spec
 
     if find_spec("h5netcdf") is None:
@@ -184,10 +185,10 @@ def label_outcomes(
     units: Mapping[str, str],
     attributes: Mapping[str, Any],
 ) -> Study:
-    """Outcomes of all points as one data set; it depends on nothing but them.
+    """Outcomes of all points as one data set, which depends only on the arguments.
 
-    The kind of a measure follows from the first point that did not fail: one that returns something
-    else (other names, units or dimensions) has failed.
+    The first point that did not fail decides the form of the measures; a point with other names,
+    units or dimensions has failed.
     """
     import xarray
 
@@ -228,7 +229,7 @@ def label_outcomes(
 def _form_of(
     outcomes: Mapping[int, PointOutcome], many: int
 ) -> tuple[list[tuple[Any, ...]], np.ndarray]:
-    """Results of the measures, and why points have failed, "" where they have not."""
+    """Form of the measures, and for each point the reason of its failure, or ""."""
     first = next((o.form for i in range(many) if not (o := outcomes[i]).reason), ())
     units = ["" for _ in first]
     verdicts: dict[tuple[Any, ...], str] = {}  # few forms, many points
@@ -246,7 +247,7 @@ def _form_of(
 
 
 def _explain_misfit(first: tuple[Any, ...], form: tuple[Any, ...], units: list[str]) -> str:
-    """Why a form does not fit the first, "" where it does; units not known before are noted."""
+    """Why a form does not fit the first one; "" if it fits. Units that were unknown are noted."""
     if [(f[0], f[1], *f[4:]) for f in form] != [(f[0], f[1], *f[4:]) for f in first]:
         return "the measures give other names or dimensions than at the first point"
     for k, (name, _, unit, *_rest) in enumerate(form):

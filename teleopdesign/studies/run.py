@@ -1,4 +1,4 @@
-"""A study: a model, named parameters and measures, at every point of their axes."""
+"""A study: measures of a model at every point of its parameters' axes."""
 
 from __future__ import annotations
 
@@ -52,19 +52,19 @@ def study(
 ) -> Study:
     """Measure a model at every point of its parameters' axes.
 
-    model: a diagram, whose parameters are varied by the names of `Diagram.values` and of
-        `SimulatedCase`; or a function of the parameters that returns a diagram, a `SimulatedCase`,
-        or what the measures take
+    model: a diagram, whose parameters have the names of `Diagram.values` and of `SimulatedCase`; or
+        a function of the parameters that returns a diagram, a `SimulatedCase`, or any object that
+        the measures accept
     axes: parameter -> values (several parameters: their product) or one value; points drawn
         together (`latin_hypercube`, `sobol`, ...); or a sequence of such, whose product is taken
     measures: names of `MEASURES`, `measure(...)`, functions; several in a list, or by name
-    duration ... every_step: how a diagram is simulated, as in `simulate`; no duration: not at all
+    duration ... every_step: settings of `simulate` for a diagram; no duration: no simulation
     units: of a function's parameters and of measures, by name;  labels: names in figures
     seed: of measures that need randomness
-    workers: processes of this machine; None: as many as it has cores, none where that is as fast
+    workers: processes of this machine; None: as many as it has cores, or none if that is as fast
     scheduler: address of a Dask cluster, "tcp://..."; the points are computed there
-    out: netCDF file; finished points are kept beside it, and the same study goes on from there
-    progress: called with a line of text now and then, such as `print`
+    out: netCDF file; finished points are kept beside it, and the same study continues from there
+    progress: called with a `Progress` from time to time; `print` shows it as a line
     raises ModelError: an unknown parameter or measure, a model that cannot be sent
     raises ExperimentError: a file that cannot be written or is of another study, a cluster that
         cannot be reached
@@ -91,7 +91,7 @@ def study(
 
 @dataclass(frozen=True)
 class _Words:
-    """Units and labels of a user, by parameter or measure."""
+    """Units and labels from the user, by parameter or measure."""
 
     units: Mapping[str, str]
     labels: Mapping[str, str]
@@ -107,7 +107,7 @@ def _check_places(workers: int | None, scheduler: str) -> None:
 def _task(
     model: Any, settings: Mapping[str, Any], axes: Any, measures: Any, seed: int
 ) -> StudyTask:
-    """What every process gets, held against the parameters that the model has."""
+    """The task for every process, checked against the parameters of the model."""
     points, chosen = points_of(axes), measures_of(measures)
     if isinstance(model, Diagram):
         model = SimulatedCase(model, **settings)
@@ -121,7 +121,7 @@ def _task(
 def _with_file(
     task: StudyTask, words: _Words, target: Path | None, run: Callable[[Journal], None]
 ) -> Study:
-    """Run what the file and the journal beside it do not hold yet, and label it all."""
+    """Run the points that neither the file nor the journal beside it holds, and label all."""
     attributes = _attributes(task, words)
     key, part = str(attributes["study"]), None
     if target is not None:
@@ -175,7 +175,7 @@ def _run(
 
 
 def _load_stored(target: Path, key: str) -> Study:
-    """The study that a file holds already, where it is this one."""
+    """The study in an existing file; raises ExperimentError: the file holds another study."""
     stored = read_study(target)
     if stored.data.attrs["study"] != key:
         raise ExperimentError(
@@ -186,9 +186,9 @@ def _load_stored(target: Path, key: str) -> Study:
 
 
 def _remove_finished(part: Path, key: str, points: int) -> None:
-    """Remove the journal of a study that stands whole in its file: a kill came between the two.
+    """Remove the journal of a study that is complete in its file, after a kill between both steps.
 
-    One of another study, or that another process writes, stays.
+    A journal of another study, or one that another process writes, is kept.
     """
     if part.exists():
         with suppress(ExperimentError):
@@ -204,9 +204,9 @@ def _units(task: StudyTask, units: Mapping[str, str]) -> dict[str, str]:
 
 
 def _write_words(result: Study, words: _Words) -> None:
-    """Units of measures that a user's functions cannot say themselves, and labels.
+    """Add units of measures that a user's functions do not state, and labels.
 
-    raises ModelError: a label or unit of something that is not there
+    raises ModelError: a label or unit of an unknown measure or parameter
     """
     names = [*map(str, result.data.variables), *json.loads(result.data.attrs["fixed"])]
     for name in {**words.units, **words.labels}:
@@ -223,7 +223,7 @@ def _write_words(result: Study, words: _Words) -> None:
 
 
 def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
-    """What stands beside the numbers: enough to compute them again."""
+    """Attributes of the data set: enough to compute the numbers again."""
     points, model = task.points, task.model
     values: dict[str, Any] = dict(points.fixed)
     if isinstance(model, SimulatedCase):
@@ -264,7 +264,7 @@ def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
 
 
 def _contents(points: Points) -> dict[str, str]:
-    """Digest of every experiment that a parameter names: a record that has changed counts."""
+    """Digest of every experiment that a parameter names, so that a changed record is noticed."""
     texts = [v for v in points.fixed.values() if isinstance(v, str | PurePath)]
     for column in points.columns.values():
         if column.values.dtype.kind in "UO":

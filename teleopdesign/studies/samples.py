@@ -1,8 +1,8 @@
 """Points drawn in several parameters together: Latin hypercube, Sobol, random, for sensitivities.
 
-A range is (low, high), uniform between them; (low, high, step), of which every low + n step is as
-probable, for delays that are whole steps of a simulation; or a distribution of `scipy.stats`, such
-as `scipy.stats.loguniform(1e-4, 1e-2)`. The same seed has the same points on every machine.
+A range is (low, high), uniform between both; (low, high, step), with equal probability of each low
++ n step, for delays in whole steps of a simulation; or a distribution of `scipy.stats`, such as
+`scipy.stats.loguniform(1e-4, 1e-2)`. The same seed gives the same points on every machine.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ _MOST = 10_000_000
 class Samples(ByValue):
     """Points in several parameters.
 
-    names: parameters;  values: (points, parameters), SI;  ranges: each parameter's, in words
-    method: how they were drawn;  base: of "sensitivity", points from which the others are made
+    names: parameters;  values: (points, parameters), SI;  ranges: of each parameter, in words
+    method: of the draw;  base: of "sensitivity", number of points from which the others are made
     """
 
     names: tuple[str, ...]
@@ -49,6 +49,7 @@ def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -
     """Points that fill ranges evenly: one point in each of `samples` equal slices of every range.
 
     ranges: parameter -> (low, high), (low, high, step) or a distribution of `scipy.stats`
+    samples: number of points;  seed: of the draw
     raises ModelError: no range, a range without width, no whole number of points above 0
     """
     from scipy.stats import qmc
@@ -72,9 +73,9 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
 
 
 def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
-    """Points at random, each independent of the others; arguments as of `latin_hypercube`.
+    """Random points, independent of each other; arguments as in `latin_hypercube`.
 
-    samples: how many;  seed: the same one has the same points on every machine
+    samples: number of points;  seed: the same seed gives the same points on every machine
     raises ModelError: no range, a range without width, no whole number of points above 0
     """
     _check_count("random_samples", samples)
@@ -85,9 +86,11 @@ def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) ->
 def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) -> Samples:
     """Points for estimates of Sobol indices: base (k + 2) points in k parameters.
 
-    Each of `base` pairs of points of a Sobol sequence of 2 k dimensions yields its two points and k
-    between them, in each of which one parameter is the second point's. Saltelli et al., Computer
-    Physics Communications 181 (2010) 259, in the order that SALib expects.
+    Each of `base` pairs of points, from a Sobol sequence of 2 k dimensions, yields its two points
+    and k points between them, in each of which one parameter has the value of the second point.
+    Saltelli et al., Computer Physics Communications 181 (2010) 259, in the order that SALib
+    expects.
+
     base: a power of two;  ranges: as in `latin_hypercube`
     """
     _check_count("sensitivity_samples", base)
@@ -117,7 +120,7 @@ def _sequence(where: str, dimensions: int, samples: int, seed: int) -> np.ndarra
 def _scale_to_ranges(
     ranges: Mapping[str, Any], unit: np.ndarray, method: Method, seed: int, base: int = 0
 ) -> Samples:
-    """Points of the unit cube, brought into the ranges."""
+    """Scale points of the unit cube to the ranges."""
     columns, words = [], []
     for (name, extent), column in zip(ranges.items(), unit.T, strict=True):
         if hasattr(extent, "ppf"):
@@ -137,7 +140,7 @@ def _scale_to_ranges(
 
 
 def distribution_text(extent: Any) -> str:
-    """A frozen distribution of scipy in words: "lognorm(0.3, scale=2.0)"."""
+    """A frozen distribution of scipy as text: "lognorm(0.3, scale=2.0)"."""
     name = getattr(getattr(extent, "dist", None), "name", type(extent).__name__)
     parts = [f"{float(a):g}" for a in getattr(extent, "args", ())]
     parts += [f"{k}={float(v):g}" for k, v in getattr(extent, "kwds", {}).items()]
@@ -151,7 +154,7 @@ def _require_ranges(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _ends(name: str, extent: Any) -> tuple[float, float, float]:
-    """low, high and step; 0 where there is no step."""
+    """The low and high end and the step of a range; 0: no step."""
     try:
         low, high, *more = (float(x) for x in extent)
         (step,) = more or [0.0]

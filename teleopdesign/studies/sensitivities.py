@@ -1,4 +1,4 @@
-"""How simulated signals change with parameters, along time."""
+"""Derivatives of simulated signals with respect to parameters, over time."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ def sensitivities(
     computer: Sampling | Literal["continuous"] = SAMPLED,
     step: float = 1e-4,
 ) -> xarray.Dataset:
-    """Derivatives d(signal)/d(parameter) of a simulation at the diagram's values, along time.
+    """Derivatives d(signal)/d(parameter) of a simulation at the diagram's values, over time.
 
-    parameters: names of `SimulatedCase`: values of the diagram, starts of states, inputs that are
-        numbers, sines;  signals: of the simulation, hidden states too
-    scales: parameter -> a change that matters (SI); default its value. Needed where that is 0
-    duration ... step: how the diagram is simulated, see `study`
-    returns: each signal over `parameter` and `time`, in its unit per SI unit of the parameter; from
+    parameters: names of `SimulatedCase`: values of the diagram, initial states, inputs that are
+        numbers, sines;  signals: of the simulation, also hidden states
+    scales: parameter -> a change that matters (SI); default: its value; required if that is 0
+    duration ... step: settings of the simulation, see `study`
+    returns: each signal over `parameter` and `time`, in its unit per SI unit of the parameter, from
         central differences of five sizes. SIGNAL_apart over `parameter`: difference of the slopes
         of the two sizes that agree best, over the slope; far below 1 the derivative is right, near
         1 or more there is no derivative (stick and slip, encoder steps). SIGNAL_size: the
-        difference that is read, SI
+        difference that is used, SI
     raises ModelError: no such parameter or signal, a parameter in whole steps, a value of 0 without
         a scale, no simulation at the values
     """
@@ -65,7 +65,10 @@ def sensitivities(
 
 
 def scales_of(names: Sequence[str], at: np.ndarray, scales: Mapping[str, float]) -> np.ndarray:
-    """What a change of each parameter is small beside, (names,): as said, or its value."""
+    """The scale of each parameter, (names,): as stated, or the absolute value of the parameter.
+
+    raises ModelError: a scale of an unknown parameter, or a value of 0 without a scale
+    """
     for name in scales:
         if name not in names:
             raise ModelError(f'slopes: scales: "{name}" does not vary{did_you_mean(name, names)}')

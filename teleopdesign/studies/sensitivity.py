@@ -2,7 +2,7 @@
 
 The first index is the share of the measure's variance that a parameter causes alone. The total
 index adds the variance that the parameter causes together with other parameters. The sum of the
-first indices is 1 where the parameters act independently of each other.
+first indices is 1 if the parameters act independently of each other.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ _RESAMPLED = 100
 def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
     """`first` and `total` Sobol indices over `parameter`, with half their 95 % intervals.
 
-    measure: default the only one
-    raises ModelError: points are none of `sensitivity_samples`, some failed, or it never varies
+    measure: name; may be omitted if there is only one
+    raises ModelError: the points are not from `sensitivity_samples`, some failed, or the measure
+        never varies
     raises ExperimentError: SALib is not installed
     """
     import xarray

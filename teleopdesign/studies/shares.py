@@ -17,9 +17,9 @@ AT_END = 0.01
 
 
 def box_of_parameters(parameters: Mapping[str, tuple[float, float]], caller: str) -> ValueBox:
-    """The intervals of what is searched;  caller: as messages name it.
+    """The intervals of the searched parameters;  caller: name of the function in messages.
 
-    raises ModelError: no parameter, or an interval that is none
+    raises ModelError: no parameter, or no interval (low, high)
     """
     if not parameters:
         raise ModelError(f"{caller}: found no parameter, expected a name with (low, high)")
@@ -38,13 +38,13 @@ def unit_box(names: tuple[str, ...]) -> ValueBox:
 
 
 def is_logarithmic(box: ValueBox) -> np.ndarray:
-    """Which parameters are searched in logarithms, (n,)."""
+    """Mask (n,) of the parameters that are searched in logarithms."""
     low, high = np.array(box.low), np.array(box.high)
     return np.asarray((low > 0) & (high > _WIDE * low))
 
 
 def values_at(box: ValueBox, shares: np.ndarray) -> np.ndarray:
-    """Values from shares of the intervals, (..., n)."""
+    """Values at shares of the intervals, (..., n)."""
     low, high, logarithmic = np.array(box.low), np.array(box.high), is_logarithmic(box)
     safe = np.where(logarithmic, low, 1.0)
     ratio = np.where(logarithmic, high / safe, 1.0)
@@ -54,7 +54,7 @@ def values_at(box: ValueBox, shares: np.ndarray) -> np.ndarray:
 
 
 def shares_of(box: ValueBox, values: np.ndarray) -> np.ndarray:
-    """The shares of the intervals that values are, (n,)."""
+    """Shares of the intervals at values, (n,)."""
     low, high, is_wide = np.array(box.low), np.array(box.high), is_logarithmic(box)
     safe, x = np.where(is_wide, low, 1.0), np.clip(values, low, high)
     logarithmic = np.log(np.where(is_wide, x, 1.0) / safe) / np.log(
@@ -64,7 +64,7 @@ def shares_of(box: ValueBox, values: np.ndarray) -> np.ndarray:
 
 
 def units_at(box: ValueBox, values: np.ndarray) -> np.ndarray:
-    """How values change with their shares, (n,): the SI value of a whole interval."""
+    """Derivative of the values by their shares, (n,), SI."""
     low, high, logarithmic = np.array(box.low), np.array(box.high), is_logarithmic(box)
     ratio = np.where(logarithmic, high / np.where(logarithmic, low, 1.0), 1.0)
     return np.asarray(np.where(logarithmic, values * np.log(ratio), high - low))

@@ -1,8 +1,8 @@
 """Points of a study simulated side by side: many lanes of one compiled loop.
 
 Only measures of the package that state their signals are computed in this way. A user's function
-gets a whole simulation, one point at a time. The number of a point alone decides its block, so the
-same points are side by side on every machine and in every run.
+gets a whole simulation, one point at a time. The number of a point alone decides its block, so that
+the same points are side by side on every machine and in every run.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ _LEAST_IN_BLOCK, _MOST_IN_BLOCK, _MOST_IN_LARGE = 16, 512, 2048
 
 
 def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
-    """The points in blocks where they can be simulated side by side, else one by one.
+    """The points in blocks if they can be simulated side by side, else one by one.
 
-    A block holds all of its points, also those that are not asked for.
+    A block contains all of its points, including points that are not wanted.
     """
     size = block_size(task)
     if size == 1:
@@ -50,7 +50,7 @@ def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
 
 
 def block_size(task: StudyTask) -> int:
-    """Points of a block; 1 where points cannot be simulated side by side."""
+    """Number of points of a block; 1 if points cannot be simulated side by side."""
     case, signals = task.model, signals_of(task)
     if not isinstance(case, SimulatedCase) or not signals or case.every_step or not case.duration:
         return 1
@@ -68,13 +68,13 @@ def block_size(task: StudyTask) -> int:
 
 
 def signals_of(task: StudyTask) -> tuple[str, ...]:
-    """Signals that the measures need; none where one of them may need anything."""
+    """Signals that the measures need; empty if one of them may need any signal."""
     listed = [m.signals for m in task.measures]
     return () if not all(listed) else tuple(dict.fromkeys(s for one in listed for s in one))
 
 
 def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
-    """What becomes of the points of a unit."""
+    """The outcomes of the points of a unit."""
     if len(unit) == 1:
         return [evaluate(task, unit[0])]
     assert isinstance(task.model, SimulatedCase)
@@ -97,10 +97,10 @@ def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
 def group_alike(
     case: SimulatedCase, table: Mapping[str, np.ndarray]
 ) -> Iterator[tuple[list[int], dict[str, np.ndarray], dict[str, Any]]]:
-    """Rows of a table that differ in values of the diagram alone, so that lanes may hold them.
+    """Groups of rows of a table that differ only in values of the diagram, so that lanes fit them.
 
-    table: parameter -> values (rows,);  yields rows, their values of the diagram (each an array),
-        and the values that they share
+    table: parameter -> values (rows,)
+    yields: rows, their values of the diagram (arrays), and the values that they share
     """
     within = [n for n in table if n in case.diagram.values]
     beside = [n for n in table if n not in case.diagram.values]
@@ -115,7 +115,10 @@ def group_alike(
 def simulate_rows(
     case: SimulatedCase, columns: Mapping[str, np.ndarray], keep: tuple[str, ...]
 ) -> xarray.Dataset:
-    """Signals over `case` and `time` of a case with these values of its diagram side by side."""
+    """Simulate a case with several values of its diagram; returns signals over `case` and `time`.
+
+    columns: parameter -> values (cases,);  keep: names of the signals
+    """
     return simulate_many(
         case.diagram,
         columns,
@@ -134,7 +137,7 @@ def simulate_rows(
 class _Block:
     """Signals of points that were simulated side by side, as arrays.
 
-    rows: signal -> (points, rows);  reasons: why a point has none, "" where it has
+    rows: signal -> (points, rows);  reasons: why a point has no signals, or ""
     """
 
     time: np.ndarray
@@ -143,7 +146,7 @@ class _Block:
     reasons: tuple[str, ...]
 
     def check(self, row: int) -> None:
-        """Raise what the simulation of that point ended with."""
+        """Raise the error with which the simulation of a point ended, if any."""
         if reason := self.reasons[row]:
             words = GrowsWithoutBound.words
             raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
@@ -160,7 +163,7 @@ def _block(signals: xarray.Dataset) -> _Block:
 
 
 def _point(task: StudyTask, index: int, row: int, block: _Block) -> Callable[[], Point]:
-    """What makes the point, whose simulation is a row of the block."""
+    """A function that returns the point whose simulation is one row of the block."""
 
     def rows(name: str) -> SignalRows:
         block.check(row)

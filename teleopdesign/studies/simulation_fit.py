@@ -1,4 +1,4 @@
-"""Parameters that make a simulation follow measured signals.
+"""Fit of parameters, so that a simulation follows measured signals.
 
     fitted = td.fit_simulation(
         diagram,
@@ -52,16 +52,16 @@ _ROUNDING = 1e-9
 class SimulationFit(ByValue):
     """A diagram whose simulation follows measured signals.
 
-    case: with `values`;  errors: standard errors; NaN of parameters in `at_ends` (of their
-        intervals) and `undetermined` (others make up for them, or nothing follows them), and of all
-        where the motion follows one of them by jumps
-    apart: by parameter, how far the slopes behind its error are apart, see `sensitivities`
-    rms: by signal, of simulated less measured (SI);  of_signal: the same over the standard
-        deviation of what was measured;  before: so with the diagram's values, NaN where these
+    case: with `values`;  errors: standard errors; NaN for parameters in `at_ends` (of their
+        intervals) and `undetermined` (others can replace them, or no signal depends on them), and
+        for all if the motion depends on one of them by jumps
+    apart: parameter -> relative difference of the slopes behind its error, see `sensitivities`
+    rms: signal -> rms of simulated minus measured (SI);  of_signal: the same over the standard
+        deviation of the measured signal;  before: of_signal with the diagram's values, NaN if these
         have no simulation
     data: SIGNAL_measured and SIGNAL_simulated over `time`
-    sensitivities: of the signals at `values`;  searches: made from different points;  agreeing: of
-        these, how many came to these values
+    sensitivities: of the signals at `values`;  searches: number of searches from different points
+    agreeing: number of searches that ended at these values
     """
 
     case: SimulatedCase
@@ -80,12 +80,12 @@ class SimulationFit(ByValue):
 
     @property
     def diagram(self) -> Diagram:
-        """The diagram with the values."""
+        """The diagram with the fitted values."""
         return self.case.diagram
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What to know before the values are used."""
+        """Warnings to read before the values are used."""
         out = []
         if self.at_ends:
             out.append(f"at an end of the interval: {', '.join(self.at_ends)}")
@@ -98,7 +98,7 @@ class SimulationFit(ByValue):
         return tuple(out)
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Measured and simulated signals, and the difference below each."""
+        """Plot measured and simulated signals, with the difference below each."""
         from ..plot.simulation_fit import plot_simulation_fit
 
         return plot_simulation_fit(self)
@@ -146,18 +146,18 @@ def fit_simulation(
     data: "time" (s; the simulation starts at 0) and samples by signal, SI, NaN where one lacks; a
         DataFrame with such a column or index; a Dataset over `time`; a `Simulation`; or a `Record`,
         whose time is counted from its first sample
-    parameters: names of `SimulatedCase` -> (low, high); in logarithms where high is 10 low or more.
-        "initial.L" and the like are parameters too
-    signals: simulated signal -> its name in the data; default: all that have a simulated namesake
-    noise: signal -> standard deviation (SI) by which it is weighed; default: what the fit leaves
-    inputs, motion: as in `simulate`, or the name of a column of the data that is taken for it. A
-        motion is differentiated twice without a low-pass: an encoder's steps make `td.fit` better
-    initial, computer, step: as in `simulate`; of a `SimulatedCase` all is as it has it but the
+    parameters: names of `SimulatedCase` -> (low, high), "initial.L" and the like included; searched
+        in logarithms if high is 10 low or more
+    signals: simulated signal -> its name in the data; default: all columns with the same name
+    noise: signal -> standard deviation (SI) for its weight; default: the residual of the fit
+    inputs, motion: as in `simulate`, or the name of a column of the data. A motion is
+        differentiated twice without a low-pass: with steps of an encoder, `td.fit` is better
+    initial, computer, step: as in `simulate`; a `SimulatedCase` keeps all its settings except the
         duration: up to the last whole sample of the computer within the data
-    starts: points that are simulated to begin from, beside the diagram's values
-    returns: standard errors hold for errors of measurement that are correlated over 0.25 s at most
-        (a 30th of the record where that is shorter), and for a simulation that is right but for the
-        parameters: what the model lacks they do not see
+    starts: number of points, besides the diagram's values, from which searches may begin
+    returns: standard errors are valid for measurement errors that are correlated over at most 0.25
+        s (a 30th of a shorter record), and for a model that is right except for the parameters:
+        they do not contain errors of the model
     raises ModelError: no such parameter, signal or column, no interval, no simulation anywhere
     """
     measured = measured_signals(data)
@@ -181,7 +181,7 @@ def _case(
     motion: Mapping[str, Any],
     settings: Mapping[str, Any],
 ) -> SimulatedCase:
-    """What is simulated, over the time of the data."""
+    """The case to simulate, over the time of the data."""
     driven = {n: measured.course(x) if isinstance(x, str) else x for n, x in inputs.items()}
     moved = {n: measured.motion(x) if isinstance(x, str) else x for n, x in motion.items()}
     case = case_of(diagram, inputs=driven, motion=moved, **settings)
@@ -192,7 +192,7 @@ def _case(
 
 
 def _namesakes(case: SimulatedCase, measured: MeasuredSignals) -> dict[str, str]:
-    """Measured columns that have the name of a simulated signal and do not drive it."""
+    """Measured columns with the name of a simulated signal, except inputs and motions."""
     known, driving = case.setup().program.layout.columns, {*case.inputs, *case.motion}
     names = {n: n for n in measured.columns if n in known and n not in driving}
     if not names:

@@ -34,13 +34,13 @@ _ENDS = 0.25
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront(ByValue):
-    """The best trade-offs between two measures, where smaller is better.
+    """The best trade-offs between two measures, of which smaller values are better.
 
     points: each with its limits checked once more, by increasing first objective
-    objectives: (k, 2) of the points;  before: (2,), with the diagram's values, NaN where none
-    evaluated: (m, 2), of all points that keep the limits;  evaluated_best: (j, 2), of those that
-        no other one beats in both: `points` are spread along them
-    number: of points that were evaluated;  dropped: those whose limits failed in the last check
+    objectives: (k, 2) of the points;  before: (2,), with the diagram's values, NaN without a value
+    evaluated: (m, 2), of all points within the limits;  evaluated_best: (j, 2), of the points that
+        no other point beats in both; `points` are spread along them
+    number: of evaluated points;  dropped: points whose limits failed in the last check
     """
 
     names: tuple[str, str]
@@ -55,7 +55,7 @@ class ParetoFront(ByValue):
     seed: int
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Both measures, the front as a line, all points that keep the limits in grey."""
+        """Plot both measures: the front as a line, all points within the limits in grey."""
         from ..plot.pareto import plot_pareto
 
         return plot_pareto(self)
@@ -91,11 +91,13 @@ def trade_off(
     seed: int = 0,
     workers: int = 1,
 ) -> ParetoFront:
-    """Search for the best trade-offs between two measures, within limits; arguments as of `tune`.
+    """Search for the best trade-offs between two measures, within limits.
 
-    objectives: two measures;  points: at most, of the front
-    evaluations: points that are evaluated in all
-    raises ModelError: not two objectives, no point that keeps the limits, and as `tune`
+    Other arguments are those of `tune`.
+
+    objectives: two measures;  points: largest number of points of the front
+    evaluations: number of points that are evaluated in all
+    raises ModelError: not two objectives, no point within the limits, and the errors of `tune`
     """
     if len(objectives) != 2:
         raise ModelError(f"trade_off: found {len(objectives)} objectives, expected two")
@@ -150,7 +152,7 @@ def _front(problem: Problem, before: TrialPoint, points: int) -> ParetoFront:
 
 
 def select_unbeaten(objectives: np.ndarray) -> list[int]:
-    """Rows of (m, 2) that no other one beats in both, by increasing first column."""
+    """Rows of (m, 2) that no other row beats in both, by increasing first column."""
     front: list[int] = []
     lowest = np.inf
     for i in np.lexsort((objectives[:, 1], objectives[:, 0])):
@@ -161,7 +163,7 @@ def select_unbeaten(objectives: np.ndarray) -> list[int]:
 
 
 def _spread(front: list[TrialPoint], points: int) -> list[TrialPoint]:
-    """At most so many of them, evenly along the front; both ends are in."""
+    """At most `points` of the points, evenly along the front, with both ends."""
     if len(front) <= points:
         return front
     at = np.array([t.objectives for t in front])

@@ -1,4 +1,4 @@
-"""Search the values of a diagram for the least of a measure, within limits.
+"""Search the values of a diagram for the smallest measure, within limits.
 
     td.tune(
         diagram,
@@ -51,10 +51,10 @@ _POLISH = 0.25
 class Tuned(ByValue):
     """The best point of a search.
 
-    diagram: with `values`;  objective: the measure there, of `before` with the diagram's values
-        (NaN where it is not measured there);  limits: checked once more at `values`
-    number: of points that were evaluated;  simulated: simulations, or evaluations of measures
-    at_ends: parameters at an end of their interval
+    diagram: with `values`;  objective: the measure at this point;  before: the measure with the
+        diagram's values (NaN if it was not measured there)
+    limits: checked once more at `values`;  at_ends: parameters at an end of their interval
+    number: of evaluated points;  simulated: number of simulations, or evaluations of measures
     """
 
     diagram: Diagram
@@ -71,7 +71,7 @@ class Tuned(ByValue):
 
     @property
     def keeps_limits(self) -> bool:
-        """Whether no limit is missed at the point, by the last check."""
+        """Whether the point is within all limits, by the last check."""
         return np.isfinite(self.objective) and all(one.holds for one in self.limits)
 
     @property
@@ -118,17 +118,17 @@ def tune(
     seed: int = 0,
     workers: int = 1,
 ) -> Tuned:
-    """Search for the values with the least objective that keep all limits.
+    """Search for the values with the least objective within all limits.
 
-    parameters: names of `SimulatedCase` -> (low, high); in logarithms where high is 10 low or more
+    parameters: names of `SimulatedCase` -> (low, high); in logarithms if high is 10 low or more
     objective: a measure, as in `study`: a name, `measure(...)`, or a function of the result
     subject_to: `limit(...)`, or names of claims ("passive", "absolutely stable", "stable")
-    duration ... step: how the diagram is simulated, see `study`
-    evaluations: points that are evaluated in one round; a round more where a limit over intervals
-        fails at a point of these that the search had not looked at
-    seed: the same one has the same answer, whatever `workers` (processes) is
+    duration ... step: settings of the simulation, see `study`
+    evaluations: points that are evaluated in one round; another round follows if a limit over
+        intervals fails at a point of these intervals that the search had not evaluated
+    seed: the same seed gives the same answer, for any number of `workers` (processes)
     returns: the best evaluated point, never "the optimum": other points may be better
-    raises ModelError: an unknown parameter or measure, an interval that is none
+    raises ModelError: an unknown parameter or measure, an invalid interval
     """
     if isinstance(objective, list | tuple):
         raise ModelError(f"tune: found {len(objective)} objectives, expected one; see `trade_off`")
@@ -157,7 +157,7 @@ def problem_of(
     seed: int,
     workers: int,
 ) -> Problem:
-    """The search that is asked for; raises ModelError where its parts do not fit the case."""
+    """The search for the given arguments; raises ModelError: arguments that do not fit the case."""
     case.check_names(parameters)
     box = box_of_parameters(parameters, "tune")
     measures = tuple(measures_of([one])[0] for one in objectives)
@@ -170,7 +170,7 @@ def problem_of(
 
 
 def search_with_rounds(problem: Problem, evaluations: int) -> tuple[CheckedLimit, ...]:
-    """Search, check the best point, and continue where a limit fails at a new point."""
+    """Search, check the best point, and continue if a limit fails at a new point."""
     for left in reversed(range(_ROUNDS)):
         if not problem.trials or left == _ROUNDS - 1:
             search(problem, evaluations)
@@ -191,9 +191,9 @@ def search_with_rounds(problem: Problem, evaluations: int) -> tuple[CheckedLimit
 
 
 def search(problem: Problem, evaluations: int, *, number: int = 0, most: float = np.inf) -> None:
-    """Try points: differential evolution, then a simplex; all are kept in the problem.
+    """Evaluate points by differential evolution, then by a simplex; the problem stores them.
 
-    number: of the objective that is made small;  most: bound on the other one
+    number: of the objective that is minimised;  most: upper bound of the other objective
     """
     from scipy.optimize import differential_evolution, minimize
 
@@ -229,7 +229,7 @@ def search(problem: Problem, evaluations: int, *, number: int = 0, most: float =
 
 
 def _first_generation(problem: Problem, population: int, best: TrialPoint | None) -> np.ndarray:
-    """Sobol points of the first generation; the diagram's values and the best so far are in."""
+    """Sobol points of the first generation, with the diagram's values and the best point so far."""
     points = unit_box(problem.parameters.names).inside(population, problem.seed)
     points[0] = shares_of(problem.parameters, problem.start_values())
     if best is not None:
@@ -239,7 +239,7 @@ def _first_generation(problem: Problem, population: int, best: TrialPoint | None
 
 @dataclass
 class _Scale:
-    """One number to search by: below 1 where all limits are kept, from 1 to 2 where not."""
+    """One number for the search: below 1 if all limits hold, from 1 to 2 if not."""
 
     size: float = 0.0
 
@@ -263,7 +263,7 @@ def make_tuned(
     limits: tuple[CheckedLimit, ...],
     number: int = 0,
 ) -> Tuned:
-    """The result at a point."""
+    """The result of a search at a point."""
     share = shares_of(problem.parameters, np.array(trial.values))
     ends = [
         n for n, u in zip(problem.parameters.names, share, strict=True) if min(u, 1 - u) < AT_END

@@ -1,4 +1,4 @@
-"""Versions of what can change a number."""
+"""Versions of the packages that can change a number."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _COUNTED = ("teleopdesign", "numpy", "scipy", "sympy", "numba", "xarray")
 
 
 def versions() -> dict[str, str]:
-    """Package -> version, "" where it is used without an installation; Python among them."""
+    """Package -> version; "" for a package that is used without an installation; also Python."""
     by_name = {"python": platform.python_version()}
     for name in _COUNTED:
         try:

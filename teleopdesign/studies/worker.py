@@ -12,7 +12,7 @@ from .side_by_side import evaluate_unit
 
 
 def main() -> None:
-    """Take a task and then units of points, return what becomes of each unit at once."""
+    """Receive a task and then units of points; return the outcomes of each unit at once."""
     # Ctrl-C goes to all processes of a terminal: the one that asked decides what happens
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     questions = os.fdopen(os.dup(0), "rb")

@@ -71,7 +71,7 @@ def test_value_and_slope_at_a_point_lie_within_their_tight_bounds(terms, x, y):
 
 @pytest.mark.parametrize("degree", [0, 1, 2])
 def test_the_bound_of_the_rest_of_a_series_is_met_where_all_its_terms_add(degree):
-    """Of p e^(-s T) about -b, on the way further left, with signs by which every term is positive."""
+    """Of p e^(-s T) about -b, further left, with signs by which every term is positive."""
     base, radius, time = Fraction(3, 2), Fraction(1, 4), Fraction(2, 5)
     sizes = [Fraction(2), Fraction(1, 3), Fraction(5, 7)][: degree + 1]
     p = [c * (-1) ** (degree - i) for i, c in enumerate(sizes)]

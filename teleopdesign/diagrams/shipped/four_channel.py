@@ -6,5 +6,5 @@ from ..wiring import Diagram
 
 
 def diagram() -> Diagram:
-    """The wiring with every block that it can have but scales; motions and forces as they are."""
+    """The wiring with all optional blocks except scales; motions and forces are not scaled."""
     return wired(hand=ANY, environment=ANY, delay=0.02)

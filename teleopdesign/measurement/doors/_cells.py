@@ -1,4 +1,4 @@
-"""Cells of a table as numbers: plain ones, dates and times of day."""
+"""Cells of a text table as numbers: plain numbers, dates and times of day."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ _NO_ROWS = np.empty(0)
 
 
 def is_empty(cell: str) -> bool:
-    """Whether a cell holds no reading: nothing, or a word for it ("n/a", "-")."""
+    """Whether a cell holds no reading: empty, or a word for a missing value ("n/a", "-")."""
     bare = cell.strip()
     return not bare or bare.lower() in NO_READING
 
 
 def is_number(cell: str, comma: bool) -> bool:
-    """Whether a cell is a number; comma: with a decimal comma, else with a point."""
+    """Whether a cell is a number; comma: the decimal sign is a comma, not a point."""
     if (_THOUSANDS_WITH_POINTS if comma else _THOUSANDS).match(cell):
         return True
     return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
 
 
 def number_of(cell: str, *, comma: bool = False) -> float | str:
-    """A cell as a number, NaN where it holds no reading; the cell itself where it is a text.
+    """A cell as a number: NaN if it holds no reading; the cell unchanged if it is a text.
 
-    comma: the decimal sign is one, and points may part thousands
+    comma: the decimal sign is a comma, and points may separate thousands
     """
     cell = cell.strip()
     if is_empty(cell):
@@ -65,7 +65,7 @@ def number_of(cell: str, *, comma: bool = False) -> float | str:
 
 
 def seconds_of(cell: str) -> float | None:
-    """A date or a time of day as seconds; None: it is neither."""
+    """A date or a time of day in s; None: the cell is neither."""
     if ":" not in cell and max(map(cell.count, "-/.")) < 2:
         return None
     stamp = stamps_of([cell])
@@ -73,7 +73,7 @@ def seconds_of(cell: str) -> float | None:
 
 
 def stamps_in_texts(cells: Sequence[object]) -> Array | None:
-    """Dates or times of day of a column in s, NaN in empty cells; None: they are something else."""
+    """Dates or times of day of a column in s, NaN in empty cells; None: another content."""
     filled = [k for k, cell in enumerate(cells) if cell is not None and not is_empty(str(cell))]
     texts = [cell for k in filled if isinstance(cell := cells[k], str)]
     if not texts or len(texts) < len(filled) or seconds_of(texts[0]) is None:
@@ -87,20 +87,21 @@ def stamps_in_texts(cells: Sequence[object]) -> Array | None:
 
 
 class CellColumns:
-    """Columns of texts that become numbers some rows at a time: texts take ten times the memory.
+    """Columns of texts, converted to numbers block by block because texts need more memory.
 
-    A column that begins with another text is kept until it is whole: dates count from its first.
+    A column that begins with a text which is no number is kept until it is complete: its dates
+    count from the first one.
     """
 
     def __init__(self, where: Sequence[str], *, comma: bool = False) -> None:
-        """where: of each column, what errors call it;  comma: the decimal sign is one."""
+        """where: name of each column in error messages;  comma: the decimal sign is a comma."""
         self._where, self._comma = where, comma
         self._numbers: list[list[Array]] = [[] for _ in where]
         self._texts: list[list[str]] = [[] for _ in where]
         self._rows = 0
 
     def add(self, columns: Sequence[list[str]]) -> None:
-        """The cells of the next rows; raises ExperimentError: one that is no number."""
+        """Add the cells of the next rows; raises ExperimentError: a cell that is no number."""
         for k, cells in enumerate(columns):
             if self._texts[k] or (self._rows == 0 and _begins_with_text(cells, self._comma)):
                 self._texts[k] += cells
@@ -109,7 +110,7 @@ class CellColumns:
         self._rows += len(columns[0])
 
     def values(self) -> list[Array]:
-        """Each column; raises ExperimentError: neither numbers nor dates."""
+        """The columns as arrays; raises ExperimentError: a column of neither numbers nor dates."""
         return [
             _seconds_or_numbers(texts, where, self._comma)
             if texts
@@ -129,7 +130,7 @@ def _seconds_or_numbers(cells: Sequence[str], where: str, comma: bool) -> Array:
 
 
 def _numbers(cells: Sequence[str], where: str, comma: bool, before: int = 0) -> Array:
-    """Numbers, NaN for a cell without a reading; before: rows before the first."""
+    """Cells as numbers, NaN for a cell without a reading; before: number of rows read earlier."""
     out = np.full(len(cells), np.nan)
     for k, cell in enumerate(cells, start=before + 1):
         number = number_of(cell, comma=comma) if cell else math.nan

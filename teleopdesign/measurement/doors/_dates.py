@@ -1,4 +1,4 @@
-"""Dates and times of day as text: ISO with and without a zone, day or month first, AM and PM."""
+"""Dates and times of day as text: ISO with or without a zone, day or month first, AM and PM."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ _BETWEEN = re.compile(r"(?<=\d)(?:T|,?\s+)(?=\d{1,2}:)")
 
 
 def stamps_of(cells: Sequence[str]) -> Array | None:
-    """Dates or times of day as seconds, from midnight or the first day; None: some are neither.
+    """Times of day in s from midnight, or dates in s from the first day; None: a cell is neither.
 
-    Cells with a zone count in universal time: an hour that comes twice in autumn is two hours.
+    Cells with a time zone count in universal time, so that an hour that occurs twice in autumn
+    counts as two hours.
     """
     if _CLOCK.match(cells[0].strip()):
         seconds = [_seconds_of_day(cell.strip()) for cell in cells]
@@ -42,7 +43,7 @@ def stamps_of(cells: Sequence[str]) -> Array | None:
 
 
 def _parts_of(cell: str) -> tuple[str, float] | None:
-    """Date of a cell, and seconds from its midnight in universal time; None: no date."""
+    """Date of a cell, and seconds from its midnight in universal time; None: no time of day."""
     between = _BETWEEN.search(cell)
     if between is None:
         return cell, 0.0
@@ -59,7 +60,7 @@ def _parts_of(cell: str) -> tuple[str, float] | None:
 
 
 def _seconds_of_day(text: str) -> float | None:
-    """A time of day in s; None: none."""
+    """A time of day in s; None: the text is no time of day."""
     match = _CLOCK.match(text)
     if match is None:
         return None
@@ -70,7 +71,7 @@ def _seconds_of_day(text: str) -> float | None:
 
 
 def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:
-    """Days as dates, whatever comes first in them; None: some are none."""
+    """Days as dates, with the day or the month first; None: some texts are no dates."""
     kinds = {day: _numbers_of(day) for day in dict.fromkeys(days)}
     if any(numbers is None for numbers in kinds.values()):
         return None
@@ -91,7 +92,7 @@ def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:
 
 
 def _numbers_of(day: str) -> tuple[int, int, int, bool] | None:
-    """Year and two numbers of a day in the order of the cell, and whether a slash parts them."""
+    """Year, two other numbers, and whether slashes separate them: then either is the month."""
     if (match := _YEAR_FIRST.match(day)) is not None:
         return int(match[1]), int(match[3]), int(match[2]), False
     if (match := _MONTH_NAMED.match(day)) is not None:

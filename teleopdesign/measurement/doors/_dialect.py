@@ -1,4 +1,4 @@
-"""How a table of text is written, judged by its first rows: separator, decimal sign, encoding."""
+"""How a text table is written, judged from its first rows: separator, decimal sign, encoding."""
 
 from __future__ import annotations
 
@@ -30,9 +30,12 @@ MOST_REMARKS = 100
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a table is written. `first`: line of the first row of numbers, from 0.
+    """How a text table is written.
 
-    dates: columns of dates or times of day;  remarks: lines above the table that are not its header
+    separator: between cells;  comma: the decimal sign is a comma
+    header, units: name and unit of each column;  first: line of the first row of numbers, from 0
+    named: the file has a header;  dates: columns of dates or times of day
+    remarks: lines above the first row of numbers
     """
 
     encoding: str
@@ -47,7 +50,7 @@ class Dialect:
 
 
 def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
-    """The encoding of a file, and its first lines; raises ExperimentError: there is none."""
+    """The encoding of a file and its first lines; raises ExperimentError: the file has no text."""
     with open_bytes(path) as stream:
         raw = stream.read(LOOKED_AT)
         whole = len(raw) < LOOKED_AT
@@ -64,7 +67,7 @@ def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
 
 
 def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
-    """How a table is written, from its first lines."""
+    """How a text table is written, judged from its first lines."""
     body = [line for line in lines if line.strip() and not line.lstrip().startswith(COMMENTS)]
     separator, comma = _separator(body[1:] or body)
     first, width = _first_row(lines, separator, comma)
@@ -86,10 +89,10 @@ def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
 
 
 def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, int]:
-    """Line of the first row of numbers, and how many cells most of such rows have.
+    """Line of the first row of numbers, and the most frequent number of cells in such rows.
 
-    Numbers above a table (a rate, a count of samples) are rows of another number of cells, or
-    fewer than `IN_A_ROW` of them follow each other.
+    Numbers above a table (a rate, a count of samples) differ from its rows: another number of
+    cells, or fewer than `IN_A_ROW` such rows in succession.
     """
     widths = {
         k: len(cells)
@@ -121,7 +124,7 @@ def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> Non
 
 
 def _separator(lines: Sequence[str]) -> tuple[str, bool]:
-    """The separator and whether the decimal sign is a comma: what leaves most numbers a row."""
+    """The separator, and whether the decimal sign is a comma: the choice with most numbers."""
     some = lines[-40:]
     best, chosen = (-1.0, 0), (",", False)
     for separator in SEPARATORS:
@@ -142,7 +145,7 @@ def _separator(lines: Sequence[str]) -> tuple[str, bool]:
 
 
 def cells_of(line: str, separator: str) -> list[str]:
-    """The cells of a line, without the space around them."""
+    """The cells of a line, without spaces around them."""
     line = line.strip("\r\n")
     if separator == " ":
         return line.split()
@@ -159,7 +162,7 @@ def is_value(cell: str, comma: bool) -> bool:
 
 
 def _is_data(cells: Sequence[str], comma: bool) -> bool:
-    """A row of numbers and dates; a broken cell among many does not make it a header."""
+    """Whether a row holds numbers and dates; a broken cell among many does not make it a header."""
     filled = [c for c in cells if c]
     return bool(filled) and sum(is_value(c, comma) for c in filled) > 0.5 * len(filled)
 
@@ -194,7 +197,7 @@ def _header(
 
 
 def open_bytes(path: Path) -> IO[bytes]:
-    """The bytes of a file, unpacked where its name ends with .gz."""
+    """Open the bytes of a file; a file whose name ends with .gz is unpacked."""
     if path.name.lower().endswith(".gz"):
         return cast(IO[bytes], gzip.open(path, "rb"))
     return path.open("rb")

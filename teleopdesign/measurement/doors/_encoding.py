@@ -1,8 +1,8 @@
-"""Which encoding a table of text is written in, from the bytes alone.
+"""The text encoding of a table, judged from its bytes alone.
 
-Marks at the beginning and UTF-8 say themselves what they are. Of the others, many decode the same
-bytes: the one is taken in which most letters are those that tables of measurements are written
-with. A table says little but "time", "position", "torque" and units, so that few letters tell.
+A byte-order mark and UTF-8 can be recognised for certain. Many other encodings can decode the same
+bytes; the module takes the encoding in which most letters are usual in tables of measurements. A
+table holds few words ("time", "position", "torque") and units, so that few letters decide.
 """
 
 from __future__ import annotations
@@ -44,9 +44,10 @@ PLAIN = 0.1
 
 
 def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
-    """Name of the encoding of a text that begins so; `whole`: no byte follows.
+    """Name of the encoding of a text.
 
-    raises ExperimentError: a byte that no text holds, or UTF-16 that is none
+    raw: first bytes of the text;  whole: no byte follows
+    raises ExperimentError: a zero byte, or a UTF-16 mark at the beginning of something else
     """
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = _decode(raw, "utf-16", whole=False)
@@ -69,7 +70,7 @@ def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
 
 
 def _decode(raw: bytes, encoding: str, whole: bool) -> str | None:
-    """The text, without a last letter that was cut; None: no text of this encoding."""
+    """The text, without a last letter that was cut off; None: not a text of this encoding."""
     try:
         return codecs.getincrementaldecoder(encoding)().decode(raw, final=whole)
     except UnicodeDecodeError:
@@ -77,7 +78,7 @@ def _decode(raw: bytes, encoding: str, whole: bool) -> str | None:
 
 
 def _known_share(text: str | None, encoding: str) -> float:
-    """Share of the letters beyond ASCII that tables in this encoding are written with."""
+    """Share of the non-ASCII letters that are usual in tables of this encoding."""
     if text is None:
         return 0.0
     beyond = [k for k, letter in enumerate(text) if ord(letter) > 127]

@@ -1,4 +1,4 @@
-"""Names and units of columns from the rows above a table: titles, groups, names, units."""
+"""Names and units of columns from the rows above a table: titles, groups, names and units."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ MOSTLY = 0.5
 
 
 def bare_unit(cell: str) -> str:
-    """A cell of a row of units without its brackets, as the package writes units."""
+    """The unit in a cell of a row of units, without brackets, as the package writes units."""
     bare = cell.strip("[](){}<> ")
     return unit_of_text(bare) or bare
 
 
 def is_unit_cell(cell: str) -> bool:
-    """Whether the cell may stand in a row of units: a unit, in brackets or not, or nothing."""
+    """Whether a cell may belong to a row of units: a unit, with or without brackets, or empty."""
     bare = cell.strip("[](){}<> ")
     return not bare or bare in ("-", "counts", "ticks") or is_unit(bare)
 
@@ -39,10 +39,11 @@ def is_row_of_units(cells: Sequence[str], names: Sequence[str]) -> bool:
 
 
 def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units from the rows of text above a table, as wide as the table.
+    """Names and units of the columns from the rows of text above a table.
 
-    A cell without a name takes that of the row above it, and columns of one name the title of
-    their group: "Motor Angle", "Bench Angle". A title stands above the first column of its group.
+    The rows are as wide as the table. A column without a name takes the name in the row above.
+    Columns with the same name get the title of their group: "Motor Angle", "Bench Angle". A title
+    stands above the first column of its group.
     """
     above = list(rows)
     units: tuple[str, ...] = ()
@@ -64,7 +65,7 @@ def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tup
 
 
 def _carried_on(titles: Sequence[str]) -> list[str]:
-    """The title of each column's group: merged cells have theirs in the first alone."""
+    """The title of each column's group; only the first of merged cells holds the title."""
     out: list[str] = []
     for title in titles:
         out.append(title or (out[-1] if out else ""))

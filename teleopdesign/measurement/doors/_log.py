@@ -1,4 +1,4 @@
-"""What a door returns: names of columns, and a way to read some of them."""
+"""An open log: the names of its columns, and a function that reads some of them."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ class Log:
     """An open log.
 
     names: of its columns, in order
-    read: columns by name, with the channel that wants each -> values as the file holds them
-    units: what the file itself says of units, by column
+    read: function from column -> channel that needs it, to column -> values as in the file
+    units: column -> unit, where the file states one
     notes: remarks on the file ("semicolons, decimal comma")
-    clocks: column -> the column with its stamps, where a log has several clocks (topics of a bag)
+    clocks: column -> column with its time stamps, where a log has several clocks (topics of a bag)
     remarks: lines of text above the table, names and units among them
-    left_out: what was found about the rows, once they are read ("3 lines that are no rows")
+    left_out: function, called after `read`: rows that were left out ("3 lines that are no rows")
     """
 
     names: tuple[str, ...]
@@ -51,7 +51,7 @@ class Log:
 
 
 def optional(module: str, file: str, extra: str = "io") -> ModuleType:
-    """A package that only some files need; raises ExperimentError: what to install."""
+    """Import an optional package; raises ExperimentError: missing, with what to install."""
     try:
         return import_module(module)
     except ImportError:
@@ -62,10 +62,10 @@ def optional(module: str, file: str, extra: str = "io") -> ModuleType:
 
 @contextmanager
 def refuse_damage(kind: str, file: str) -> Iterator[None]:
-    """Where another package reads: whatever a damaged file makes it raise becomes one line.
+    """Turn any error of another package on a damaged file into one line.
 
     kind: what the file should be ("MAT file")
-    raises ExperimentError: in place of all but errors of the system and of memory
+    raises ExperimentError: in place of all errors except those of the system and of memory
     """
     try:
         yield
@@ -77,9 +77,9 @@ def refuse_damage(kind: str, file: str) -> Iterator[None]:
 
 
 def how_to_save(name: str) -> str:
-    """What a user types in MATLAB so that an object can be read: its content is known to it alone.
+    """Message on an object that only MATLAB can unpack, with commands that save it readably.
 
-    name: of the variable
+    name: name of the variable
     """
     return (
         f"{quote(name)} is a timetable, table or other object that only MATLAB can unpack: in "
@@ -89,7 +89,7 @@ def how_to_save(name: str) -> str:
 
 
 def refuse_size(rows: int, file: str) -> None:
-    """Raise an ExperimentError for a file that says it holds more than `MOST_ROWS`."""
+    """Raise an ExperimentError for a file that states more rows than `MOST_ROWS`."""
     if rows > MOST_ROWS:
         raise ExperimentError(
             f"{file}: found {rows:.4g} rows, expected at most {MOST_ROWS:.4g}: cut the record"
@@ -97,7 +97,7 @@ def refuse_size(rows: int, file: str) -> None:
 
 
 def refuse_odd_names(log: Log, file: str) -> None:
-    """Raise an ExperimentError for more columns, or longer names of them, than a logger writes."""
+    """Raise an ExperimentError for too many columns, or for a column name that is too long."""
     if len(log.names) > MOST_COLUMNS:
         raise ExperimentError(
             f"{file}: found {len(log.names)} columns, expected at most {MOST_COLUMNS}"
@@ -111,7 +111,7 @@ def refuse_odd_names(log: Log, file: str) -> None:
 
 
 def number_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of columns, each once: those that are there several times get "#1", "#2" ..."""
+    """Unique names of columns: names that occur several times get "#1", "#2" ..."""
     of_all, count = Counter(names), Counter[str]()
     out = []
     for name in names:
@@ -121,14 +121,14 @@ def number_names(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def bare_column(name: str) -> str:
-    """The name of a column as the file has it, without the number of `number_names`."""
+    """The name of a column in the file, without the number that `number_names` added."""
     return _NUMBER.sub("", name)
 
 
 def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, int | None]]:
-    """Columns of an array: "x" for a vector, "x(:,1)" ... for a matrix; empty for what is neither.
+    """Columns of an array: "x" of a vector, "x(:,1)" ... of a matrix; empty for any other array.
 
-    returns: column -> (name of the array, its column from 0, None for a vector)
+    returns: column -> (name of the array, index of the column from 0, None for a vector)
     """
     lengths = [n for n in shape if n != 1]
     if len(shape) == 1 or len(shape) == 2 and len(lengths) == 1:

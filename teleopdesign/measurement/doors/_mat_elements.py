@@ -1,7 +1,7 @@
-"""Elements of a MAT file of version 5, looked at before scipy reads them.
+"""Checks of the elements of a MAT file of version 5 before scipy reads them.
 
-scipy takes the class of a matrix and the type of its numbers as it finds them: a damaged one ends
-the process (segmentation fault), which nothing can catch.
+scipy does not check the class of a matrix and the type of its numbers; a damaged file ends the
+process with a segmentation fault, which cannot be caught.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _DEEPEST = 50
 
 
 def check_elements(path: Path) -> None:
-    """Raise a ValueError for an element of no known kind, or that ends behind what holds it.
+    """Raise a ValueError for an element of an unknown kind, or one that exceeds its container.
 
     A file that is not of version 5 passes: other code reads it.
     """
@@ -43,7 +43,7 @@ def check_elements(path: Path) -> None:
 
 
 def _elements(data: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
-    """(type, content) of each element in turn."""
+    """Type and content of each element in turn."""
     at = 0
     while at + 8 <= len(data):
         first, size = struct.unpack_from(f"{order}II", data, at)

@@ -1,4 +1,4 @@
-"""Lines of names and values, as a microcontroller prints them: "t=0.001 pos=0.28 cmd=-1.2"."""
+"""Text of names and values, as a microcontroller prints it: "t=0.001 pos=0.28 cmd=-1.2"."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOST_OF_THEM = 0.8
 
 
 def pairs_of(line: str) -> list[tuple[str, str, str]]:
-    """(name, number, unit) of a line that holds nothing else; empty: the line is another one."""
+    """(name, number, unit) of each pair in a line; empty if the line is anything but pairs."""
     pairs, end = [], 0
     while end < len(line) and (match := _PAIR.match(line, end)) is not None:
         pairs.append((match[1], match[2], match[3]))
@@ -34,7 +34,7 @@ def pairs_of(line: str) -> list[tuple[str, str, str]]:
 
 
 def names_in_lines(lines: Sequence[str]) -> dict[str, str]:
-    """Name -> unit of a file that is written in pairs; empty: the file is a table."""
+    """Name -> unit for a file written in pairs; empty: the file is a table."""
     filled = [line for line in lines if line.strip()]
     rows = [row for line in filled if (row := pairs_of(line))]
     if len(rows) < 3 or len(rows) < MOST_OF_THEM * len(filled):
@@ -47,7 +47,7 @@ def names_in_lines(lines: Sequence[str]) -> dict[str, str]:
 def log_of_pairs(path: Path, file: str, encoding: str, units: Mapping[str, str]) -> Log:
     """The log of a file whose lines are pairs.
 
-    units: of each name, as `names_in_lines` finds them
+    units: of each name, from `names_in_lines`
     """
     from ._dialect import open_bytes
 

@@ -16,7 +16,10 @@ _KIND = ".npz file"
 
 
 def open_arrays(path: Path, file: str) -> Log:
-    """An .npz file; raises ExperimentError: none, or an array of objects where one is wanted."""
+    """Open an .npz file; raises ExperimentError: a damaged or too large file.
+
+    `Log.read` raises ExperimentError for an array of Python objects.
+    """
     columns: dict[str, tuple[str, int | None]] = {}
     with refuse_damage(_KIND, file), zipfile.ZipFile(path) as packed:
         for entry in packed.infolist():
@@ -47,7 +50,7 @@ def open_arrays(path: Path, file: str) -> Log:
 
 
 def _shape(packed: zipfile.ZipFile, entry: zipfile.ZipInfo) -> tuple[int, ...] | None:
-    """Shape that an array says it has, from its first bytes; None: it is no array."""
+    """The shape that an array states in its first bytes; None: the entry is no array."""
     if not entry.filename.endswith(".npy"):
         return None
     with packed.open(entry) as stream:

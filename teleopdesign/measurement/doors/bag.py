@@ -1,9 +1,9 @@
-"""Bags of ROS 1 (.bag), ROS 2 (a folder with metadata.yaml, .db3, .mcap): a column for each number.
+"""ROS 1 bags (.bag) and ROS 2 bags (.db3, .mcap, a folder with metadata.yaml): one column a number.
 
-A column is TOPIC.FIELD ("/ft.wrench.force.z"); a `sensor_msgs/JointState` and what the da Vinci
-Research Kit publishes in the same form name their joints: "/joint_states.elbow.position". Each
-topic has separate stamps, "TOPIC.stamp": those of its headers where it has them, when it was
-written down otherwise; seconds from the beginning of the bag.
+A column is TOPIC.FIELD ("/ft.wrench.force.z"). A `sensor_msgs/JointState`, and what the da Vinci
+Research Kit publishes in the same form, name their joints: "/joint_states.elbow.position". Each
+topic has its time stamps in "TOPIC.stamp", in s from the beginning of the bag: the stamps of its
+headers, or else the times of recording.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ _OTHER_CLOCK = 10.0
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a path is a bag: a file of one, or the folder that ROS 2 writes."""
+    """Whether a path is a bag: a bag file, or the folder that ROS 2 writes."""
     if path.is_dir():
         return (path / "metadata.yaml").is_file()
     return path.name.lower().endswith((".bag", ".mcap", ".db3"))
 
 
 def open_bag(path: Path, file: str) -> Log:
-    """A bag; every message of every topic with numbers is read once."""
+    """Open a bag; every message of every topic with numbers is read once."""
     anyreader = optional("rosbags.highlevel", file, "ros")
     topics: dict[str, dict[str, list[float]]] = {}
     source = path
@@ -66,7 +66,7 @@ def open_bag(path: Path, file: str) -> Log:
 
 
 def _check_definitions(source: Path, file: str) -> None:
-    """Names of types, fields and constants become source inside rosbags: plain words only.
+    """Refuse names in message definitions that are no plain words: rosbags makes code of them.
 
     raises ExperimentError: any other name, or a constant that is neither number nor text
     """
@@ -99,7 +99,7 @@ def _check_definitions(source: Path, file: str) -> None:
 
 
 def _check_type_name(name: str, file: str) -> None:
-    """A type is words joined by slashes: "sensor_msgs/msg/JointState"."""
+    """Refuse a type name that is not words joined by slashes: "sensor_msgs/msg/JointState"."""
     if not (0 < len(name) <= LONGEST and all(map(_WORD.fullmatch, name.split("/")))):
         raise ExperimentError(
             f"{file}: found a message type {quote(name)}, expected words joined by slashes, such "
@@ -108,7 +108,7 @@ def _check_type_name(name: str, file: str) -> None:
 
 
 def _check_field(name: str, kind: Any, file: str) -> None:
-    """A field is a word; its type holds words and sizes alone, at any depth."""
+    """Refuse a field whose name is no word, or whose type holds anything but words and sizes."""
     if not (len(name) <= LONGEST and _WORD.fullmatch(name)):
         raise ExperimentError(f"{file}: found a field {quote(name)}, expected a word")
     parts = [kind]
@@ -123,9 +123,7 @@ def _check_field(name: str, kind: Any, file: str) -> None:
 
 
 def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int) -> None:
-    """One message's numbers, in columns as long as the topic has messages; NaN where it has
-    none.
-    """
+    """Append the numbers of one message to the columns of its topic; NaN where it has none."""
     count = len(rows.get(STAMP, ()))
     numbers: dict[str, float] = {}
     _flatten(message, "", numbers, _joints(message))
@@ -143,7 +141,7 @@ def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int
 
 
 def _joints(message: Any) -> list[str]:
-    """Names of joints, where a message names them as a JointState does."""
+    """The joint names of a message that has them in `name`, as a JointState does; else []."""
     names = getattr(message, "name", None)
     if isinstance(names, list | tuple) and all(isinstance(n, str) for n in names):
         return list(names)

@@ -1,6 +1,6 @@
-"""A folder of tables that one run left side by side: a drive's log beside that of a force sensor.
+"""A folder of tables that one run wrote: the log of a drive, the log of a force sensor.
 
-Each table keeps its clock, as each topic of a bag does. The name of a table stands before the
+Each table keeps its clock, as each topic of a bag does. The name of the table is put before the
 names of its columns ("drive.position").
 """
 
@@ -24,10 +24,11 @@ SHARED = 0.5
 def open_folder(
     folder: Path, file: str, tables: Sequence[Path], open_one: Callable[[Path, str], Log]
 ) -> Log:
-    """The tables as one log.
+    """Open several tables as one log.
 
-    tables: the files of the folder that are tables;  open_one: opens one of them
-    raises ExperimentError: tables of the same columns, one without a time, or that share no time
+    tables: the files of the folder that are tables;  open_one: function that opens one of them
+    raises ExperimentError: tables with the same columns, a table without a time, or tables whose
+        times do not overlap
     """
     stems = [t.name.split(".")[0] for t in tables]
     names = stems if len(set(stems)) == len(stems) else [t.name for t in tables]
@@ -86,7 +87,7 @@ def _time_column(log: Log, file: str) -> str:
 
 
 def _seconds(log: Log, column: str, file: str) -> Array:
-    """The stamps of a table in s, from the same instant for all tables."""
+    """The time stamps of a table in s, from the same instant for all tables."""
     from ..column_names import unit_in_name
     from ..numbers_in_cells import numbers_of
     from ..stamp_unit import unit_of_steps

@@ -1,7 +1,7 @@
-"""HDF5 files: datasets ("robot/q"), columns of matrices ("robot/q(:,2)"), fields of compound ones.
+"""HDF5 files: datasets ("robot/q"), columns of matrices ("robot/q(:,2)") and fields of compounds.
 
-Datasets that lie in other files (external storage, external links, virtual datasets) are refused: a
-log is one file.
+Datasets that are stored in other files (external storage, virtual datasets) are refused: a log is
+one file.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _OBJECT = "MATLAB_object_decode"
 
 
 def open_hdf5(path: Path, file: str) -> Log:
-    """An HDF5 file, or a MAT file of version 7.3."""
+    """Open an HDF5 file, or a MAT file of version 7.3."""
     h5py = optional("h5py", file)
     columns: dict[str, tuple[str, int | str | None]] = {}
     units: dict[str, str] = {}
@@ -89,7 +89,7 @@ def open_hdf5(path: Path, file: str) -> Log:
 
 
 def _unit(item: Any) -> str | None:
-    """The unit that a dataset says as its attribute."""
+    """The unit in the attributes of a dataset; None: no attribute states one."""
     for key, value in item.attrs.items():
         if key.lower() in UNIT_KEYS:
             text = value.decode("utf-8", "replace") if isinstance(value, bytes) else value
@@ -101,7 +101,7 @@ def _unit(item: Any) -> str | None:
 def _fields_of_structs(
     content: Any, item: Any, name: str
 ) -> dict[str, tuple[str, int | str | None]]:
-    """Columns of a field of an array of structs: "axis(2)/q", kept elsewhere in the file."""
+    """Columns of one field of an array of structs, "axis(2)/q"; their values lie elsewhere."""
     columns: dict[str, tuple[str, int | str | None]] = {}
     group, _, field = name.rpartition("/")
     for k, reference in enumerate(item[()].reshape(-1)[:MOST_STRUCTS], start=1):

@@ -1,7 +1,7 @@
-"""JSON: one record a line, a list of records, or a list of numbers for each column.
+"""JSON: one record per line, a list of records, or a list of numbers for each column.
 
-Keys within keys are columns "joint.pos"; the numbers of a list are "q(1)", "q(2)", or, where the
-record names its joints in a list `name`, "elbow.q".
+Nested keys become columns such as "joint.pos". The numbers of a list become "q(1)", "q(2)", or
+"elbow.q" where the record names its joints in a list `name`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FEW_STRAYS, MOST_STRAYS = 10, 0.01
 
 
 def open_json(path: Path, file: str) -> Log:
-    """A file of JSON; raises ExperimentError: none, or no records in it."""
+    """Open a JSON file; raises ExperimentError: no JSON, or JSON without records."""
     with open_bytes(path) as stream:
         raw = stream.read(MOST_BYTES + 1)
     if len(raw) > MOST_BYTES:
@@ -55,7 +55,7 @@ def open_json(path: Path, file: str) -> Log:
 
 
 def _records_of_lines(text: str, file: str) -> tuple[list[Any], int]:
-    """Records of a file with one a line, and how many other lines there are."""
+    """The records of a file with one record per line, and the number of other lines."""
     records, strays = [], 0
     lines = [line for line in text.splitlines() if line.strip()]
     for row, line in enumerate(lines, start=1):
@@ -71,7 +71,7 @@ def _records_of_lines(text: str, file: str) -> tuple[list[Any], int]:
 
 
 def _columns(content: list[Any] | dict[str, Any]) -> dict[str, list[Any]]:
-    """Columns of records, None where one lacks a key; or the lists of a record of lists."""
+    """Columns of records, None where a record lacks a key; or the columns of a record of lists."""
     if isinstance(content, dict):
         within = [v for v in content.values() if isinstance(v, list) and v]
         lists = _lists("", content, 0)
@@ -90,7 +90,7 @@ def _columns(content: list[Any] | dict[str, Any]) -> dict[str, list[Any]]:
 
 
 def _lists(name: str, value: Any, depth: int) -> dict[str, list[Any]]:
-    """Columns of a record of lists: {"t": [...], "joint": {"q": [...]}}."""
+    """Columns of a record of lists, {"t": [...], "joint": {"q": [...]}}."""
     if isinstance(value, dict) and depth < DEPTH:
         out: dict[str, list[Any]] = {}
         for key, inner in value.items():

@@ -1,7 +1,7 @@
 """MATLAB files: variables, fields of structs ("log.q"), columns of matrices ("data(:,3)").
 
-Version 7.3 is an HDF5 file. A timetable or table is an object that only MATLAB can unpack: one line
-says how to save it.
+Version 7.3 is an HDF5 file. Only MATLAB can unpack a timetable or table: a message says how to save
+it in another form.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _DEPTH = 4
 
 
 def open_matlab(path: Path, file: str) -> Log:
-    """A MAT file of any version."""
+    """Open a MAT file of any version."""
     from scipy.io import loadmat, whosmat
 
     if _is_hdf5(path):
@@ -74,16 +74,16 @@ def open_matlab(path: Path, file: str) -> Log:
 
 
 def _is_hdf5(path: Path) -> bool:
-    """Whether a file is HDF5: of MATLAB 7.3 or of another program, which writes no MATLAB head."""
+    """Whether a file is HDF5, with the header of MATLAB 7.3 or without it."""
     with path.open("rb") as stream:
         head = stream.read(_HEAD + len(_HDF5))
     return head.startswith(_HDF5) or head[_HEAD:] == _HDF5
 
 
 def _fields(name: str, value: Any, depth: int, units: dict[str, str]) -> dict[str, Any]:
-    """Numeric fields of a struct, "log.q"; of structs within as well.
+    """Numeric fields of a struct, "log.q", including those of nested structs.
 
-    units: gets the unit of a field that the struct says
+    units: gets the unit of each field for which the struct states one
     """
     array = np.asarray(value)
     if array.dtype.names and (signals := _signals(name, array, units)):
@@ -106,9 +106,9 @@ def _fields(name: str, value: Any, depth: int, units: dict[str, str]) -> dict[st
 
 
 def _signals(name: str, array: Any, units: dict[str, str]) -> dict[str, Any]:
-    """Signals of an array of structs that say their names, "rec.Y.Torque cmd"; {} where none do.
+    """Signals of structs that hold their names, "rec.Y.Torque cmd"; {} for other structs.
 
-    A real-time system writes one struct a signal: `Name` or `label`, `Data` or `values`, `Unit`.
+    A real-time system writes one struct per signal: `Name` or `label`, `Data` or `values`, `Unit`.
     """
     lower = {field.lower(): field for field in array.dtype.names}
     label = lower.get("name") or (lower.get("label") if array.size > 1 else None)
@@ -131,6 +131,6 @@ def _signals(name: str, array: Any, units: dict[str, str]) -> dict[str, Any]:
 
 
 def _text(value: Any) -> str:
-    """A text of a struct; "" for what is none."""
+    """The text in a field of a struct; "" for other content."""
     array = np.asarray(value)
     return str(array.reshape(-1)[0]).strip() if array.size == 1 and array.dtype.kind == "U" else ""

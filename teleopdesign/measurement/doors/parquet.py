@@ -12,7 +12,7 @@ _KIND = "parquet file"
 
 
 def open_parquet(path: Path, file: str) -> Log:
-    """A parquet file; raises ExperimentError: none, or without pyarrow."""
+    """Open a parquet file; raises ExperimentError: a damaged file, or pyarrow is missing."""
     parquet = optional("pyarrow.parquet", file)
     with refuse_damage(_KIND, file):
         schema = parquet.read_schema(path)

@@ -1,7 +1,7 @@
-"""Tables of text: csv of any dialect, read fast if well-formed; if not, row and column are named.
+"""Text tables: csv of any dialect. A well-formed table is read fast; errors name row and column.
 
-What separates columns, the decimal sign, the encoding, comments before the header and a row of
-units below it are read from the first rows. A time may be written as a date or a time of day.
+Separator, decimal sign, encoding, comments before the header and a row of units below it are judged
+from the first rows. A time may be written as a date or a time of day.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 
 def open_text(path: Path, file: str) -> Log:
-    """A csv file, packed or not; raises ExperimentError: no text, no rows."""
+    """Open a csv file, packed or not; raises ExperimentError: no text, no rows."""
     encoding, lines = first_lines(path, file)
     if pairs := names_in_lines(lines):
         return log_of_pairs(path, file, encoding, pairs)
@@ -75,7 +75,7 @@ def open_text(path: Path, file: str) -> Log:
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:
-    """Whether the last row of a file that is not packed has too few cells."""
+    """Whether the last row has too few cells; False for packed files and for space as separator."""
     if path.name.lower().endswith(".gz") or dialect.separator == " ":
         return False
     with path.open("rb") as stream:
@@ -111,7 +111,7 @@ def _read(
 
 
 def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
-    """Columns of some rows at a time: a whole table beside its columns takes twice the memory."""
+    """Columns of some rows at a time: a whole table beside its columns would double the memory."""
     yield [np.empty(0) for _ in places]  # of a header without rows
     while rows := list(islice(lines, _ROWS)):
         table = np.loadtxt(
@@ -134,10 +134,10 @@ def _place(header: Sequence[str], name: str, file: str) -> int:
 
 
 def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]) -> Iterator[str]:
-    """The rows of numbers.
+    """The lines of the table that are rows of numbers.
 
-    strays: gets the row before which a line was left out that is no row: too few cells, or no
-        number in any
+    strays: gets the number of the row before which a line was left out; such a line has too few
+        cells or no number in any cell
     raises ExperimentError: a row with too many cells; too many lines that are no rows
     """
     width, separator = len(dialect.header), dialect.separator
@@ -174,7 +174,7 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
 def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[str]:
     """Rows with points in place of decimal commas.
 
-    raises ValueError: a point in a wanted cell, where it may part thousands
+    raises ValueError: a point in a wanted cell, where it may separate thousands
     """
     for line in lines:
         if "." in line and any("." in c for c in pick(cells_of(line, separator), places)):
@@ -183,12 +183,12 @@ def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) ->
 
 
 def pick(cells: Sequence[str], places: Sequence[int]) -> list[str]:
-    """Some cells of a row; "" where the row is shorter."""
+    """The cells of a row at some places; "" where the row is shorter."""
     return [cells[k] if k < len(cells) else "" for k in places]
 
 
 def _is_text(line: str, dialect: Dialect) -> bool:
-    """Whether a line holds no number at all: a header once more, a message of the logger."""
+    """Whether a line holds no number at all: a repeated header or a message of the logger."""
     if line.lstrip()[:1] in _BEGINS_A_NUMBER:
         return False
     cells = [c for c in cells_of(line, dialect.separator) if c]
@@ -209,7 +209,10 @@ def _read_cell_by_cell(
     places: Sequence[int],
     strays: list[int],
 ) -> dict[str, Array]:
-    """The slow way: empty cells are NaN, dates become seconds, other texts are named."""
+    """Read each cell separately, which is slow: empty cells are NaN, dates become seconds.
+
+    raises ExperimentError: any other text, with its row and column
+    """
     where = [
         f"{file}: {channel + ': ' if channel else ''}column {quote(name)}"
         for name, channel in wanted.items()

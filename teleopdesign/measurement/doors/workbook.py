@@ -1,6 +1,4 @@
-"""Workbooks (.xlsx): the first sheet with a table, its header and, if there is one, a row of
-units.
-"""
+"""Workbooks (.xlsx): the first sheet with a table, its header and, if present, its row of units."""
 
 from __future__ import annotations
 
@@ -22,7 +20,7 @@ _TOP = 50
 
 
 def open_workbook(path: Path, file: str) -> Log:
-    """A workbook; raises ExperimentError: none, too large unpacked, no row of numbers."""
+    """Open a workbook; raises ExperimentError: a damaged or too large file, no row of numbers."""
     openpyxl = optional("openpyxl", file)
     with refuse_damage("workbook", file):
         with zipfile.ZipFile(path) as packed:

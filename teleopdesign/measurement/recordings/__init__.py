@@ -1,10 +1,12 @@
-"""Public recordings of real devices, obtained from where they are published and made experiments.
+"""Public recordings of real devices, downloaded from their authors and converted to experiments.
 
     from teleopdesign.measurement.recordings import fetch
+
     experiment = load_experiment(fetch("emps"))
 
-The files stay where their authors put them (no licence is stated for the data): each is downloaded
-once at a fixed commit, checked against its hash, and converted into an experiment's folder.
+The package does not contain the files, because no licence is stated for the data. Each file is
+downloaded once at a fixed commit, checked against its hash, and converted into an experiment's
+folder.
 """
 
 import hashlib
@@ -30,7 +32,7 @@ RECORDINGS: Mapping[str, Recording] = {
 
 @check_types
 def fetch(name: str, folder: str | Path | None = None, *, source: str | Path = _PUBLIC) -> Path:
-    """The experiment's folder of a public recording; downloaded and converted if not there yet.
+    """The folder of a public recording as an experiment; downloaded and converted if not there yet.
 
     name: one of RECORDINGS ("emps", "hsm150", "mtm_wrist", "psm_insertion")
     folder: where the experiment's folder is put; None: the user's cache
@@ -94,7 +96,7 @@ def _changed_content_error(file: str) -> ExperimentError:
 
 
 def _convert(recording: Recording, raw: list[Path], target: Path) -> None:
-    """Write the folder under another name first: an interrupted conversion leaves no half one."""
+    """Convert in a temporary folder first, so that an interruption leaves no incomplete folder."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as temporary:
         unfinished = Path(temporary) / target.name

@@ -1,7 +1,7 @@
-"""What a public recording is: where its files lie, how they become tables, a plain first model.
+"""Description of a public recording: its files, their conversion to tables, a simple first model.
 
-Units, signs and rates are those that the authors state, checked against the recordings themselves;
-digits beyond the sensors' resolution are rounded away.
+Units, signs and rates are those that the authors state, checked against the recordings. Values are
+rounded to the resolution of the sensors.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class RawFile:
-    """One published file: "OWNER/NAME" of its repository, commit, path in it, sha256."""
+    """One published file: repository "OWNER/NAME", commit, path in the repository, sha256."""
 
     repository: str
     commit: str
@@ -24,7 +24,12 @@ class RawFile:
 
 @dataclass(frozen=True)
 class Recording:
-    """convert: writes the record files into a folder; experiment: the text of experiment.toml."""
+    """A public recording.
+
+    files: the published files
+    convert: function that writes the record files into a folder
+    experiment: the text of experiment.toml
+    """
 
     files: tuple[RawFile, ...]
     convert: Callable[[list[Path], Path], None]
@@ -32,7 +37,7 @@ class Recording:
 
 
 def write(path: Path, columns: Mapping[str, tuple[NDArray[np.float64], int]]) -> None:
-    """Columns (values, digits after the point) as comma-separated text with a header."""
+    """Write columns (values, digits after the point) as comma-separated text with a header."""
     np.savetxt(
         path,
         np.column_stack([values for values, _ in columns.values()]),
@@ -44,5 +49,5 @@ def write(path: Path, columns: Mapping[str, tuple[NDArray[np.float64], int]]) ->
 
 
 def count_rows(values: NDArray[np.float64], rate: float) -> tuple[NDArray[np.float64], int]:
-    """Time in s of one row of `values` after the other, at a rate in Hz: a column for `write`."""
+    """Time in s of successive rows of `values` at a rate in Hz, as a column for `write`."""
     return np.arange(len(values)) / rate, 3

@@ -8,7 +8,7 @@ _SOURCE = ("forgi86/sysid-neural-continuous", "956aa7ecd73061b0321c6f6098d74c9e4
 
 
 def _convert(raw: list[Path], folder: Path) -> None:
-    """Force = drive gain `gtau` (N/V) times the controller's voltage; the rate is 1 kHz."""
+    """Force = drive gain `gtau` (N/V) times the voltage of the controller; the rate is 1 kHz."""
     from scipy.io import loadmat
 
     for path, name in zip(raw, ("emps_estimation", "emps_pulses"), strict=True):

@@ -1,4 +1,4 @@
-"""Two coupled motors, spinning up under torque steps."""
+"""Two coupled motors that spin up under torque steps."""
 
 from pathlib import Path
 

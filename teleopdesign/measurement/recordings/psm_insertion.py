@@ -11,7 +11,7 @@ _FOLDER = "dvrk_si/scripts/data/stribeck_test_3dof_svd"
 
 
 def _convert(raw: list[Path], folder: Path) -> None:
-    """Joint 3 of a file of positions, velocities, efforts of three joints; commands beside it."""
+    """Joint 3 of files with positions, velocities and efforts of three joints; its commands."""
     start = 100  # samples: 1 s of start transient
     for i, (result, command) in enumerate(zip(raw[:3], raw[3:], strict=True), start=1):
         measured = np.loadtxt(result, delimiter=",")[start:]

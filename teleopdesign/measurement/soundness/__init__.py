@@ -1,11 +1,12 @@
-"""Is a recording sound? Clock, gaps, outliers, stuck and clipped channels, steps, noise, shifts.
+"""Checks of a recording: clock, gaps, outliers, stuck and clipped channels, steps, noise, shifts.
 
     from teleopdesign.measurement.soundness import check_signals
+
     for finding in check_signals(experiment):
         print(finding)
 
-Needs no model: what forces and motion say about each other is in `teleopdesign.diagnose`. What
-reading an experiment refuses already (columns without numbers, unknown units) is not looked for.
+No model is needed. `teleopdesign.diagnose` compares forces with the motion. Errors that
+`load_experiment` refuses (columns without numbers, unknown units) are not checked here.
 """
 
 from __future__ import annotations
@@ -29,7 +30,11 @@ __all__ = ["check_signals"]
 
 
 def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
-    """Plain findings about clock and channels of every record, warnings and notes before "fine"."""
+    """Findings about the clock and the channels of every record.
+
+    A finding "fine" about the clock, or about the channels, comes last if nothing is wrong with
+    them.
+    """
     read = signals(experiment)
     findings: list[Finding] = []
     for record in experiment.records:

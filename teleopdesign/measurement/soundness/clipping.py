@@ -1,7 +1,7 @@
 """Clipped channels: a signal that stays at one value where it should continue.
 
-A sine that is sampled often enough rests near its peak too, and a body rests where it was put: it
-counts as clipped only where the signal arrives with speed, again and again, and stops dead.
+A sine that is sampled often enough rests near its peak, too, and a body may rest at a stop. A
+signal counts as clipped only where it arrives with speed, several times, and stops abruptly.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ SLOWING = 0.5
 
 
 def visits(x: Array, limit: float, step: float, *, noisy: bool) -> tuple[int, int]:
-    """Stays at the value `limit` that the signal ran into with speed, and samples spent there.
+    """How often the signal runs into `limit` with speed and stays, and samples spent there.
 
-    noisy: readings scatter, so that no two stay the same: every stay counts
+    noisy: readings scatter, so that equal successive readings are unlikely: every stay counts
     """
     first, past = runs_of(x == limit)
     lasting = (past - first >= LASTS) & (first >= 4)
@@ -43,7 +43,7 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> tuple[int, in
 
 
 def check_clipped(signal: Signal) -> list[Finding]:
-    """Largest and smallest value of a channel, where it runs flat against them."""
+    """Report the largest and smallest value of a channel if the signal runs flat against it."""
     findings = []
     noisy = reading_noise(signal.values) > STEPS * signal.rounded_to > 0
     for name, value in (("largest", signal.values.max()), ("smallest", signal.values.min())):

@@ -1,7 +1,7 @@
-"""Sample clock: rate, rounding and jitter of the time stamps, and jitter that they do not show.
+"""Sample clock: rate, rounding and jitter of the time stamps, and jitter that stamps do not show.
 
-Gaps, time that steps back and stamps more than a fifth of a sample off are refused when the record
-is read; here is what is left, and what it costs.
+Reading a record already handles gaps, clocks that were set back and uneven stamps; this module
+reports the remaining errors and their cost.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ POINTS = 1000
 
 
 def stamps_of(experiment: Experiment, record: Record) -> Array | None:
-    """The record's time stamps as written (s); None where it has none or the file is gone."""
+    """Time stamps of the record as written (n,), s; None: it has none, or its file is gone."""
     channel = experiment.channels.get("time")
     path = experiment.folder / record.file
     if channel is None or not path.is_file():
@@ -41,9 +41,9 @@ def stamps_of(experiment: Experiment, record: Record) -> Array | None:
 
 
 def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> list[Finding]:
-    """Stamps against the uniform time of the record; positions against their speed.
+    """Compare the stamps with the uniform time of the record, and positions with their speed.
 
-    read: the record's channels
+    read: the channels of the record
     """
     h = record.sample_time
     findings = []
@@ -99,7 +99,7 @@ def _scatter(signal: Signal, *, stamped: bool) -> list[Finding]:
 
 
 def clock_in_order(experiment: Experiment) -> Finding:
-    """What is said of clocks without a flaw."""
+    """The finding for clocks without a flaw."""
     rates = sorted({1 / r.sample_time for r in experiment.records})
     rate = " and ".join(f"{r:.6g}" for r in rates)
     counted = "time" not in experiment.channels

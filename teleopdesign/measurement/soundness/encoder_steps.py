@@ -1,4 +1,4 @@
-"""Encoder steps: the steps that the readings move in, against the resolution that is stated."""
+"""Encoder steps: the steps of the readings, compared with the stated resolution."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ ENOUGH = 20_000
 
 
 def measure_griddedness(x: Array, step: float) -> float:
-    """How close readings lie to whole multiples of a step, from any zero: 0 to 1."""
+    """How closely readings lie on a grid of a step, with any origin: 0 (not) to 1 (exactly)."""
     thinned = x[:: max(1, len(x) // ENOUGH)]
     return float(np.abs(np.mean(np.exp(2j * np.pi * (thinned - thinned[0]) / step))))
 
 
 def true_step(x: Array, stated: float) -> float | None:
-    """The step that the readings move in: the stated one or a multiple; None: neither."""
+    """The step of the readings: the stated one or a multiple of it; None: neither."""
     if measure_griddedness(x, stated) < ON_GRID:
         return None
     reached, ratio = float(np.ptp(x)), round(reading_step(x) / stated)
@@ -39,7 +39,7 @@ def true_step(x: Array, stated: float) -> float | None:
 
 
 def _as_written(signal: Signal, step: float) -> float:
-    """A step in the unit that the channel's resolution is written in."""
+    """A step in the unit in which the channel's resolution is written."""
     channel = signal.channel
     if channel.conversion is not None:
         return step / abs(channel.conversion.factor)
@@ -48,9 +48,9 @@ def _as_written(signal: Signal, step: float) -> float:
 
 
 def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
-    """Stated resolution of a channel against its readings.
+    """Compare the stated resolution of a channel with its readings.
 
-    others: channels of the same record, one of which may lie on the stated steps instead
+    others: channels of the same record, one of which may have the stated steps instead
     """
     stated, read_step = signal.channel.resolution, signal.step
     if stated is None or read_step == 0.0:
@@ -92,6 +92,6 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
 
 
 def _shares_steps(other: Signal, stated: float) -> bool:
-    """Whether another channel moves in the stated steps; a much finer one does so by chance."""
+    """Whether another channel moves in the stated steps; a much finer step would fit by chance."""
     alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
     return alike and measure_griddedness(other.values, stated) > ON_GRID

@@ -1,4 +1,4 @@
-"""Force steps: a command or a force with a coarse resolution in the log."""
+"""Force steps: a commanded or measured force with a coarse resolution in the log."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TO_THE_NEXT = 0.9
 
 
 def check_force_steps(signal: Signal) -> list[Finding]:
-    """Whether a force moves in steps so coarse that rounding hides what it did between them."""
+    """Report a force with steps so coarse that rounding hides its course between two steps."""
     if signal.channel.quantity not in ("actuator_force", "interaction_force") or not signal.step:
         return []
     step, spread = signal.step, float(np.std(signal.values))

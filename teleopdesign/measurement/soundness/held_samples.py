@@ -1,7 +1,7 @@
 """Held samples: readings that repeat the reading before although the body moves.
 
-Single ones come from a log that runs faster than what it records, long ones from a sensor that is
-stuck, a channel that is constant throughout from a wire that is not connected.
+Single repeats come from a log that runs faster than its source, long ones from a stuck sensor. A
+channel that is constant throughout comes from a wire that is not connected.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .signal import Signal
 
 
 def check_constant(signal: Signal) -> list[Finding]:
-    """A channel that says the same all the time."""
+    """Report a channel that is constant throughout the record."""
     if np.ptp(signal.values) > 0:
         return []
     value = float(signal.values[0])
@@ -39,7 +39,7 @@ def check_constant(signal: Signal) -> list[Finding]:
 
 
 def check_repeats(signal: Signal) -> list[Finding]:
-    """Samples of a position that the log repeats."""
+    """Report samples of a position that the log repeats."""
     if signal.channel.quantity != "position":
         return []
     parts = [repeats(x, signal.rounded_to) + first for first, x in signal.stretches]
@@ -63,7 +63,7 @@ def check_repeats(signal: Signal) -> list[Finding]:
 
 
 def check_update(signal: Signal) -> list[Finding]:
-    """A channel that changes at a lower rate than the log's."""
+    """Report a channel that changes at a lower rate than the log."""
     apart = np.concatenate([np.diff(np.flatnonzero(np.diff(x))) for _, x in signal.stretches])
     if len(apart) < 50:
         return []
@@ -85,7 +85,7 @@ def check_update(signal: Signal) -> list[Finding]:
 
 
 def check_stuck(signal: Signal) -> list[Finding]:
-    """Stretches in which one channel holds its value while it should not."""
+    """Report stretches in which a channel holds its value while it should change."""
     holds = [
         (first + a, first + b)
         for first, x in signal.stretches

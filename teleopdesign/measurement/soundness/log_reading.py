@@ -1,4 +1,4 @@
-"""What was done to a log when it was read, as findings: lost rows, uneven stamps, wraps, pauses."""
+"""Corrections of a log as findings: lost rows, uneven stamps, wraps, pauses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CARE = 0.02
 
 
 def check_reading(record: Record) -> list[Finding]:
-    """The steps of reading one record."""
+    """One finding for each reading step of a record."""
     findings = []
     for step in record.reading:
         concern: Literal["note", "warning"] = "warning" if step.size > CARE else "note"

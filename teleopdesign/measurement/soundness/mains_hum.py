@@ -1,4 +1,4 @@
-"""Hum of the mains: a tone of 50 or 60 Hz in a force that no position shows."""
+"""Mains hum: a tone of 50 or 60 Hz in a force that no position shows."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .signal import Signal
 
 
 def check_hum(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
-    """A force with a tone of the mains, in a record whose positions have none."""
+    """Report a force with a tone of the mains, in a record whose positions have none."""
     if not signal.channel.quantity.endswith("force"):
         return []
     rows = max(signal.record.segments, key=lambda s: s.stop - s.start)

@@ -1,7 +1,7 @@
-"""Noise: stated noise of a channel compared with the scatter of its readings.
+"""Noise: the stated noise of a channel, compared with the scatter of its readings.
 
-Seen noise is the content near the Nyquist frequency (`reading_noise`); the median over pieces of
-the record ignores motion that is rich there. The noise floor of a diagnosis rests on these numbers.
+The scatter is the content near the Nyquist frequency (`reading_noise`). The median over pieces of
+the record ignores motion with such content. The noise floor of a diagnosis depends on these values.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ def measured_noise(signal: Signal) -> float:
 
 
 def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
-    """Stated noise of a channel against its readings; says where none is stated.
+    """Compare the stated noise of a channel with its readings; no finding where none is stated.
 
-    others: channels of the same record and unit, one of which may be the noisy one instead
+    others: channels of the same record; one of the same unit may be the noisy one instead
     """
     stated, scatter = signal.channel.noise, measured_noise(signal)
     # rounding scatters by 0.29 steps at most

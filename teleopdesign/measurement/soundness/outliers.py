@@ -1,7 +1,7 @@
 """Outliers and jumps: single samples far from their neighbours, and positions that jump.
 
-A lone sample is what replacing it by the cubic through its four neighbours explains away; a jump is
-what shifting all that follows explains away. Steps, impacts and chatter are neither.
+A sample is an outlier if replacing it by the cubic through its four neighbours removes the
+deviation. It is a jump if shifting all later samples does. Steps, impacts and chatter are neither.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ _ROUNDED_LONE, _ROUNDED_JUMP = 0.40, 0.65
 
 
 def lone_samples(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]:
-    """Places, sizes and standard scores of samples that lie off the course of their neighbours.
+    """Indices, sizes and standard scores of samples that lie off the course of their neighbours.
 
-    x: n samples;  step: smallest step between values
+    x: (n,);  step: smallest step between values
     """
     if len(x) < 16:
         return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0)
@@ -42,7 +42,10 @@ def lone_samples(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]
 
 
 def jumps(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]:
-    """Places, sizes and standard scores of leaps between a sample and the next."""
+    """Indices, sizes and standard scores of jumps between a sample and the next.
+
+    x: (n,);  step: smallest step between values
+    """
     if len(x) < 16:
         return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0)
     change = np.diff(x)
@@ -53,7 +56,10 @@ def jumps(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]:
 def _match_events(
     off: Array, left: dict[int, float], floor: float
 ) -> tuple[NDArray[np.intp], Array, Array]:
-    """Places where one event of the shape `left` (distance -> part of its size) explains all."""
+    """Indices where a single event explains a deviation and its neighbours, with sizes and scores.
+
+    left: shape of the event: distance in samples -> part of its size
+    """
     reach = max(left)
     scale = local_scale(off, floor)
     at = np.flatnonzero(np.abs(off) > largest_by_chance(len(off)) * scale)
@@ -68,7 +74,7 @@ def _match_events(
 
 
 def check_outliers(signal: Signal) -> list[Finding]:
-    """Lone samples of one channel; a sample that only repeats the one before is no outlier."""
+    """Report outliers of one channel; a sample that only repeats the one before is no outlier."""
     rows: list[NDArray[np.intp]] = []
     sizes: list[Array] = []
     for first, x in signal.stretches:
@@ -109,7 +115,7 @@ def _mark_out_of_range(x: Array, at: NDArray[np.intp]) -> NDArray[np.bool_]:
 
 
 def check_jumps(signal: Signal) -> list[Finding]:
-    """Leaps of a position, which no body can make: lost samples, lost counts, a wrapped angle."""
+    """Report jumps of a position that no body can make: lost samples or counts, wrapped angles."""
     if signal.channel.quantity != "position":
         return []
     events: list[tuple[int, float, float]] = []

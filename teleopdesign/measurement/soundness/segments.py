@@ -1,4 +1,4 @@
-"""Gaps: interruptions of a record, and segments too short for a comparison."""
+"""Gaps: interruptions of a record, and segments that are too short for a comparison."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..record import Record
 
 
 def check_segments(record: Record) -> list[Finding]:
-    """Interruptions of one record; stretches below `SHORTEST` are left out of every comparison."""
+    """Report interruptions of a record; comparisons leave out segments below `SHORTEST`."""
     h = record.sample_time
     lengths = np.array([(s.stop - s.start) * h for s in record.segments])
     short = lengths < SHORTEST

@@ -1,4 +1,4 @@
-"""One channel of one record as the checks see it, and the scale of what is ordinary in it."""
+"""One channel of one record for the checks, and the ordinary scale of its values."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Signal:
     """One channel of one record.
 
     name: as the user writes it ("position", "slave.position");  unit: SI
-    values: (n,);  step: smallest step between its values, 0 where it is constant
-    axis: of its body
+    values: (n,);  step: smallest step between values, 0 where the channel is constant
+    axis: of the body
     """
 
     name: str
@@ -44,7 +44,7 @@ class Signal:
 
     @property
     def rounded_to(self) -> float:
-        """What values are rounded to, SI: the stated resolution, or the step if that is larger.
+        """Rounding of the values, SI: the stated resolution, or the step if that is larger.
 
         A log that was averaged or resampled holds values between the steps of its encoder.
         """
@@ -61,9 +61,9 @@ class Signal:
         return float(self.record.time[row])
 
     def around(self, row: int, odd: NDArray[np.intp], *, name: str, span: int = 100) -> Graph:
-        """The samples near a row, and those of the rows `odd` marked.
+        """A graph of the samples near a row, with the rows `odd` marked.
 
-        odd: row numbers;  name: what to call them
+        odd: row numbers;  name: of the marked samples in the graph;  span: samples to either side
         """
         first, last = max(0, row - span), min(len(self.values), row + span)
         near = odd[(odd >= first) & (odd < last)]
@@ -79,12 +79,12 @@ class Signal:
 
 
 def channel_label(experiment: Experiment, key: str) -> str:
-    """A channel's name as the user of one body writes it, without "device."."""
+    """A channel's name as the user writes it: without "device." where there is one body."""
     return key.removeprefix("device.") if tuple(experiment.bodies) == ONE_BODY else key
 
 
 def signals(experiment: Experiment) -> list[Signal]:
-    """Every channel of a body in every record."""
+    """Every channel of every body in every record."""
     rows = []
     for record in experiment.records:
         for key, values in record.signals.items():
@@ -108,11 +108,12 @@ def signals(experiment: Experiment) -> list[Signal]:
 
 
 def local_scale(e: Array, floor: float) -> Array:
-    """Standard deviation that each of n values should have, from its surroundings.
+    """Standard deviation expected of each of n values, from the values nearby; shape (n,).
 
-    The larger of what the middle and what the tail of the values nearby say, so that a signal with
-    heavy tails is judged by its tails; a few odd values do not count.
-    floor: least it can be
+    The larger of two estimates, from the middle and from the tail of the nearby values, so that a
+    signal with heavy tails is judged by its tails. A few outliers do not count.
+
+    floor: least value
     """
     scale = np.full(len(e), max(floor, 1e-300))
     for size, part in ((256, 0.5), (1024, 0.99)):
@@ -127,5 +128,5 @@ def local_scale(e: Array, floor: float) -> Array:
 
 
 def largest_by_chance(count: int) -> float:
-    """Standard deviations that one of `count` normal values exceeds by chance `FALSE_ALARM`."""
+    """Largest of `count` normal values by chance, in standard deviations, at `FALSE_ALARM`."""
     return float(norm.isf(0.5 * FALSE_ALARM / max(count, 1)))

@@ -1,8 +1,8 @@
 """Time shift and factor between a velocity channel and the position that it belongs to.
 
-The velocity channel w is held against the position's derivative v(t - shift), both low-passed
-alike: w = factor (v - shift dv/dt), solved again about each shift. A velocity takes no part
-in a comparison, but it tells whether clock and units of the position are what they are said to be.
+The velocity channel w is compared with the derivative of the position, v(t - shift), after the same
+low-pass: w = factor (v - shift dv/dt), solved again about each new shift. A velocity takes no part
+in a comparison, but it shows whether clock and units of the position are as stated.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ ENOUGH = 200_000
 def shift_and_factor(
     position: Array, velocity: Array, sample_time: float
 ) -> tuple[float, float, float]:
-    """Time (s) by which the velocity lags, factor, and the part of it left unexplained (rms).
+    """Time (s) by which the velocity lags, factor, and relative rms of the unexplained rest.
 
-    position, velocity: (n,) of one stretch
+    position, velocity: (n,) of one stretch;  sample_time: s
     """
     s = spectrum(len(position), sample_time)
     low = s.lowpass(BAND / sample_time)
@@ -56,7 +56,7 @@ def shift_and_factor(
 
 
 def factor_cause(factor: float, position: Signal, velocity: Signal) -> str:
-    """What makes a velocity so many times the position's derivative, and what to type."""
+    """Probable causes of a factor between velocity and derivative of position, with remedies."""
     size, turn, degree = abs(factor), 2 * math.pi, math.pi / 180
     place = f"channels.{position.name}"
     ways = {
@@ -88,7 +88,7 @@ def factor_cause(factor: float, position: Signal, velocity: Signal) -> str:
 
 
 def check_velocity(position: Signal, velocity: Signal) -> list[Finding]:
-    """The velocity channel of a body against its position."""
+    """Compare the velocity channel of a body with its position."""
     h = position.record.sample_time
     rows = max(position.record.segments, key=lambda s: s.stop - s.start)
     rows = slice(rows.start, min(rows.stop, rows.start + ENOUGH))

@@ -1,8 +1,8 @@
-"""What a log seems to hold: which column is which quantity, in which unit, and what is a guess.
+"""Proposal of a log's channels: which column is which quantity, in which unit, and what is a guess.
 
-Names come first. Where they leave it open physics decides: a velocity is the derivative of a
-position, a force is what inertia and friction of the motion ask for, and friction takes energy out,
-which tells the sign. What rests on neither is said to be a guess.
+Names come first. Where names do not decide, physics does: a velocity is the derivative of a
+position, a force balances inertia and friction of the motion, and friction takes energy out, which
+decides the sign. What neither names nor physics decide is marked as a guess.
 """
 
 from __future__ import annotations
@@ -44,8 +44,9 @@ NEAR_CUT = 0.25
 
 
 def survey_log(log: Log, file: str, choices: Choices) -> Survey:
-    """Look at one log.
+    """Propose the channels of one log.
 
+    choices: what the user states
     raises ExperimentError: no position, no force among the columns, or a column that is not there
     """
     raw, unread = numeric_columns(log, file)
@@ -83,7 +84,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
 
 
 def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
-    """Refuse a unit of a column that is not there, and a unit that is none."""
+    """Refuse a unit for a column that the log does not have, and a text that is no unit."""
     for column, unit in choices.units.items():
         if column not in raw:
             raise ExperimentError(
@@ -98,7 +99,7 @@ def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
 
 
 def _check_numbers(choices: Choices, file: str) -> None:
-    """Refuse numbers that no device has: a rate of 0 Hz, a gear of 0."""
+    """Refuse numbers that no device has: a sample rate of 0 Hz, a gear ratio of 0."""
     for key, expected in (
         ("sample_rate", "more than 0 Hz"),
         ("counts_per_turn", "more than 0"),
@@ -112,7 +113,7 @@ def _check_numbers(choices: Choices, file: str) -> None:
 
 
 def _units_in_use(survey: Survey, choices: Choices, file: str) -> None:
-    """Refuse a unit that was chosen for a column, but is none of what the column is taken for."""
+    """Refuse a unit that the user chose for a column and that does not suit its quantity."""
     for key, entry in survey.channels.items():
         column = entry.get("column")
         unit = choices.units.get(column) if isinstance(column, str) else None
@@ -125,7 +126,7 @@ def _units_in_use(survey: Survey, choices: Choices, file: str) -> None:
 
 
 def _noun(key: str) -> str:
-    """What a channel holds, as a sentence calls it."""
+    """The quantity of a channel as a word in a message."""
     return "force" if key.endswith("force") else key
 
 

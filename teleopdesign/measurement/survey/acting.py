@@ -1,7 +1,7 @@
-"""Desired or measured current: which of two logged forces acted.
+"""Commanded or measured current: which of two logged forces acted on the device.
 
-A controller that follows a model logs the force that its model asks for. Friction that the model
-lacks is in the measured current alone: the wanted force would say that nothing is missing.
+A model-based controller logs the force that its model demands. Friction that the model lacks shows
+only in the measured current: with the commanded force, no effect would seem to be missing.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ TORQUE = (
 def current_that_acted(
     force: str, columns: Mapping[str, SurveyedColumn], scores: Mapping[str, float]
 ) -> tuple[str, float] | None:
-    """A measured current that acted in place of the wanted `force`, and how far the two differ.
+    """A measured current that acted in place of the commanded `force`, and how far the two differ.
 
-    returns: its column, and the rms of what the wanted force does not say of it, of its own rms;
-        None: the force was not a wanted one, or the drive made it
+    returns: the column of the current, and the rms of the part that the command does not explain,
+        over the rms of the current; None: `force` is no command, or the drive followed it
     """
     if not is_wanted(force):
         return None
@@ -55,19 +55,19 @@ def current_that_acted(
 
 
 def _is_current(column: SurveyedColumn) -> bool:
-    """Whether a column is the current of a motor, by its unit or by its name."""
+    """Whether a column is the current of a motor, by unit or by name."""
     if likeness(column.name, "actuator_force") < SURE_NAME:
         return False
     return column.unit in ("A", "mA") or column.unit is None and names_current(column.name)
 
 
 def names_current(name: str) -> bool:
-    """Whether a name is that of a motor's current, whatever its unit."""
+    """Whether a name suggests the current of a motor, whatever the unit."""
     return _has_word_of(name, CURRENT)
 
 
 def names_torque(name: str) -> bool:
-    """Whether a name is that of a torque or force, and of no current."""
+    """Whether a name suggests a torque or force, and not a current."""
     return _has_word_of(name, TORQUE) and not names_current(name)
 
 
@@ -84,10 +84,10 @@ def _has_word_of(name: str, listed: tuple[str, ...]) -> bool:
 
 
 def _unexplained_share(wanted: Array, measured: Array) -> float:
-    """Part of the squares of what was measured that what was wanted does not lead to.
+    """Part of the variance of a measured force that the commanded force does not explain.
 
-    What is left in one row is multiplied with what is left in the next: noise of single rows, and
-    steps of a converter, drop out.
+    The residual of each row is multiplied by that of the next row, so that noise of single rows and
+    the steps of a converter average out.
     """
     rows = len(measured) - LATE
     if rows <= LATE:

@@ -1,4 +1,4 @@
-"""Which columns of a log belong to one axis, by the parts and the numbers of their names."""
+"""Which columns of a log belong to one axis, from the parts and the numbers of their names."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def stand_together(one: str, other: str) -> bool:
 
 
 def _axis_numbers(name: str) -> tuple[str, ...]:
-    """Numbers in a name, "J2_pos" -> 2: where two columns have some, they count axes."""
+    """Numbers in a name, "J2_pos" -> 2: such numbers count axes."""
     return tuple(_NUMBERS.findall(bare_name(name)))
 
 
 def of_another_axis(one: str, other: str) -> bool:
-    """Whether the names of two columns count different axes: "J1_current", "J2_angle"."""
+    """Whether the names of two columns have numbers of different axes: "J1_current", "J2_angle"."""
     numbers = {_axis_numbers(name) for name in (one, other)}
     return len(numbers) == 2 and () not in numbers

@@ -1,9 +1,9 @@
-"""How two logged forces balance along the motion: which is the hand's, and scales no name says.
+"""Balance of two logged forces along the motion: which one is the hand's, and unknown factors.
 
     k command + hand = m a + c sgn(v) + b v + constant
 
-k is one where both are forces at the joint, the motor's constant where the command is a current,
-and the ratio of a gear where the command is a torque of the motor.
+k is one if both are forces at the joint, the motor constant if the command is a current, and the
+gear ratio if the command is a torque at the motor.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ FORCE = (
 def hand_by_balance(
     survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
 ) -> str | None:
-    """A column whose name does not say so, but that balances with the command: the hand's force.
+    """The force of the hand by its balance with the command, if names do not decide; else None.
 
-    The motion asks for `k command + hand`: of what it leaves of the command alone, the column takes
-    a good part away, with a factor of one where the command's scale is known.
+    The motion requires `k command + hand`. The column must explain a good part of what the motion
+    leaves of the command alone, with a factor of one where the scale of the command is known.
     """
     x, h = motion
     u = survey.columns[force].values * force_to_si(survey, "actuator_force")
@@ -81,10 +81,10 @@ def hand_by_balance(
 
 
 def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
-    """Whether a column may be the hand's force by its name and unit.
+    """Whether a column may be the force of the hand by its name and unit.
 
-    named: it must be called a force, or have the unit of one: with a factor that is free a voltage
-        balances a current too
+    named: a column of the motor needs the name of a force, or the unit of one: with a free factor,
+        a motor voltage balances a current too
     """
     name, unit = column.name, column.unit
     if is_wanted(name) or likeness(name, "position") >= SURE_NAME:
@@ -103,15 +103,15 @@ def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
 
 
 def _is_within(known: str, word: str) -> bool:
-    """Whether a word of a language without spaces holds another."""
+    """Whether a word of a language without spaces contains another word."""
     return not known.isascii() and known in word
 
 
 def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
-    """Guess the gear between motor and joint, and the motor's constant, where neither is said.
+    """Guess the gear ratio and the motor constant if neither the user nor the log states them.
 
-    Both are what the command must be multiplied with to balance the hand's force. Where that is far
-    from one and neither is a guess, a note says so.
+    Both are the factor by which the command balances the force of the hand. If this factor is far
+    from one and neither is guessed, a note reports it.
     """
     said = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
     is_motors = choices.gear_ratio is None and all(
@@ -150,14 +150,14 @@ def _column_of(survey: Survey, key: str) -> str:
 
 
 def _has_placeholder(survey: Survey) -> bool:
-    """Whether the command is a current of a motor whose constant nothing says."""
+    """Whether the command is a current of a motor with unknown motor constant."""
     constant = survey.channels["actuator_force"].get("torque_constant", {})
     is_guess = "channels.actuator_force.torque_constant" in survey.guesses
     return is_guess and constant.get("value") == PLACEHOLDER
 
 
 def _command_scale(survey: Survey, motion: tuple[Array, float]) -> tuple[float, float]:
-    """What the command must be multiplied with to balance the hand's force, and its error."""
+    """The factor by which the command balances the force of the hand, and its standard error."""
     u, hand = (
         survey.columns[_column_of(survey, key)].values * force_to_si(survey, key)
         for key in ("actuator_force", "interaction_force")
@@ -186,7 +186,7 @@ def _guess_constant(survey: Survey, ratio: float, error: float) -> None:
 
 
 def _guess_gear(survey: Survey, ratio: float, why: str) -> None:
-    """Position, velocity and command are the motor's: behind the gear they are the joint's."""
+    """Position, velocity and command are those of the motor: set the gear ratio to the joint."""
     for key in ("position", "velocity", "actuator_force"):
         if key in survey.channels:
             survey.channels[key]["gear_ratio"] = ratio

@@ -1,4 +1,4 @@
-"""The clock of a log: which column is time and in which unit, and all others on its grid."""
+"""The clock of a log: which column is the time, its unit, and all other columns on its grid."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST = 60_000
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str]]:
-    """Columns that hold numbers or dates, by name; and of the others, why they hold none."""
+    """Columns of numbers or dates, by name; and the reason why each other column has none."""
     raw: dict[str, Array] = {}
     unread: dict[str, str] = {}
     single = [name for name in log.names if log.names.count(name) == 1]
@@ -56,7 +56,7 @@ def _explain_empty(finite: float) -> str:
 
 
 def _without_name(message: str, column: str, file: str) -> str:
-    """What a message says of a column, without the names of the file and of the column."""
+    """A message about a column, without the names of the file and of the column."""
     short = message.removeprefix(f"{file}: ").removeprefix("column ").removeprefix(quote(column))
     return short.lstrip(":, ")
 
@@ -68,7 +68,7 @@ def time_column(
     guesses: dict[str, str],
     file: str,
 ) -> tuple[str | None, str]:
-    """The column of time and its unit; None: there is none."""
+    """The name of the time column, None if there is none, and its unit."""
     if choices.sample_rate is not None:
         return None, "s"
     rising = {n: x for n, x in raw.items() if rises(x)}
@@ -96,13 +96,13 @@ def time_column(
 
 
 def _is_unit_of_time(name: str) -> bool:
-    """Whether a name is nothing but a unit of time: "ms", "Sekunden"."""
+    """Whether a name consists only of a unit of time: "ms", "Sekunden"."""
     unit = unit_of_text(bare_name(name))
     return unit is not None and unit != "counts" and measures(unit, "time")
 
 
 def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
-    """Of the clocks of a bag: that of the position."""
+    """The clock of the position, among several clocks of a log."""
     if choices.position is not None:
         return log.clocks[choices.position]
     scores = {n: likeness(n.rpartition(".")[2], "position") - 0.6 * is_wanted(n) for n in raw}
@@ -113,7 +113,7 @@ def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
 def duration_of(
     raw: Mapping[str, Array], time_name: str | None, unit: str, choices: Choices
 ) -> float:
-    """Seconds from the first to the last row of a log; `interpolate_columns` looks at a part."""
+    """Time from the first to the last row of the whole log, s."""
     if time_name is None:
         return (max(map(len, raw.values())) - 1) / (choices.sample_rate or 1000.0)
     stamps = raw[time_name] * si_factor(unit, quantity="time")
@@ -128,7 +128,10 @@ def interpolate_columns(
     choices: Choices,
     file: str,
 ) -> tuple[Array, dict[str, SurveyedColumn]]:
-    """All columns on one even grid, by straight lines: good enough to tell which is which."""
+    """The time of an even grid (n,), and all columns on it by linear interpolation.
+
+    This is accurate enough to recognise the quantities.
+    """
     if time_name is None:
         count = max(map(len, raw.values()))
         stamps = np.arange(count) / (choices.sample_rate or 1000.0)

@@ -1,4 +1,4 @@
-"""Results of a survey: columns of a log on one grid, and the quantity that each may hold."""
+"""Results of a survey: columns of a log on one time grid, and the quantity that each may hold."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NONE = "none"
 
 @dataclass(frozen=True)
 class SurveyedColumn:
-    """One column on the even grid of the survey: `values` (n,); `readings` (m,) as written."""
+    """One column: `values` (n,) on the even grid of the survey; `readings` (m,) as written."""
 
     name: str
     values: Array
@@ -35,15 +35,15 @@ class SurveyedColumn:
 
 @dataclass
 class Survey:
-    """What a log seems to hold.
+    """The proposed content of a log.
 
-    duration: of the whole log, s;  time, columns: of the part that was looked at
-    channels: quantity -> table as in [channels];  guesses: "channels.time.unit" -> why
-    questions: what a person is asked: key -> (question, what is taken otherwise)
-    time: (n,) s from the first row;  columns: by name, on it;  first: values of a first model
+    axis: "prismatic" or "revolute";  channels: quantity -> table as in [channels]
+    duration: of the whole log, s;  guesses: "channels.time.unit" -> reason
+    time: (n,) s from the first row, of the part that was examined;  columns: by name, on this time
+    first: values of a first model;  notes: remarks for the user
     explained: column that may be a force -> part of it that the motion explains (up to 1)
+    unused: column that is in no channel -> reason;  unread: column without numbers -> reason
     remarks: lines of text above the table
-    unused: column that is in no channel -> why;  unread: column without numbers -> why
     trials: where the second and later trials begin, s from the first row
     """
 
@@ -64,10 +64,11 @@ class Survey:
 
 @dataclass(frozen=True)
 class Choices:
-    """What the user says: columns, units, axis, constants; None: to be detected.
+    """What the user states: columns, units, axis, constants; None: to be detected.
 
-    interaction_force: "none" where the log has none
-    units: column -> unit;  torque_constant, gear_ratio: (value, unit)
+    interaction_force: "none" if the log has none;  units: column -> unit
+    torque_constant: (value, unit);  gear_ratio: turns of the motor per turn of the joint
+    counts_per_turn: of the encoder;  sample_rate: Hz
     """
 
     axis: str | None = None
@@ -87,7 +88,7 @@ def moves(column: SurveyedColumn) -> bool:
 
 
 def is_unit_of(unit: str | None, quantity: str) -> bool:
-    """Whether a unit is one of that quantity on an axis; for a force, what drives a motor too."""
+    """Whether a unit fits a quantity on either axis; for a force, also A, mA, V and %."""
     if unit is None:
         return False
     if unit == "counts":
@@ -100,29 +101,29 @@ def is_unit_of(unit: str | None, quantity: str) -> bool:
 
 
 def rises(x: Array) -> bool:
-    """Whether numbers grow from row to row, as a clock's do."""
+    """Whether numbers grow from row to row, like those of a clock."""
     steps = np.diff(x[np.isfinite(x)])
     return len(steps) > 1 and float(np.mean(steps >= 0)) > 0.99 and float(np.mean(steps > 0)) > 0.5
 
 
 def sample_time_of(survey: Survey) -> float:
-    """Seconds between two rows of the survey's grid."""
+    """Time between two rows of the survey's grid, s."""
     return float(np.median(np.diff(survey.time)))
 
 
 def as_likely(scores: Mapping[str, float], best: str) -> list[str]:
-    """The columns whose score is that of the best one but for `AS_LIKELY`."""
+    """The other columns whose score is less than `AS_LIKELY` below that of the best one."""
     return [n for n, s in scores.items() if n != best and s > scores[best] - AS_LIKELY]
 
 
 def reasons(unread: Mapping[str, str], most: int = 3) -> str:
-    """Why columns of a log are no numbers, for the end of a message; "" where all are."""
+    """Why columns of a log hold no numbers, as the end of a message; "" if all hold numbers."""
     shown = [f"{name!r}: {why}" for name, why in list(unread.items())[:most]]
     more = ["..."] if len(unread) > most else []
     return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""
 
 
 def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:
-    """Why a column is a guess that others sound like as well."""
+    """The reason why the choice of a column is a guess: other columns suit as well."""
     named = ", ".join(map(repr, others[:3])) + (", ..." if len(others) > 3 else "")
     return f"{column!r} is read as {what}: {named} may be {what} as well"

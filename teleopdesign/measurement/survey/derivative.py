@@ -1,4 +1,4 @@
-"""Relations between columns of a log: wraps, and which column is the derivative of which."""
+"""Relations between columns of a log: wraps, and which column is the derivative of another."""
 
 from __future__ import annotations
 
@@ -27,14 +27,15 @@ TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
 
 
 def unwrap_column(x: Array, jump: float | None) -> Array:
-    """A column without its wraps."""
+    """A column without its wraps; jump: period of the wraps, None for none."""
     return x if jump is None else np.asarray(np.unwrap(x, period=jump))
 
 
 def wrap_of(x: Array) -> float | None:
-    """Period at which a column wraps: that of jumps over most of its range; None: it does not.
+    """Period at which a column wraps; None: it does not wrap.
 
-    A turn in a unit of angle, what a counter of bits holds, or the usual counts of an encoder.
+    A column wraps if it jumps over most of its range. The period is a turn in a unit of angle, a
+    power of two, or a usual number of counts per turn of an encoder.
     """
     reach = float(np.ptp(x))
     steps = np.diff(x)
@@ -59,7 +60,7 @@ def wrap_of(x: Array) -> float | None:
 
 
 def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, float]:
-    """Factor and correlation of one column with the derivative of another."""
+    """Factor and correlation between the derivative of x and a column v."""
     s = spectrum(len(x), sample_time)
     low = s.lowpass(min(0.02 / sample_time, 20.0))
     rate = s.back(s.transform(x) * low * s.derivative(1))
@@ -73,9 +74,9 @@ def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, fl
 
 
 def follows_direction(x: Array, v: Array, sample_time: float) -> bool:
-    """Whether a column goes by the direction of a motion rather than by its speed.
+    """Whether a column v follows the direction of the motion of x more closely than its velocity.
 
-    So do friction, and the pressure that it needs.
+    Friction does, and so does the pressure that overcomes friction.
     """
     velocity, _, direction = motion_columns(x, sample_time)
     inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)

@@ -1,4 +1,4 @@
-"""One force of a log as it is written into experiment.toml: its unit, and a motor's constant."""
+"""One force of a log as an entry of experiment.toml: its unit, and the motor constant."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 
 
 def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
-    """A force with its unit, and the constant that a current needs."""
+    """The channel table of a force: its column and unit, and for a current the motor constant."""
     axis = survey.axis
     # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
     unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
@@ -64,7 +64,7 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
 
 
 def force_to_si(survey: Survey, key: str) -> float:
-    """Factor of a force from its column to SI, as proposed."""
+    """Factor of a force from its column to SI, with the proposed unit, constant and gear ratio."""
     entry = survey.channels[key]
     if key == "actuator_force" and "gear_ratio" in survey.channels["position"]:
         entry = {**entry, "gear_ratio": survey.channels["position"]["gear_ratio"]}

@@ -1,4 +1,4 @@
-"""Which columns of a log are the commanded and the measured force, in which unit and sign."""
+"""Which columns of a log are the commanded and the measured force, with their units and signs."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def describe_forces(
     choices: Choices,
     file: str,
 ) -> None:
-    """The force that is commanded, the force that is measured, their units and signs."""
+    """Set the channels of the actuator force and of the measured force, with units and signs."""
     h = sample_time_of(survey)
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
@@ -100,9 +100,9 @@ def _find_driving_force(
     choices: Choices,
     file: str,
 ) -> tuple[str, bool]:
-    """The column of the actuator's force, and whether it was measured in place of a wanted one.
+    """The column of the actuator force, and whether it was measured in place of a command.
 
-    Where names do not say it alone, a guess is noted.
+    If names alone do not decide, a guess is noted.
     """
     if choices.actuator_force is not None:
         return choices.actuator_force, False
@@ -147,7 +147,7 @@ def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
 
 
 def _is_for_constant(column: SurveyedColumn) -> bool:
-    """Whether unit or name say that a column is what a motor's constant makes a force of."""
+    """Whether a column is a current or voltage, by unit or name: it needs a motor constant."""
     if column.unit is not None:
         return column.unit in ("A", "mA", "V")
     return names_current(column.name)
@@ -162,7 +162,7 @@ def _find_hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices)
 
 
 def _position_to_si(survey: Survey) -> float:
-    """Factor of the position from its column to SI, behind the gear."""
+    """Factor of the position from its column to SI, on the output side of the gear."""
     position = survey.channels["position"]
     if position["unit"] == "counts":
         scale = 2 * math.pi / float(position["counts_per_turn"])
@@ -174,7 +174,7 @@ def _position_to_si(survey: Survey) -> float:
 def _choose_signs(
     survey: Survey, motion: tuple[Array, float], force: str, hand: str | None
 ) -> None:
-    """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
+    """Choose the signs of position and hand so that friction brakes and inertia is positive."""
     x, h = motion
     u = survey.columns[force].values * force_to_si(survey, "actuator_force")
     whole = explain_force(u, x, h)

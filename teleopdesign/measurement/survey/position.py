@@ -1,4 +1,4 @@
-"""Which column of a log is the position and which its velocity; axis, unit, wrap and resolution."""
+"""Which columns of a log are position and velocity; axis, unit, wrap and resolution."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ SAME_TIME = 0.1
 def find_position(
     survey: Survey, time_name: str | None, choices: Choices, file: str
 ) -> tuple[str, str | None]:
-    """The column of the position, and that of its velocity if there is one."""
+    """The column of the position, and that of its velocity or None."""
     h = sample_time_of(survey)
     moving = {n: c for n, c in survey.columns.items() if moves(c) and _may_be_position(c)}
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
@@ -111,7 +111,7 @@ def find_position(
 
 
 def _is_another(column: SurveyedColumn) -> bool:
-    """Whether its unit, or without one its name, says that a column is a force or a velocity."""
+    """Whether a column is a force or a velocity, by its unit or, without a unit, by its name."""
     if is_unit_of(column.unit, "position"):
         return False
     if column.unit is None and likeness(column.name, "position") == 0:
@@ -121,7 +121,7 @@ def _is_another(column: SurveyedColumn) -> bool:
 
 
 def _may_be_position(column: SurveyedColumn) -> bool:
-    """Whether a column that moves is no second clock: a wheel's angle may only rise."""
+    """Whether a moving column is not a second clock: the angle of a wheel may only rise, too."""
     if not rises(column.values):
         return True
     said = likeness(column.name, "position") >= SURE_NAME or is_unit_of(column.unit, "position")
@@ -129,21 +129,21 @@ def _may_be_position(column: SurveyedColumn) -> bool:
 
 
 def _is_velocity(column: SurveyedColumn) -> bool:
-    """Whether unit or name say that a column is a velocity."""
+    """Whether unit or name of a column are those of a velocity."""
     if is_unit_of(column.unit, "velocity"):
         return True
     return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
 
 
 def _is_force(column: SurveyedColumn) -> bool:
-    """Whether unit or name say that a column is a force."""
+    """Whether unit or name of a column are those of a force."""
     if column.unit is not None:
         return is_unit_of(column.unit, "force")
     return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
 
 
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
-    """The axis: as chosen, as the position's unit says, else a guess."""
+    """The axis: the user's choice, or from the unit of the position, or a guess."""
     if choices.axis is not None:
         return choices.axis
     unit = choices.units.get(position) or survey.columns[position].unit
@@ -178,7 +178,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
 def describe_position(
     survey: Survey, position: str, velocity: str | None, choices: Choices
 ) -> None:
-    """Unit, wrap and resolution of the position, and the velocity beside it."""
+    """Set the channels of position and velocity: unit, wrap, resolution and gear ratio."""
     column, axis = survey.columns[position], survey.axis
     entry: dict[str, Any] = {"column": position}
     unit = choices.units.get(position) or column.unit
@@ -232,7 +232,7 @@ def describe_position(
 
 
 def _counts_per_turn(survey: Survey, column: SurveyedColumn, velocity: str) -> float:
-    """Counts of a turn by which a velocity in units is the derivative, as encoders have; else 0."""
+    """Usual counts per turn for which a velocity is the derivative of the position; 0: none."""
     said = survey.columns[velocity].unit
     if said is None or not measures(said, "velocity", "revolute"):
         return 0.0
@@ -246,7 +246,7 @@ def _counts_per_turn(survey: Survey, column: SurveyedColumn, velocity: str) -> f
 
 
 def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
-    """Where the unit of the time is a guess: what a position and its velocity in units say."""
+    """Check a guessed unit of time: a position and its velocity show the true time step."""
     why = survey.guesses.get("channels.time.unit")
     unit, said = (survey.channels[key]["unit"] for key in ("position", "velocity"))
     if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
@@ -274,7 +274,7 @@ def _counts(column: SurveyedColumn) -> bool:
 
 
 def _seen_step(values: Array) -> float:
-    """Step of an encoder that the readings show; 0 where they are too fine to show one."""
+    """Step of the encoder, estimated from the readings; 0 if they show none."""
     raw = values[:ENOUGH]
     changes = int(np.count_nonzero(np.diff(raw)))
     return grid_of(raw, reading_step(raw)) if changes >= 9 else 0.0
@@ -283,7 +283,7 @@ def _seen_step(values: Array) -> float:
 def _position_unit(
     survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
 ) -> tuple[str, str]:
-    """A unit where the name says none: from the velocity's, or from the range."""
+    """A unit for a position without one, from its velocity or from its range; and the reason."""
     whole = unwrap_column(column.values, wrap_of(column.values))
     reach = float(np.ptp(whole))
     if velocity is not None and (said := survey.columns[velocity].unit):

@@ -30,7 +30,7 @@ _GEAR_RATIO = re.compile(
 
 
 def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:
-    """Counts of an encoder in one turn, and the line that says so."""
+    """Counts of an encoder per turn, and the line that states them."""
     for line in remarks:
         for pattern in _COUNTS_PER_TURN:
             if (match := pattern.search(line[:500])) is not None:
@@ -39,7 +39,7 @@ def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:
 
 
 def torque_constant_in(remarks: Sequence[str]) -> tuple[float, str, str] | None:
-    """A motor's constant, its unit, and the line that says so."""
+    """A motor constant, its unit, and the line that states it."""
     for line in remarks:
         if (match := _TORQUE_CONSTANT.search(line[:500])) is None:
             continue
@@ -50,7 +50,7 @@ def torque_constant_in(remarks: Sequence[str]) -> tuple[float, str, str] | None:
 
 
 def gear_ratio_in(remarks: Sequence[str]) -> tuple[float, str] | None:
-    """Turns of the motor per turn of the joint, and the line that says so."""
+    """Turns of the motor per turn of the joint, and the line that states the ratio."""
     for line in remarks:
         if (match := _GEAR_RATIO.search(line[:500])) is not None:
             return float(match[1].replace(",", ".")), line[:100].lstrip("#%; ")

@@ -1,6 +1,6 @@
 """Which columns of a log are in no channel, and why.
 
-A force that is left out in silence passes for physics that the model lacks.
+A force that is left out without a remark would look like physics that the model lacks.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from .derivative import DERIVATIVE, derivative_factor, unwrap_column, wrap_of
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
-    """Column -> why it is in no channel, in the order of the log.
+    """Column -> reason why it is in no channel, in the order of the log.
 
-    raw: the columns that hold numbers, by name
+    raw: the columns of numbers, by name
     """
     used = {entry["column"] for entry in survey.channels.values() if "column" in entry}
     used |= {log.clocks[name] for name in used if name in log.clocks}
@@ -53,7 +53,7 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
 
 
 def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
-    """Why a signal that changes is taken for neither position, nor velocity, nor force."""
+    """Why a signal that changes is taken for neither position, velocity nor force."""
     name, unit, position = column.name, column.unit, survey.channels["position"]["column"]
     kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
     if unit is not None and is_unit(unit) and not kinds:
@@ -83,7 +83,7 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
 
 
 def _explain_no_force(name: str, survey: Survey) -> str:
-    """By how much the motion explains it, beside the column that was taken."""
+    """How much of a column the motion explains, compared with the chosen force."""
     force = survey.channels["actuator_force"]["column"]
     share, best = (survey.explained.get(n) for n in (name, force))
     beside = "" if best is None else f", and {max(best, 0.0):.0%} of {force!r}"

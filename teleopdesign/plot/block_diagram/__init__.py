@@ -25,13 +25,13 @@ MOST_TRIALS, MOST_NODES = 12, 150
 
 
 def draw_diagram(diagram: Diagram) -> Drawing:
-    """The block diagram of a wiring; the same diagram has the same drawing.
+    """The block diagram of a diagram's wiring; the same diagram gives the same drawing.
 
-    Blocks are boxes with their name and the laws in them, junctions circles with a sign at
-    every term. Z_M^-1 stands for a body that forces move, -Z_H for one that resists the motion it
-    follows; a matrix of impedances is a box for each of its rows. Weights that depend on positions
-    are a box with their formula, on the wires of what they weigh. Of control laws that also see a
-    velocity, only the wired input is drawn.
+    Blocks are boxes with their name and the laws in them, junctions are circles with a sign at
+    every term. Z_M^-1 stands for a body that forces move, -Z_H for a body that resists the motion
+    that it follows. A matrix of impedances is a box for each of its rows. Weights that depend on
+    positions are a box with their formula, on the wires of the weighted signals. A control law that
+    also reads a velocity is drawn with its wired input only.
     """
     parts = network(diagram)
     if not parts.nodes:
@@ -44,7 +44,7 @@ def draw_diagram(diagram: Diagram) -> Drawing:
 
 
 def _arrow_out(parts: Network, spine: Path) -> list[Path]:
-    """The end of an arrow that shows the output of the spine, unless it ends with one already."""
+    """A path that ends in an arrow for the output of the spine; [] if there is such an end."""
     last = spine.nodes[-1]
     net = parts.net_of(last)
     if net is None or any(parts.nodes[t].kind == "sink" for t, _ in net.targets):
@@ -56,7 +56,7 @@ def _arrow_out(parts: Network, spine: Path) -> list[Path]:
 
 
 def _best_sides(parts: Network, ways: list[Path]) -> dict[int, int]:
-    """Which paths lie above and which below, for the least length, bends and crossings."""
+    """Side of each path, above or below, for the least length, bends and crossings."""
     able = [
         i
         for i, p in enumerate(ways)

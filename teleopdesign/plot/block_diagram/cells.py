@@ -1,7 +1,8 @@
 """A cell (column, row) and a heading for every node.
 
-The spine runs from left to right in row 0. A path back lies in a row below and runs from right to
-left, one beside the spine in a row above; inputs from outside stand before or beside their target.
+The spine runs from left to right in row 0. A path that leads back lies in a row below and runs from
+right to left; a path beside the spine lies in a row above. Inputs from outside stand before or
+beside their target.
 """
 
 from __future__ import annotations
@@ -28,14 +29,14 @@ class Cells:
         self.heading[node] = heading
 
     def free(self, columns: range, row: int) -> bool:
-        """Whether nothing stands in these columns of a row."""
+        """Whether no node stands in these columns of a row."""
         return not any(c in columns and r == row for c, r in self.at.values())
 
 
 def place(network: Network, branches: Sequence[Path], sides: Mapping[int, int]) -> Cells:
-    """Cells of all nodes.
+    """Cells and headings of all nodes.
 
-    sides: number of a path -> 1 (below) or -1 (above) where it is not on its usual side
+    sides: number of a path -> 1 (below) or -1 (above), for paths that are not on their usual side
     """
     cells = Cells()
     waiting = dict(enumerate(branches))
@@ -54,7 +55,7 @@ def _is_known(path: Path, cells: Cells) -> bool:
 
 
 def _small(path: Path, network: Network) -> bool:
-    """A name at the end of a wire finds their place when blocks and circles have theirs."""
+    """Whether a path is only a name at a wire's end, placed after blocks and circles."""
     return len(path.nodes) == 1 and network.nodes[path.nodes[0]].kind in ("source", "sink")
 
 
@@ -103,7 +104,7 @@ def _columns(network: Network, cells: Cells, path: Path) -> tuple[int, int]:
 
 
 def _put_small(network: Network, cells: Cells, path: Path, spine: tuple[str, ...]) -> None:
-    """A name before, below or above its target; the end of an arrow behind its origin."""
+    """Place a name before, below or above its target, or the end of an arrow behind its origin."""
     node, start = path.nodes[0], path.start
     other = path.end if start is None else start
     if start is not None and start == spine[-1]:  # the wire of the spine runs out to the right
@@ -135,7 +136,7 @@ def _put_small(network: Network, cells: Cells, path: Path, spine: tuple[str, ...
 
 
 def _is_fed(network: Network, cells: Cells, node: str) -> bool:
-    """Whether the cell right behind a node feeds it already."""
+    """Whether the node in the cell right behind a node already feeds that node."""
     column, row = cells.at[node]
     behind = (column - cells.heading[node], row)
     return any(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Drawing:
-    """Shapes on a sheet of that size (points);  title: alternative text."""
+    """Shapes on a sheet of size width x height (points);  title: alternative text."""
 
     shapes: tuple[SheetShape, ...]
     width: float
@@ -32,11 +32,11 @@ class Drawing:
         return self.svg()
 
     def svg(self) -> str:
-        """The drawing as a text of SVG; the same drawing has the same text."""
+        """The drawing as SVG text; the same drawing gives the same text."""
         return svg(self.shapes, width=self.width, height=self.height, title=self.title)
 
     def plot(self) -> Figure:
-        """The drawing as a matplotlib figure in its size, for `save_figure`."""
+        """The drawing as a matplotlib figure of the same size, for `save_figure`."""
         return figure(self.shapes, width=self.width, height=self.height)
 
     def to_svg(self, path: str | Path) -> None:

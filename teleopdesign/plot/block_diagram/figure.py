@@ -20,7 +20,7 @@ FONT = ["STIXGeneral", "DejaVu Sans"]
 
 
 def figure(shapes: Sequence[SheetShape], *, width: float, height: float) -> Figure:
-    """The shapes on a sheet of that size (points)."""
+    """A matplotlib figure with the shapes on a sheet of that size (points)."""
     import matplotlib.pyplot as plt
 
     with plt.style.context(house_style()):
@@ -80,7 +80,7 @@ def _write(text: Text, axes: Axes) -> None:
 
 
 def _width(run: Run, size: float) -> float:
-    """Width as the font has it, with the room that follows a letter."""
+    """Width of characters in the font (points), including the space after the last letter."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
 

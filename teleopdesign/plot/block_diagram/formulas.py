@@ -12,14 +12,14 @@ LONGEST, MOST = 34, 4
 
 
 class _Printer(StrPrinter):
-    """As people write: numbers of four digits, no stars."""
+    """Prints formulas as people write them: numbers have four digits."""
 
     def _print_Float(self, expr: sp.Float) -> str:
         return f"{float(expr):.4g}"
 
 
 def formula(expression: sp.Expr, *, short: str) -> tuple[str, ...]:
-    """The expression on lines of its terms; `short` where it is too long to be read."""
+    """The expression on lines of its terms; `short` if these lines are too long or too many."""
     terms = sp.Add.make_args(sp.sympify(expression, strict=True))
     lines: list[str] = []
     for term in sorted(terms, key=sp.default_sort_key):

@@ -1,8 +1,8 @@
-"""From a diagram to the nodes and nets that are drawn.
+"""The nodes and nets that are drawn for a diagram.
 
-A body that forces move is a sum of its forces and a box with its inverse impedance. A junction of
-one signal, taken as it is, is no node: its net carries both names. A matrix is a box for each row;
-what a box takes beyond three signals is gathered by bars before it.
+A body that forces move is a sum of its forces and a box with its inverse impedance. A junction that
+passes one signal on unchanged is no node: its net carries both names. A matrix is a box for each
+row. A box with more than three inputs gets the further signals through bars before it.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def network(diagram: Diagram) -> Network:
 
 @dataclass
 class _Making:
-    """A network while it is made;  same: signal -> the one that it only passes on."""
+    """A network under construction;  same: signal -> the signal that it only passes on."""
 
     diagram: Diagram
     same: Mapping[str, str]
@@ -65,11 +65,11 @@ class _Making:
         return [(self.net(signal), float(weight)) for signal, weight in terms.items()]
 
     def join(self, net: str, node: str, weight: float = 1.0) -> None:
-        """Lead a net to a node, once all nets are there."""
+        """Note that a net leads to a node; `ends` makes the wires when all nets exist."""
         self.wants.append((net, node, weight))
 
     def wire(self, node: str, signal: str = "") -> None:
-        """A net from a node, for a signal and those that pass it on; else named by its node."""
+        """Make the net from a node: of a signal and its other names, or of the node alone."""
         key = self.net(signal) if signal else node
         self.made.nets[key] = Net(key, node, self.names(signal) if signal else [])
 
@@ -89,7 +89,7 @@ class _Making:
         self.wire(name, block.outputs[0])
 
     def rows(self, block: Linked) -> None:
-        """A box for each row of a matrix, on the motions that it sees."""
+        """A box for each row of a matrix, fed by the motions that the row depends on."""
         title = (Run(MINUS, 0, False),) if block.sign < 0 else ()
         for i, force in enumerate(block.forces):
             row, read = f"row {i + 1}", [j for k, j in block.entries if k == i]
@@ -108,7 +108,7 @@ class _Making:
         self.gather(name, [self.net(s) for s in part.inputs])
 
     def junction(self, part: Junction) -> None:
-        """A circle; weights that depend on positions are one box before it or in its place."""
+        """A circle; weights that depend on positions are a box before it or in its place."""
         fixed = {s: float(w) for s, w in part.terms.items() if not _depends(w)}
         terms = self.nets(fixed)
         if len(fixed) < len(part.terms):
@@ -120,7 +120,10 @@ class _Making:
         self.sum(part.name, terms)
 
     def lever_arms(self, part: Junction, signal: str) -> str:
-        """Name of a box for the terms whose weights depend on positions; it makes `signal`."""
+        """Make a box for the terms whose weights depend on positions; returns the name of its net.
+
+        signal: the output of the box; "": the box is the first term of a circle
+        """
         levered = {s: w for s, w in part.terms.items() if _depends(w)}
         name = f"block lever arms of {part.output}"
         whole = sp.Add(*(w * sp.Symbol(s, real=True) for s, w in levered.items()))
@@ -131,7 +134,7 @@ class _Making:
         return name
 
     def gather(self, node: str, nets: list[str]) -> None:
-        """Lead nets to a box, through bars where there are more of them than sides."""
+        """Lead nets to a box, through bars if there are more nets than sides."""
         if len(nets) > MOST_INPUTS:
             bar = f"bar before {node}"
             self.made.nodes[bar] = Node(bar, "bar")
@@ -142,7 +145,7 @@ class _Making:
             self.join(net, node)
 
     def forces(self, block: Moving) -> None:
-        """What acts on a body: its command, by way of its actuation, and its loads."""
+        """The forces on a body: its command, through its actuation, and its loads."""
         command = self.net(block.command)
         if has_actuation(block):
             stage = f"stage A_{block.name}"
@@ -161,7 +164,7 @@ class _Making:
         self.join(total, _box(block))
 
     def sum(self, name: str, terms: list[tuple[str, float]]) -> None:
-        """A circle, or several in series where there are more terms than sides."""
+        """A circle, or several circles in series if there are more terms than sides."""
         self.made.nodes[name] = Node(name, "sum")
         if len(terms) > MOST_INPUTS:
             part = f"part of {name}"
@@ -172,7 +175,7 @@ class _Making:
             self.join(net, name, weight)
 
     def ends(self) -> None:
-        """Lead every net where it is wanted, or to the end of an arrow."""
+        """Lead every net to its targets; a net without a target gets the end of an arrow."""
         for net, node, weight in self.wants:
             self.made.nets[net].targets.append((node, weight))
         for one in self.made.nets.values():
@@ -183,7 +186,7 @@ class _Making:
 
 
 def _same_signals(diagram: Diagram) -> dict[str, str]:
-    """Output of a junction that only passes a signal on -> the signal it passes on."""
+    """Output of a junction that only passes a signal on -> the first signal of that chain."""
     passed = {
         j.output: next(iter(j.terms))
         for j in diagram.junctions
@@ -214,7 +217,7 @@ def _drop_repeats(names: Iterable[str]) -> list[str]:
 
 
 def _kinds(block: Linked, row: int) -> tuple[str, ...]:
-    """Matrices that have something in that row, from 0."""
+    """Names of the matrices that have an entry in that row (rows are counted from 0)."""
     start = f"_{row + 1}_"
     return tuple(_drop_repeats(n.partition("_")[0] for n in block.body.parameters if start in n))
 

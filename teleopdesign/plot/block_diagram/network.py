@@ -1,4 +1,4 @@
-"""What is drawn of a diagram: nodes, and the nets of wires that join them; no places yet."""
+"""The parts of a drawn diagram: nodes, and nets of wires that join them; no places yet."""
 
 from __future__ import annotations
 
@@ -14,10 +14,13 @@ MINUS = "\u2212"
 
 @dataclass(frozen=True)
 class Node:
-    """A box, a circle, a bar that gathers signals, a name where a signal comes from outside, or the
-    end of an arrow.
+    """One part of a drawing: a box, a circle, a bar, a name or the end of an arrow.
 
-    moving: a body whose motion the diagram ends with;  driver: last choice of where to begin
+    kind: "box"; "sum", a circle; "bar", which gathers signals; "source", a name where a signal
+        comes from outside; "sink", the end of an arrow
+    title, notes: text in the node, and the lines below it
+    moving: a body whose motion a path of the drawing ends with
+    driver: an input that drives a body; the layout begins at other inputs if there are any
     """
 
     name: str
@@ -29,7 +32,7 @@ class Node:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height, points."""
+        """Width and height (points)."""
         if self.kind == "sum":
             return 2 * RADIUS, 2 * RADIUS
         if self.kind == "bar":
@@ -45,7 +48,7 @@ class Node:
 
 @dataclass
 class Net:
-    """Wires from one node to others;  targets: (node, weight in its sum, 1 elsewhere)."""
+    """Wires from one node to others;  targets: (node, weight in its sum, 1 for other nodes)."""
 
     name: str
     source: str
@@ -61,20 +64,20 @@ class Network:
     nets: dict[str, Net] = field(default_factory=dict)
 
     def following(self, node: str) -> list[str]:
-        """Nodes that the output of a node goes to."""
+        """Nodes that the output of `node` leads to."""
         return [t for net in self.nets.values() if net.source == node for t, _ in net.targets]
 
     def count_incoming(self, node: str) -> int:
-        """Number of wires that a node takes."""
+        """Number of wires that lead to a node."""
         return sum(t == node for net in self.nets.values() for t, _ in net.targets)
 
     def net_of(self, node: str) -> Net | None:
-        """The net that a node makes."""
+        """The net of a node's output; None for a node without one."""
         return next((n for n in self.nets.values() if n.source == node), None)
 
 
 def join_names(signals: list[str]) -> tuple[Run, ...]:
-    """Names of one net: R_D = R_A."""
+    """The names of one net as a text: R_D = R_A."""
     runs: tuple[Run, ...] = symbol(signals[0])
     for signal in signals[1:]:
         runs = (*runs, Run(" = ", 0, False), *symbol(signal))
@@ -82,5 +85,5 @@ def join_names(signals: list[str]) -> tuple[Run, ...]:
 
 
 def label(net: Net) -> tuple[Run, ...]:
-    """What is written on the wire of a net; empty where it has no name."""
+    """The text on the wire of a net; empty for a net without a name."""
     return join_names(net.signals) if net.signals else ()

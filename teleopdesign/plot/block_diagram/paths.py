@@ -1,7 +1,7 @@
-"""The paths that a diagram is laid out along: one from its first input to a motion, then the rest.
+"""The paths along which a diagram is laid out: one from its first input to a motion, then the rest.
 
-Every node is on one path. The first, the spine, is the longest way from an input to a moving body;
-every further one starts at placed nodes or inputs and ends where it meets a placed node.
+Every node is on one path. The first path, the spine, is the longest way from an input to a moving
+body. Every further path starts at placed nodes or inputs and ends at a placed node that it meets.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ MOST_STEPS = 4000  # most steps of a search for a longest path; more would not c
 
 @dataclass(frozen=True)
 class Path:
-    """Nodes in the order of their signals;  start, end: placed nodes before and after, if any."""
+    """Nodes in the order of the signal flow;  start, end: placed nodes around them, or None."""
 
     nodes: tuple[str, ...]
     start: str | None
@@ -25,7 +25,7 @@ class Path:
 
 
 def paths(network: Network) -> list[Path]:
-    """The spine first, then all others, each after those that it starts and ends at."""
+    """The spine first, then all other paths, each after the paths at which it starts and ends."""
     spine = _spine(network)
     listed = [Path(spine, None, None)]
     placed = set(spine)
@@ -53,7 +53,7 @@ def _spine(network: Network) -> tuple[str, ...]:
 
 
 def _longest_path(network: Network, placed: set[str]) -> Path:
-    """The longest path through what is not placed yet; those between placed nodes first."""
+    """The longest path through unplaced nodes; paths between two placed nodes come first."""
     best: tuple[tuple[bool, bool, int], Path] | None = None
     starts: list[tuple[str | None, str]] = []
     for node in network.nodes:
@@ -78,7 +78,7 @@ def _longest_path(network: Network, placed: set[str]) -> Path:
 def _longest(
     network: Network, first: str, closed: set[str], ends: Callable[[str], bool]
 ) -> list[str]:
-    """The longest simple path from a node to one that `ends`, as far as a bounded search sees."""
+    """The longest simple path from `first` to a node that `ends` accepts, by a bounded search."""
     best: list[str] = []
     steps = 0
     way = [first]

@@ -1,8 +1,8 @@
-"""Wires along a grid of lines: shortest ways with few bends and crossings, none over another.
+"""Routes of wires along a grid: short ways with few bends and crossings, none over another.
 
 Every column and every row of cells has a line through its middle, and a few lines run between them.
-Where nets meet they cross at right angles; no two share a piece of a line, and none runs through a
-cell in which a node stands. The cheapest routes, net by net (A*).
+Where two nets meet they cross at right angles. No two nets share a piece of a line, and no wire
+runs through a cell in which a node stands. The cheapest route is computed net by net (A*).
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ BESIDE_RIGHT = 3.0
 
 @dataclass(frozen=True)
 class Route:
-    """The way to one target: vertices from a take-off (or the source) to the target's cell."""
+    """The way of a net to one target: vertices from its start to the target's cell.
+
+    taken_off: it starts at another wire of the net, not at the source
+    """
 
     net: str
     target: str
@@ -41,7 +44,7 @@ class Route:
 
 @dataclass
 class RoutingGrid:
-    """Lines of the grid around the cells, and what lies on it."""
+    """Lines of the grid around the cells, and the nodes and wires on the grid."""
 
     cells: Cells
     tracks: int
@@ -77,7 +80,7 @@ class RoutingGrid:
         return x, y
 
     def _lengths(self, lines: int) -> list[float]:
-        """Where every line lies, in lengths from the first."""
+        """Positions of all lines, as distances from the first line."""
         places = [0.0]
         for line in range(1, lines):
             middle = any(k % (self.tracks + 1) == self.tracks for k in (line, line - 1))
@@ -85,7 +88,7 @@ class RoutingGrid:
         return places
 
     def between(self, a: Vertex, b: Vertex) -> float:
-        """Length of the shortest way there is if nothing stands in it."""
+        """Length of the shortest way between two vertices if no obstacle lies on it."""
         x, y = self.along
         return abs(x[a[0]] - x[b[0]]) + abs(y[a[1]] - y[b[1]])
 
@@ -100,7 +103,10 @@ class RoutingGrid:
 
 
 def route(network: Network, cells: Cells) -> tuple[RoutingGrid, list[Route], float]:
-    """All wires, the grid that they lie on, and their cost."""
+    """The grid with all wires, the route of every wire, and the total cost.
+
+    raises ModelError: no route exists for some wire
+    """
     jobs = [(net, t, w) for net in network.nets.values() for t, w in net.targets]
     for tracks in TRACKS:
         grid = RoutingGrid(cells, tracks)
@@ -117,7 +123,7 @@ def route(network: Network, cells: Cells) -> tuple[RoutingGrid, list[Route], flo
 def _routes(
     network: Network, grid: RoutingGrid, jobs: Sequence[tuple[Net, str, float]]
 ) -> tuple[list[Route], float, int | None]:
-    """Routes in the order of the jobs, their cost, and the number of the job without a way."""
+    """Routes in the order of the jobs, their cost, and the number of a job without a route."""
     routes: list[Route] = []
     total = 0.0
     for i, (net, target, weight) in enumerate(jobs):
@@ -139,7 +145,7 @@ def _measure_distance(net: Net, target: str, grid: RoutingGrid) -> tuple[bool, i
 
 
 def _steps_out(network: Network, grid: RoutingGrid, node: str) -> dict[int, float]:
-    """Steps by which a wire may leave a node, with what each costs more than the best."""
+    """Steps by which a wire may leave a node -> cost above the cost of the best step."""
     ahead = 0 if grid.cells.heading[node] == RIGHT else 2
     if network.nodes[node].kind != "source":
         return {ahead: 0.0}
@@ -147,7 +153,7 @@ def _steps_out(network: Network, grid: RoutingGrid, node: str) -> dict[int, floa
 
 
 def _allowed_ends(network: Network, grid: RoutingGrid, node: str) -> set[int]:
-    """Steps by which a wire may come to a node."""
+    """Steps by which a wire may arrive at a node."""
     kind = network.nodes[node].kind
     ahead = 2 if grid.cells.heading[node] == LEFT else 0
     if kind == "box" and network.count_incoming(node) <= 1:
@@ -202,7 +208,7 @@ def _cheapest(
 
 
 def _starts(network: Network, grid: RoutingGrid, net: Net) -> Iterator[tuple[Vertex, int, float]]:
-    """Where a wire of a net may begin, with what that costs: its source, or one of its wires."""
+    """Vertex, step and cost of each start of a net's wire: at its source or its other wires."""
     if net.name not in grid.begun:
         source = grid.vertex(net.source)
         for d, cost in _steps_out(network, grid, net.source).items():

@@ -1,6 +1,6 @@
-"""A drawing as a small list of shapes, which an SVG writer and a matplotlib painter both render.
+"""A drawing as a short list of shapes, which an SVG writer and a matplotlib painter both render.
 
-Lengths in points, x to the right, y downwards.
+Lengths are in points, x points to the right, y points down.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SMALLER = 0.72  # size of an index against that of its letter
 
 @dataclass(frozen=True)
 class Box:
-    """A block, by its middle; without a name a bar that gathers signals."""
+    """A block, given by its centre; with the block name "", a bar that gathers signals."""
 
     x: float
     y: float
@@ -38,9 +38,9 @@ class Circle:
 
 @dataclass(frozen=True)
 class Wire:
-    """One way of a signal along horizontal and vertical lines; arrow: at its last point.
+    """One way of a signal along horizontal and vertical lines;  arrow: at the last point.
 
-    signal: unlike that of every other signal, also for wires without a name
+    signal: key of the signal, unique for each signal, also for wires without a name
     """
 
     points: tuple[SheetPoint, ...]
@@ -50,7 +50,7 @@ class Wire:
 
 @dataclass(frozen=True)
 class Dot:
-    """Where a wire is taken off another of the same signal."""
+    """The point at which a wire branches off another wire of the same signal."""
 
     x: float
     y: float
@@ -58,7 +58,10 @@ class Dot:
 
 @dataclass(frozen=True)
 class Run:
-    """Characters of one kind: 0 on the line, -1 index, 1 exponent."""
+    """Characters of one style.
+
+    level: 0 on the line, -1 an index, 1 an exponent
+    """
 
     text: str
     level: int
@@ -67,7 +70,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Text:
-    """A text, y at the middle of its letters; anchor: what of it lies at x."""
+    """A text, with y at the middle of its letters.
+
+    anchor: the part of the text that lies at x
+    """
 
     x: float
     y: float
@@ -77,17 +83,17 @@ class Text:
 
     @property
     def plain(self) -> str:
-        """The characters without indices and slant."""
+        """The characters without their style."""
         return "".join(run.text for run in self.runs)
 
     @property
     def width(self) -> float:
-        """Width as estimated, on the safe side for the house font."""
+        """Estimated width (points), on the safe side for the font of the house style."""
         return width(self.runs, self.role)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """left, top, right, bottom"""
+        """Left, top, right and bottom edge (points)."""
         start = {"start": 0.0, "middle": -0.5, "end": -1.0}[self.anchor] * self.width
         half = 0.5 * SIZES[self.role]
         return self.x + start, self.y - half, self.x + start + self.width, self.y + half
@@ -97,7 +103,7 @@ SheetShape = Box | Circle | Wire | Dot | Text
 
 
 def symbol(name: str) -> tuple[Run, ...]:
-    """A name as papers write it: R_FF with FF as its index, single letters slanted."""
+    """A name as papers write it: R_FF with FF as its index, single letters in italics."""
     name = readable(name)
     head, _, index = name.partition("_")
     if not head or not index:
@@ -106,7 +112,7 @@ def symbol(name: str) -> tuple[Run, ...]:
 
 
 def readable(text: str) -> str:
-    """The text with a question mark for what no font has; XML may not hold it, not even escaped."""
+    """The text with "?" for characters that cannot be printed; XML may not contain some of them."""
     return "".join(c if c.isprintable() else "?" for c in text)
 
 
@@ -115,7 +121,7 @@ def _is_letter(text: str) -> bool:
 
 
 def width(runs: tuple[Run, ...], role: TextRole) -> float:
-    """Estimated width of a text: the house font is a Times, its letters about half as wide."""
+    """Estimated width of a text (points), for a font like Times."""
     return sum(
         SIZES[role] * (SMALLER if run.level else 1.0) * sum(map(_em, run.text)) for run in runs
     )

@@ -1,4 +1,4 @@
-"""From cells and routes to shapes in points: unused lines take no room, names have theirs."""
+"""From cells and routes to shapes in points: only used lines and names take space."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LABEL_BEHIND = 5.0  # between a node and the name on its wire
 def sheet(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route], title: str
 ) -> Drawing:
-    """The shapes of a laid out diagram, in the order in which they are painted."""
+    """The drawing of a diagram with a layout; shapes are in the order of painting."""
     x = _line_abscissas(network, cells, grid, routes)
     y = _line_ordinates(network, cells, grid, routes)
     middle = {n: (x[grid.vertex(n)[0]], y[grid.vertex(n)[1]]) for n in cells.at}
@@ -54,7 +54,7 @@ def sheet(
 def _line_abscissas(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
 ) -> dict[int, float]:
-    """x of every used line."""
+    """Number of a used vertical line -> its x (points)."""
     used = _lines(routes, 0)
     columns = sorted({c for c, _ in cells.at.values()})
     at: dict[int, float] = {}
@@ -73,7 +73,7 @@ def _line_abscissas(
 
 
 def _gap(at: dict[int, float], x: float, before: float, after: float, lines: list[int]) -> float:
-    """Place the used lines between two columns or rows; returns where the next one begins."""
+    """Place the used lines between two columns or rows; returns where the next one starts."""
     x += before
     for k, line in enumerate(lines):
         x += PITCH if k else 0.0
@@ -82,7 +82,7 @@ def _gap(at: dict[int, float], x: float, before: float, after: float, lines: lis
 
 
 def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, side: int) -> float:
-    """Room that the nodes of a column need on that side: names of what they make, arrows."""
+    """Space (points) that nodes of a column need on one side, for signal names and arrows."""
     half = _half(network, cells, 0, column)
     need = 4.0
     for name, (c, _) in cells.at.items():
@@ -105,7 +105,7 @@ def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, 
 def _line_ordinates(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
 ) -> dict[int, float]:
-    """y of every used line."""
+    """Number of a used horizontal line -> its y (points)."""
     used = _lines(routes, 1)
     rows = sorted({r for _, r in cells.at.values()})
     at: dict[int, float] = {}
@@ -124,7 +124,7 @@ def _line_ordinates(
 
 
 def _lines(routes: Sequence[Route], axis: int) -> set[int]:
-    """Lines across that axis that a piece of wire lies on."""
+    """Numbers of the lines that carry a piece of wire; axis: 0 vertical, 1 horizontal lines."""
     return {a[axis] for one in routes for a, b in pairwise(one.vertices) if a[axis] == b[axis]}
 
 
@@ -148,7 +148,7 @@ def _wire(
 
 
 def _edge(at: SheetPoint, towards: SheetPoint, node: Node) -> SheetPoint:
-    """Where the line from the middle of a node leaves its outline."""
+    """The point at which a line from the middle of a node leaves its outline."""
     half_width, half_height = node.size[0] / 2, node.size[1] / 2
     if towards[1] == at[1]:
         return at[0] + (half_width if towards[0] > at[0] else -half_width), at[1]
@@ -184,10 +184,10 @@ def _weight(weight: float) -> str:
 
 
 def _sign(wire: Wire, weight: float, heading: int) -> Text:
-    """Sign or weight of a term beside the arrow that brings it, each in another corner.
+    """Sign or weight of a term beside the arrow of the term; each direction has another corner.
 
-    Seen along the heading: from behind, below; from above, behind; from below, ahead. The corner
-    above and ahead is that of the name of the sum.
+    In the direction of the heading, a sign stands below an arrow from behind, behind an arrow from
+    above, and ahead of an arrow from below. The corner above and ahead is for the name of the sum.
     """
     before, tip = wire.points[-2:]
     runs = (Run(_weight(weight), 0, False),)
@@ -204,7 +204,7 @@ def _sign(wire: Wire, weight: float, heading: int) -> Text:
 
 
 def _crop(shapes: Sequence[SheetShape], title: str) -> Drawing:
-    """The shapes moved to the corner of a sheet that is as large as they need."""
+    """The drawing with the shapes moved to the corner of a sheet that is as large as they need."""
     edges = [_bounds(s) for s in shapes] or [(0.0, 0.0, 0.0, 0.0)]
     left, top = min(e[0] for e in edges) - MARGIN, min(e[1] for e in edges) - MARGIN
     right, bottom = max(e[2] for e in edges) + MARGIN, max(e[3] for e in edges) + MARGIN

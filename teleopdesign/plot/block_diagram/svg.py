@@ -15,7 +15,7 @@ RAISED = {0: 0.0, -1: 0.22, 1: -0.38}
 
 
 def svg(shapes: Sequence[SheetShape], *, width: float, height: float, title: str) -> str:
-    """The whole file, on a sheet of that size (points); title: alternative text."""
+    """The text of an SVG file, on a sheet of that size (points); title: alternative text."""
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt" '
         f'viewBox="0 0 {width:g} {height:g}" role="img" fill="none" stroke="black" '
@@ -49,7 +49,7 @@ def _wire(wire: Wire) -> str:
 
 
 def shaft(wire: Wire) -> tuple[SheetPoint, ...]:
-    """The line of a wire: under its arrow it ends before the tip, which would be blunt else."""
+    """The points of a wire's line; under an arrow it ends before the tip, which stays sharp."""
     if not wire.arrow:
         return wire.points
     tip, left, right = arrow_head(wire)
@@ -58,7 +58,7 @@ def shaft(wire: Wire) -> tuple[SheetPoint, ...]:
 
 
 def arrow_head(wire: Wire) -> tuple[tuple[float, float], ...]:
-    """The triangle at the wire's last point."""
+    """The corners of the arrow head at the wire's last point, tip first."""
     (x0, y0), (x, y) = wire.points[-2:]
     length = abs(x - x0) + abs(y - y0)  # along one axis
     dx, dy = (x - x0) / length, (y - y0) / length
