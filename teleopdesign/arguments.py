@@ -1,6 +1,6 @@
 """A function checks its arguments against its declared types before it computes anything.
 
-    @checked
+    @check_types
     def sine(*, amplitude: float) -> Motion     # sine(amplitude="2 mm") is refused in one line
 
 A wrong type is refused at the call. The message says what the value is, what was expected, and the
