@@ -19,7 +19,7 @@ from ..effects import delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..realise.kernel import FASTEST, fastest_rate
-from ..realise.simulated import with_bristle, without_absent
+from ..realise.simulated import with_bristle, with_least_level, without_absent
 from ..simulate import Sampling, prepare
 
 #: natural frequency of the spring that leads the model along the measurement, over the bandwidth of
@@ -102,7 +102,8 @@ def led_body(
     damping_ratio: of the inertia on that bristle
     stiffness, damping: SI
     """
-    body = with_bristle(without_absent(body), bristle, damping_ratio=damping_ratio)
+    body = with_least_level(without_absent(body))
+    body = with_bristle(body, bristle, damping_ratio=damping_ratio)
     has_tip = any(e.role == "structure" for e in body.effects)
     diagram = _wire_led_body(body, stiffness, damping)
     return LedBody(diagram, stiffness, damping, has_tip, bristle)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 import sympy as sp
 
-from ..blocks import Body
+from ..blocks import Body, solve_carried_force
 from ..controllers import SIGNALS as CONTROL_SIGNALS
 from ..controllers import Controller, parameter_symbol
 from ..effects import SIGNALS, delayed
@@ -95,7 +95,6 @@ def cycle_values(
         SIGNALS["acceleration"]: -(omega**2) * amplitude * np.sin(phase),
         SIGNALS["direction"]: np.sign(velocity),
         SIGNALS["acting_force"]: np.zeros_like(velocity),
-        SIGNALS["carried_force"]: np.zeros_like(velocity),
     }
 
 
@@ -113,7 +112,7 @@ def controller_signals(motion: Mapping[sp.Symbol, np.ndarray]) -> dict[sp.Symbol
 def body_law(body: Body) -> LawExpressions:
     """Force that opposes the motion of a body, with its values inserted."""
     body = without_absent(body)
-    equation, numbers = body.equation(), body.numbers()
+    equation, numbers = solve_carried_force(body.equation(), body.effects), body.numbers()
     total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
     rates = {s: r.subs(numbers) for s, r in equation.rates.items() if s not in equation.stages}
     return LawExpressions(total.subs(numbers), rates, "body")

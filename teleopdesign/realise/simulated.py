@@ -29,9 +29,9 @@ UNDAMPED = 1e-9
 #: is a force only at a steady level: with a level that goes through zero it drove a simulated servo
 #: 0.4 rad off its course, with a fifth 0.02 rad. Lower: such courses; higher: undamped contacts
 STEADY = 0.2
-#: least part of the loaded friction level that is simulated without a load: with a level of zero
-#: the bristle has no stiffness there, and motions left their course. So small a part changes a
-#: motion by less than the bristle itself
+#: least part of the loaded friction level that is simulated without a load, for a level of zero and
+#: along records: with a level of zero the bristle has no stiffness there, and motions left their
+#: course. So small a part changes a motion by less than the bristle itself
 LEAST = 0.002
 #: forces in proportion to which a friction level may grow
 _LOADS = SIGNALS["acting_force"], SIGNALS["carried_force"]
@@ -93,20 +93,34 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
     roles = {e.role for e in body.effects}
     if "friction_level" not in roles or "friction_shape" in roles:
         return body
-    at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
-    law = body.equation().level.subs(body.numbers())
-    level = float(law.subs(at_rest | dict.fromkeys(_LOADS, _typical_load(body))))
-    unloaded = float(law.subs(at_rest))
+    unloaded, level = _levels_by_load(body)
+    if unloaded == 0.0:
+        body = with_least_level(body)
     if unloaded < STEADY * level:
         damping_ratio = min(damping_ratio, UNDAMPED)
-    if unloaded < LEAST * level and "coulomb.level" in body.parameters:
-        body = body.with_values({"coulomb.level": LEAST * level})
     lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
     stiffness = level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
     return body.with_effect(lugre, {"stiffness": stiffness, "bristle_damping": damping})
+
+
+def with_least_level(body: Body) -> Body:
+    """The body with a Coulomb level of at least `LEAST` of the friction level under a load."""
+    unloaded, level = _levels_by_load(body)
+    if not unloaded < LEAST * level or "coulomb.level" not in body.parameters:
+        return body
+    return body.with_values({"coulomb.level": LEAST * level})
+
+
+def _levels_by_load(body: Body) -> tuple[float, float]:
+    """Friction level at rest without a load, and under a typical load."""
+    equation = body.equation()
+    law = equation.level.subs(body.numbers())
+    at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(equation.rates, 0)
+    loaded = at_rest | dict.fromkeys(_LOADS, _typical_load(body))
+    return float(law.subs(at_rest)), float(law.subs(loaded))
 
 
 def _typical_load(body: Body) -> float:

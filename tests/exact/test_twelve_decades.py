@@ -12,6 +12,7 @@ from exact.simulated import pair
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.blocks.carried_force import LOCKED
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import SIGNALS
 from teleopdesign.errors import ModelError
@@ -52,7 +53,13 @@ def exact_terms(made, now, values):
     for effect in made.block("Z_M").body.effects:
         symbols = effect.symbols()
         numbers = {symbols[n]: values[f"Z_M.{effect.name}.{n}"] for n in symbols}
-        value = mp.mpf(effect.expression().subs({**signals, **numbers}).evalf(50))
+        law = effect.expression()
+        if law.has(SIGNALS["carried_force"]):  # per force that the friction itself takes
+            law = law.subs(SIGNALS["carried_force"], -SIGNALS["direction"])
+        value = mp.mpf(law.subs({**signals, **numbers}).evalf(50))
+        if effect.expression().has(SIGNALS["carried_force"]):
+            # no actuator acts: what friction takes is all that is carried, L = -sgn v (level + m L)
+            value *= level / max(1 - value, mp.mpf(LOCKED))
         if effect.role == "friction_level":
             level += value
         else:
