@@ -9,8 +9,7 @@ from sympy import exp
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: part of friction that no warm-up of a lubricant removes. A lower limit refuses true drifts; a
-#: higher one takes friction that falls with the speed for a drift
+#: part of friction that no warm-up removes. Lower: true drifts are refused; higher: falls with speed
 ALL = 0.95
 
 

@@ -57,7 +57,8 @@ def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
     """Of an acting force u, mu abs(u) against the motion goes: u - mu abs(u) sgn(v) moves it."""
     motion = recorded()
     named = {"load_dependent_friction.coefficient": 0.2}
-    named |= {f"load_dependent_friction.{n}": 0.0 for n in ("driving_difference", "extra_at_rest")}
+    others = ("driving_difference", "extra_at_rest", "output_share")
+    named |= {f"load_dependent_friction.{n}": 0.0 for n in others}
     found = residual_along(body_of("coulomb", "load_dependent_friction", values=named), motion)
     moves = motion.direction != 0
     lost = found.acting.value - found.moving.value
