@@ -9,7 +9,7 @@ from sympy import exp
 
 from ._effect import Effect, FitSearch, Parameter
 
-#: part of friction that no warm-up removes. Lower: refuses true drifts; higher: fits a fall with speed
+#: part of friction that no warm-up removes. Lower: refuses true drifts; higher: names false ones
 ALL = 0.95
 
 
