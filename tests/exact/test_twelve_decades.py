@@ -9,10 +9,9 @@ from devices import body
 from effects.along import EFFECTS, INERTIA, NAMES, body_of, typical, with_needs
 from exact.machines import Stroke
 from exact.simulated import pair
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.blocks.carried_force import LOCKED
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import SIGNALS
 from teleopdesign.errors import ModelError
@@ -58,8 +57,10 @@ def exact_terms(made, now, values):
             law = law.subs(SIGNALS["carried_force"], -SIGNALS["direction"])
         value = mp.mpf(law.subs({**signals, **numbers}).evalf(50))
         if effect.expression().has(SIGNALS["carried_force"]):
-            # no actuator acts: what friction takes is all that is carried, L = -sgn v (level + m L)
-            value *= level / max(1 - value, mp.mpf(LOCKED))
+            # no actuator acts: friction takes all that is carried, L = -sgn v (level + m L). Near
+            # m = 1 the gear locks, and slides no more within the motion
+            assume(value < 0.5)
+            value *= level / (1 - value)
         if effect.role == "friction_level":
             level += value
         else:
