@@ -18,6 +18,7 @@ carried force, with the friction of a body that slides or starts to slide:
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import sympy as sp
 
@@ -35,6 +36,10 @@ _BEFORE = tuple(SIGNALS[n] for n in ("velocity", "direction", "acting_force", "c
 LOCKED = 0.01
 
 
+# asked for at every evaluation of a residual, and at every simulation
+
+
+@lru_cache(maxsize=256)
 def carried_force(effects: tuple[Effect, ...]) -> sp.Expr:
     """Carried force on signals of a measured motion, positive as the acting force."""
     forces = sum((e.expression() for e in _of_the_load(effects)), sp.S(0))
@@ -65,6 +70,7 @@ def _of_the_load(effects: tuple[Effect, ...]) -> list[Effect]:
     return [e for e in forces if not e.states and not e.expression().has(*_BEFORE)]
 
 
+@lru_cache(maxsize=256)
 def _solve(level: sp.Expr, effects: tuple[Effect, ...]) -> sp.Expr:
     """Carried force that balances all forces on a sliding body.
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 from ..diagnose.criteria import CRITERIA
+from ..diagnose.ladder_text import say_floors
 from ..quantity import unit_of
 from ..realise.friction_interval import FrictionInterval
 from .from_answer import DiagnosedModel
@@ -32,7 +33,7 @@ def _model(design: Design, answer: DiagnosedModel) -> list[str]:
     lines = []
     if answer.left > CRITERIA.adequate:
         lines.append(
-            f"The model leaves {answer.left:.3g} noise floors unexplained (verdict "
+            f"The model leaves {say_floors(answer.left)} noise floors unexplained (verdict "
             f"{answer.verdict}): standard errors hold within the model only, so the least level "
             "may be lower than they say, and the fraction of "
             f"{design.assumptions.fraction:g} is the only margin against that."

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..diagnose.ladder_text import say_floors
 from ..diagnose.open_questions import open_questions
 from ..finding import Finding, Graph, Series
 from ..plain_data import make_plain
@@ -48,8 +49,8 @@ def _sentences(proposal: Proposal) -> list[str]:
     if proposal.diagnosis.more_is_missing:
         said.append(
             "None of these models explains the present records: an error of "
-            f"{proposal.diagnosis.left:.1f} noise floors remains, so the true effect may be none "
-            "of them."
+            f"{say_floors(proposal.diagnosis.left)} noise floors remains, so the true effect may "
+            "be none of them."
         )
     return said
 

@@ -204,10 +204,12 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
             continue
         way = _trace_influence(effect, effect.expression(), signal, along, motion)
         gain, over = gain - way.gain, over - way.dynamics
-    by_load = slope(body.carried_force(), signal)
-    if body.level().has(signal) or (by_load != 0 and body.level().has(_CARRIED)):
+    carries = body.level().has(_CARRIED) and body.carried_force().has(signal)
+    if carries or body.level().has(signal):
         level, with_speeds = level_along(body, along)
-        by_signal = slope(level, signal) + slope(level, _CARRIED) * by_load
+        by_signal = slope(level, signal)
+        if carries:
+            by_signal += slope(level, _CARRIED) * slope(body.carried_force(), signal)
         made_by_it = _evaluate(by_signal, with_speeds, len(gain))
         gain = gain - along.signals[SIGNALS["direction"]].value * made_by_it
     return _Way(gain, over, 0.0)

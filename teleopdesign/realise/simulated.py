@@ -25,13 +25,14 @@ _FAST = 1e6
 LIVELY = 10.0
 #: damping ratio of a bristle that moves a position by less than 1e-10 of its travel: none
 UNDAMPED = 1e-9
-#: part of the loaded friction level that must remain without a load. The damping of a LuGre bristle
-#: is a force only at a steady level: with a level that goes through zero it drove a simulated servo
-#: 0.4 rad off its course, with a fifth 0.02 rad. Lower: such courses; higher: undamped contacts
+#: part of the loaded friction level that must remain without a load for a damped bristle. The
+#: damping of a LuGre bristle is a force of friction only at a steady level. With a level that goes
+#: through zero a simulated servo left its record by 0.2 to 0.5 rad rms, with a twentieth by 0.02 to
+#: 0.04, undamped by 0.016. Lower: such courses; higher: undamped contacts
 STEADY = 0.2
 #: least part of the loaded friction level that is simulated without a load, for a level of zero and
-#: along records: with a level of zero the bristle has no stiffness there, and motions left their
-#: course. So small a part changes a motion by less than the bristle itself
+#: along records: with a level of zero the bristle has no stiffness there, and a simulated servo
+#: left its record by 0.4 rad rms. Levels are known less well than to a part so small
 LEAST = 0.002
 #: forces in proportion to which a friction level may grow
 _LOADS = SIGNALS["acting_force"], SIGNALS["carried_force"]
@@ -119,8 +120,11 @@ def _levels_by_load(body: Body) -> tuple[float, float]:
     equation = body.equation()
     law = equation.level.subs(body.numbers())
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(equation.rates, 0)
+    unloaded = float(law.subs(at_rest))
+    if not law.has(*_LOADS):
+        return unloaded, unloaded
     loaded = at_rest | dict.fromkeys(_LOADS, _typical_load(body))
-    return float(law.subs(at_rest)), float(law.subs(loaded))
+    return unloaded, float(law.subs(loaded))
 
 
 def _typical_load(body: Body) -> float:

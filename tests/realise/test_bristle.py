@@ -72,4 +72,5 @@ def test_a_motor_drives_a_load_through_such_a_gear_whatever_the_bristle(deflecti
         before, v = v, v + step * (carried - load) / 0.05
         v = 0.0 if before * v < 0.0 else v
         x += step * v
-    assert moved["L"].values[-1] == pytest.approx(x, abs=0.02)
+    # each reversal begins a bristle's length late; the Euler steps leave 1e-5
+    assert moved["L"].values[-1] == pytest.approx(x, abs=4 * deflection + 1e-4)
