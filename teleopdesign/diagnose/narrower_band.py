@@ -89,10 +89,10 @@ def choose_band(wide: Diagnosis, narrow: Diagnosis, *, criteria: Criteria = CRIT
     if not criteria.falls * _error(narrow.after) < _error(wide.after):
         return wide
     words = (
-        f"all that is faster than {narrow.prepared.bandwidth:.3g} Hz: up to "
-        f"{wide.prepared.bandwidth:.3g} Hz no model leaves less than "
-        f"{100 * _error(wide.after):.2g} % of the force. Either the position sensor is filtered or "
-        "coarser than stated, or an effect at high frequencies is missing"
+        f"all that is faster than {narrow.prepared.bandwidth:.3g} Hz: the final model of the "
+        f"search up to {wide.prepared.bandwidth:.3g} Hz leaves {100 * _error(wide.after):.2g} % of "
+        "the force. Either the position sensor is filtered or coarser than stated, or an effect at "
+        "high frequencies is missing"
     )
     return replace(narrow, left_out=(*narrow.left_out, words))
 
