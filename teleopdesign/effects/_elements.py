@@ -46,11 +46,12 @@ def elements_slip(p: Any, facts: RecordFacts) -> str | None:
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
     softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
-    if softest and 2.0 * ways[softest] > facts.travel > max(ways.values()):
+    travel = min(facts.travel, facts.sweep)
+    if softest and 2.0 * ways[softest] > travel > max(ways.values()):
         stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
         return (
             f"the softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
-            f"in one direction only within the travel of {facts.text(facts.travel, 'position')}: "
+            f"in one direction only within the travel of {facts.text(travel, 'position')}: "
             "the record shows no loop, and the effect imitates a spring"
         )
     return slip_is_seen("the softest element", list(ways.values()), facts)

@@ -270,6 +270,7 @@ def test_the_facts_are_those_of_all_records(case):
     positions = [s.motion.position for s in prepared.stretches]
     low, high = min(x.min() for x in positions), max(x.max() for x in positions)
     assert facts.travel == pytest.approx(high - low)
+    assert facts.sweep == pytest.approx(max(np.ptp(x) for x in positions))
     assert facts.body == {"inertia": model.parameters["device.inertia"].value}
     assert 0.0 < facts.stroke < 3.0 and facts.step > 0.0 and facts.force > 0.0
 
