@@ -59,3 +59,6 @@ def test_what_slips_within_no_stretch_of_a_record_is_a_spring_though_two_records
     assert plausible(values, facts(travel=2.0, sweep=2.0)) is None
     said = plausible(values, facts(travel=2.0, sweep=1.0))
     assert said is not None and "in one direction only within the travel of 1 rad" in said
+    soft["stiffness_1"] = 0.1  # 4 rad: beside others that slip, this one is a spring
+    said = plausible(SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0), facts())
+    assert said is not None and "never slips within the travel of 1 rad" in said
