@@ -37,10 +37,8 @@ class Course:
     velocity: Array
     command: Array
 
-    def stays_near(
-        self, motion: Motion, *, travels: float = 100.0, least: float = 0.1, times: float = 2.0
-    ) -> bool:
-        """Whether the course travels, and slides, about as much as the record; no for NaN.
+    def stays_near(self, motion: Motion, *, travels: float = 100.0, least: float = 0.1) -> bool:
+        """Whether the travel is between a part and a multiple of the record's travel; no for NaN.
 
         The spring that leads a body does not hold every model: one that is held stays within a part
         of the record's travel, any other soon exceeds every bound. A body that sticks where the
@@ -49,23 +47,9 @@ class Course:
         travels: upper limit, over the record's travel
         least: lower limit, over the record's travel: of two bodies that were stuck, both covered
             1e-4
-        times: limit of the ratio, either way, of the times that both slide: of a friction that
-            falls with speed a body slid for half as long, and its level was known ten times worse
         """
         travel = np.ptp(motion.position)
-        if not least * travel <= np.ptp(self.position) < travels * travel:
-            return False
-        ours, recorded = (_sliding_share(x, motion) for x in (self.position, motion.position))
-        return recorded <= times * ours and ours <= times * recorded
-
-
-def _sliding_share(position: Array, motion: Motion) -> float:
-    """Share of a course in which it moves more than an encoder step within a short time.
-
-    The time is a quarter period of the comparison's bandwidth: what is faster is not compared.
-    """
-    rows = max(round(0.25 / (motion.bandwidth * motion.sample_time)), 1)
-    return float(np.mean(np.abs(position[rows:] - position[:-rows]) > motion.step))
+        return bool(least * travel <= np.ptp(self.position) < travels * travel)
 
 
 @dataclass(frozen=True)

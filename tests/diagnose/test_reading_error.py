@@ -292,18 +292,3 @@ def test_a_body_that_sticks_where_the_record_moved_says_nothing_of_its_readings(
     assert not course.stays_near(motion)
     stuck = replace(found, model=found.model.with_values({"device.coulomb.level": 1e3}))
     assert reading_error(stuck, prepared, np.random.default_rng(0)) is None
-
-
-@pytest.mark.parametrize(("rests", "near"), [(0.2, True), (0.7, False)])
-def test_a_body_that_slides_for_less_than_half_of_the_time_says_nothing_of_the_readings(
-    rod, rests, near
-):
-    """It covered the whole travel, but of friction that falls with speed it showed too little."""
-    motion = rod[1].of("fit")[0].motion
-    n = len(motion.position)
-    moves = np.linspace(0.0, n - 1.0, n - round(rests * n))
-    position = np.full(n, motion.position[0])
-    position[round(rests * n) :] = np.interp(moves, np.arange(n), motion.position)
-    course = Course(position, np.gradient(position, motion.sample_time), motion.command)
-    assert np.ptp(position) == pytest.approx(np.ptp(motion.position), rel=0.01)
-    assert course.stays_near(motion) == near
