@@ -112,15 +112,20 @@ def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
     return replace(rung, could_be=select_other_helpers(best, ranking))
 
 
-def find_doubtful_rung(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | None:
-    """The last rung whose effect is uncertain or implausible in the final fit, with the reason."""
+def find_doubtful_rung(
+    rungs: Sequence[Rung], prepared: Prepared, estimated: Fit
+) -> tuple[Rung, str] | None:
+    """The last rung whose effect is uncertain or implausible in the final fit, with the reason.
+
+    estimated: the final fit before its standard errors included those of the readings
+    """
     last = rungs[-1].fit
     stands_for = implausible_effects(last.model, prepared) if len(rungs) > 1 else {}
     for before, rung in reversed(list(pairwise(rungs))):
         assert rung.added is not None
         if not last.model.body(rung.added.at).has(rung.added.effect.name):
             continue
-        most = explains_most(before.fit, rung.fit)
+        most = estimated if explains_most(before.fit, rung.fit) else None
         why = stands_for.get(rung.added.key) or doubt(last, rung.added, most=most)
         if why:
             return rung, why
@@ -150,7 +155,7 @@ def remove_doubtful_rung(
     rungs: of the state, with the errors that the answer would state
     returns: None where no effect is doubtful, or the effect was removed before
     """
-    doubted = find_doubtful_rung(rungs, search.prepared)
+    doubted = find_doubtful_rung(rungs, search.prepared, state.fit)
     doubted = doubted or find_hidden_rung(rungs, criteria=search.criteria)
     if doubted is None:
         return None

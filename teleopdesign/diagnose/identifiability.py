@@ -104,7 +104,7 @@ def doubt(
     fit: Fit,
     candidate: Candidate,
     *,
-    most: bool = False,
+    most: Fit | None = None,
     criteria: Criteria = CRITERIA,
 ) -> str:
     """Which essential parameter or strength of an accepted effect may be that of absence, in words.
@@ -112,11 +112,14 @@ def doubt(
     The standard errors are those at the end of a ladder, with the errors of the readings. Other
     parameters may be open, and so may parameters of a known product.
 
-    most: whether the effect removed most of the squares (`explains_most`)
+    most: where the effect removed most of the squares (`explains_most`), the fit before its
+        standard errors included those of the readings: the effect is there, and simulated readings
+        speak of its values only
     returns: "" where there is no such parameter
     """
     start = f"{candidate.at}.{candidate.effect.name}"
     together = list_known_in_product(fit, start, criteria=criteria)
+    is_there = most is not None and bool(list_known_in_product(most, start, criteria=criteria))
     for name, declared in candidate.effect.parameters.items():
         full = f"{start}.{name}"
         if full not in fit.free or declared.optional or full in together:
@@ -124,7 +127,7 @@ def doubt(
         if not (is_strength(fit.model, full) or declared.search.essential):
             continue
         value = fit.model.parameters[full]
-        if most and together and not declared.search.essential:
+        if is_there and not declared.search.essential:
             continue
         if not criteria.strong * value.stderr < fit.model.from_absence(full):
             unit = unit_after_number(fit.model.unit(full))

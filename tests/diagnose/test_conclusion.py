@@ -200,24 +200,28 @@ def doubts(monkeypatch):
     return say
 
 
+def doubtful(rungs):
+    return find_doubtful_rung(rungs, None, rungs[-1].fit)
+
+
 def test_the_last_effect_that_is_doubtful_is_named_with_the_reason(doubts):
     rungs = ladder(Table(error), "spring", "bias", "quadratic_drag")
     doubts()
-    assert find_doubtful_rung(rungs, None) is None
+    assert doubtful(rungs) is None
     doubts({SPRING: "a bristle"})
-    assert find_doubtful_rung(rungs, None) == (rungs[1], "a bristle")
-    assert find_doubtful_rung(rungs[:2], None) == (rungs[1], "a bristle")
+    assert doubtful(rungs) == (rungs[1], "a bristle")
+    assert doubtful(rungs[:2]) == (rungs[1], "a bristle")
     doubts({SPRING: "a bristle"}, {BIAS: "not told from absence", SPRING: "no"})
-    assert find_doubtful_rung(rungs, None) == (rungs[2], "not told from absence")
-    assert find_doubtful_rung(rungs[:2], None) == (rungs[1], "a bristle")
-    assert find_doubtful_rung(rungs[:1], None) is None
+    assert doubtful(rungs) == (rungs[2], "not told from absence")
+    assert doubtful(rungs[:2]) == (rungs[1], "a bristle")
+    assert doubtful(rungs[:1]) is None
 
 
 def test_what_the_last_model_has_no_more_is_not_doubted(doubts):
     rungs = ladder(Table(error), "spring", "bias")
     gone = replace(rungs[-1], fit=Table(error).fit("bias"))
     doubts({SPRING: "a bristle"})
-    assert find_doubtful_rung([*rungs[:2], gone], None) is None
+    assert doubtful([*rungs[:2], gone]) is None
 
 
 def test_what_hides_the_command_is_set_aside_where_nothing_is_doubtful(doubts, monkeypatch):

@@ -69,7 +69,7 @@ def test_what_takes_away_half_of_the_squares_of_both_uses_may_be_open(
     expected = most and is_known and effect != "backlash"
     assert is_identifiable(after, BASE) == expected
     if effect == "stribeck":  # its strength, the level, is no part of the product
-        said = doubt(after, Candidate(EFFECTS[effect], "device"), most=most)
+        said = doubt(after, Candidate(EFFECTS[effect], "device"), most=after if most else None)
         assert bool(said) == (not expected)
     after.check_residual = np.ones(ROWS)
     assert not is_identifiable(after, BASE)

@@ -61,9 +61,9 @@ def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagno
     assert doubt(with_errors(fit, 0.3), added) == ""
     assert "extra_static_level" in doubt(with_errors(fit, 1.5), added)
     rungs = diagnosis.rungs
-    assert find_doubtful_rung(rungs, prepared_case) is None
+    assert find_doubtful_rung(rungs, prepared_case, fit) is None
     last = replace(rungs[-1], fit=with_errors(fit, 1.5))
-    rung, why = find_doubtful_rung((little_more_left(rungs[0], fit), last), prepared_case)
+    rung, why = find_doubtful_rung((little_more_left(rungs[0], fit), last), prepared_case, fit)
     assert rung.added == added and "the effect may be absent" in why
 
 
@@ -89,9 +89,23 @@ def test_an_effect_that_explains_most_is_doubtful_where_nothing_of_it_is_known(
     first, last = diagnosis.rungs[0], diagnosis.rungs[-1]
     open_fit = with_errors(last.fit, 30.0)
     assert explains_most(first.fit, open_fit)
-    rung, _ = find_doubtful_rung((first, replace(last, fit=open_fit)), prepared_case)
+    rung, _ = find_doubtful_rung((first, replace(last, fit=open_fit)), prepared_case, open_fit)
     assert rung.added == stribeck_of(diagnosis)
     assert not is_identifiable(open_fit, first.fit)
+
+
+def test_simulated_readings_leave_an_effect_that_explains_most_and_is_known_by_the_records(
+    diagnosis, prepared_case
+):
+    """At half a log's rate a simulated motor slid half as long: `stribeck` was set aside."""
+    first, last = diagnosis.rungs[0], diagnosis.rungs[-1]
+    estimated = in_a_valley(with_errors(last.fit, 1.2), 0.01)
+    wide = in_a_valley(with_errors(last.fit, 30.0), 0.01)
+    assert "extra_static_level" in doubt(wide, stribeck_of(diagnosis))
+    assert doubt(wide, stribeck_of(diagnosis), most=estimated) == ""
+    assert find_doubtful_rung((first, replace(last, fit=wide)), prepared_case, estimated) is None
+    little = (little_more_left(first, last.fit), replace(last, fit=wide))
+    assert find_doubtful_rung(little, prepared_case, estimated) is not None, "explains too little"
 
 
 def with_command_error(rung, **changed):
