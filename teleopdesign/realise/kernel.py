@@ -240,4 +240,4 @@ def long_step_error(step: float, use: float, why: str) -> ModelError:
 
     step, use: s, the refused step, and a step that can be used;  why: reason, in words
     """
-    return ModelError(f"simulate: step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")
+    return ModelError(f"step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")

@@ -202,7 +202,9 @@ def search_counterexample(
     raises ModelError: stroke or speed is not > 0, or the motion of the port cannot be prescribed
     """
     if stroke <= 0 or speed <= 0:
-        raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")
+        raise ModelError(
+            f"search_counterexample: expected stroke and speed > 0, found {stroke}, {speed}"
+        )
     length, rate = (unit_of(q, first_axis(diagram)) for q in ("position", "velocity"))
     statement = (
         f"the port {port[0]}, {port[1]} of the {diagram.name} releases no energy over any motion "
