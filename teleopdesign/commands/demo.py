@@ -17,7 +17,10 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "--output", type=Path, default=Path("demo"), help="folder for what it writes"
+        "--output",
+        type=Path,
+        default=Path("demo"),
+        help="folder for the files that are written (default: demo)",
     )
 
 

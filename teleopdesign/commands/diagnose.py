@@ -42,10 +42,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "folder",
         type=Path,
         nargs="+",
-        help="folder with experiment.toml and its records; several with --output",
+        help="folder with experiment.toml and its records; several folders need --output",
     )
     parser.set_defaults(answer=None)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the answer there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the answer (.json)")
     parser.add_argument(
         "--predictions",
         type=Path,
@@ -58,26 +58,26 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--simulate",
         action="store_true",
-        help="also drive the final model by the recorded command alone",
+        help="also simulate the final model, driven by the recorded command alone",
     )
     parser.add_argument(
         "--loop",
         type=float,
         nargs=2,
         metavar=("K", "B"),
-        help="with --simulate: stiffness and damping (SI) of the loop that held the device, of an "
-        "arm: each joint",
+        help="with --simulate: stiffness and damping (SI) of the position loop that held the "
+        "device; in an arm, each joint has such a loop",
     )
     parser.add_argument(
-        "--report", type=Path, metavar="F", help="write a page with everything (.html)"
+        "--report", type=Path, metavar="F", help="write a report of the whole diagnosis (.html)"
     )
     add_search(parser)
     parser.add_argument(
         "--output",
         type=Path,
         metavar="DIR",
-        help="write an answer for each folder there, and table.csv; what is there already and has "
-        "not changed is not diagnosed again",
+        help="write an answer for each folder, and table.csv, to DIR; a folder that has an answer "
+        "in DIR and has not changed is not diagnosed again",
     )
     parser.add_argument(
         "--workers",

@@ -32,16 +32,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         type=Path,
         metavar="LOG",
-        help="csv of any dialect, xlsx, mat, parquet, npz, h5, bag or mcap; of several, the last "
-        "one is the check record",
+        help="log file: csv of any dialect, xlsx, mat, parquet, npz, h5, bag or mcap; of several "
+        "files, the last one is the check record",
     )
     parser.add_argument("--output", type=Path, metavar="FOLDER", help="folder of the experiment")
     parser.add_argument(
-        "--overwrite", action="store_true", help="replace an experiment.toml that exists"
+        "--overwrite", action="store_true", help="replace an existing experiment.toml"
     )
-    parser.add_argument("--yes", action="store_true", help="accept every guess, ask nothing")
-    parser.add_argument("--title", help="title of the experiment; default: the log's name")
-    parser.add_argument("--axis", choices=("prismatic", "revolute"))
+    parser.add_argument("--yes", action="store_true", help="accept every guess without a question")
+    parser.add_argument("--title", help="title of the experiment (default: the name of the log)")
+    parser.add_argument("--axis", choices=("prismatic", "revolute"), help="kind of motion")
     for name, text in (
         ("time", "time"),
         ("position", "the position"),
@@ -57,19 +57,30 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="the unit of a column (may be repeated)",
     )
     parser.add_argument(
-        "--torque-constant", metavar="VALUE", help='of the motor, such as "0.037 N*m/A"'
+        "--torque-constant",
+        metavar="VALUE",
+        help='torque constant of the motor, such as "0.037 N*m/A"',
     )
-    parser.add_argument("--gear-ratio", type=float, metavar="N", help="turns of the motor per turn")
-    parser.add_argument("--counts-per-turn", type=float, metavar="N", help="of the encoder")
-    parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where the log has no time")
-    parser.add_argument("--inertia", type=float, help="of the body, if known: kg or kg*m^2")
-    for use, text in (("fit", "that is fitted"), ("check", "on which errors are computed")):
+    parser.add_argument(
+        "--gear-ratio", type=float, metavar="N", help="turns of the motor per turn of the joint"
+    )
+    parser.add_argument(
+        "--counts-per-turn", type=float, metavar="N", help="counts of the encoder per turn"
+    )
+    parser.add_argument(
+        "--sample-rate", type=float, metavar="HZ", help="sample rate of a log without time"
+    )
+    parser.add_argument("--inertia", type=float, help="inertia of the body, if known, kg or kg*m^2")
+    for use, text in (
+        ("fit", "on which the model is fitted"),
+        ("check", "on which errors are computed"),
+    ):
         parser.add_argument(
             f"--{use}-span",
             nargs=2,
             type=float,
             metavar=("BEGIN", "END"),
-            help=f"s from the first row: the part of a single log {text}",
+            help=f"the part of a single log {text}, in s from the first row",
         )
 
 

@@ -1,4 +1,4 @@
-"""write the page of a diagnosis, of a saved answer or made now"""
+"""write the report of a diagnosis: of a saved answer, or of a new diagnosis"""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="F",
-        help="the page (default: beside the answer, or report.html)",
+        help="write this page (default: beside the answer, or report.html)",
     )
     add_search(parser)
 
