@@ -35,9 +35,7 @@ def run(options: argparse.Namespace) -> int:
         "figure": output / "ladder.png",
         "report": output / "report.html",
     }
-    print(
-        "The experiment that ships with the package, held against a model that lacks an effect:\n"
-    )
+    print("The example experiment of the package, compared with a model that lacks an effect:\n")
     parser = argparse.ArgumentParser()
     diagnose.add(parser)
     arguments = [f"--{name}={path}" for name, path in written.items()]

@@ -145,5 +145,5 @@ def _numbers(transfers: Transfers, speed: float) -> list[str]:
         above, below = (polynomial_as_text(p[0][0]) for p in (system.num, system.den))
         lines.append(f"{name} = ({above}) / ({below})")
     if gone:
-        lines.append(f"Left out, for they have no linear form: {', '.join(sorted(gone))}")
+        lines.append(f"Left out, because they have no linear form: {', '.join(sorted(gone))}")
     return lines

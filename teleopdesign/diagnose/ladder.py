@@ -69,7 +69,7 @@ def with_candidates_named(among: Collection[str] | None, diagnosis: Diagnosis) -
     """
     if among is None:
         return diagnosis
-    words = f"only these effects were tried: {', '.join(sorted(among))}"
+    words = f"only these effects were candidates: {', '.join(sorted(among))}"
     return replace(diagnosis, left_out=(*diagnosis.left_out, words))
 
 

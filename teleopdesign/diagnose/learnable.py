@@ -68,11 +68,11 @@ class Learnable:
     def __str__(self) -> str:
         left, rest = 100 * self.left, 100 * min(self.error, self.left)
         if not self.part > 0.0:
-            return f"{left:.2g} % left; none of it could be learned from the motion"
+            return f"{left:.2g} % left; no part of it follows from the motion"
         where = f", {self.where}" if self.where else ""
         return (
-            f"{left:.2g} % left; {100 * self.part:.2g} of it could be learned{where}; "
-            f"{rest:.2g} does not repeat"
+            f"{left:.2g} % left; {100 * self.part:.2g} % follows from the motion{where}; "
+            f"{rest:.2g} % does not repeat"
         )
 
 

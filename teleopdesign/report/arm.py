@@ -172,8 +172,8 @@ def _verdict(diagnosis: ArmDiagnosis) -> str:
         return f"Your model of the arm lacks {names}. With all that was added {fell}."
     if len(diagnosis.rungs) > 1:
         added = join_names([r.said for r in diagnosis.rungs[1:]])
-        return f"Undecided: with {added} {fell}, but these records do not tell what is missing."
-    return f"Undecided: something is missing, but no effect that was tried explains the {after}."
+        return f"Undecided: with {added} {fell}, but these records do not show what is missing."
+    return f"Undecided: something is missing, but no candidate effect explains the {after}."
 
 
 def write_arm_report(

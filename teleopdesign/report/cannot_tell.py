@@ -100,8 +100,8 @@ def _group(rung: Rung) -> Finding:
         sentence=(
             f"{join_names(names)} explain these records equally well: added at the same step they "
             f"leave {errors}, at most {number(apart, 2)} standard deviations of chance apart (from "
-            f"{CRITERIA.close:g} on they would be told apart). Along this motion they change the "
-            f"model's force in the same way: the correlation is {number(likeness, 4)}."
+            f"{CRITERIA.close:g} on, the records would distinguish them). Along this motion they "
+            f"change the model's force in the same way: the correlation is {number(likeness, 4)}."
         ),
         numbers=numbers | {"standard_deviations_apart": apart, "correlation": likeness},
     )
@@ -204,8 +204,8 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
             concern="note",
             sentence=(
                 f"These records do not determine {join_names(names, 'or')}: with such an effect "
-                "added, its parameters could take many values, or others of the model would make "
-                "up for it."
+                "added, its parameters could take many values, or other parameters of the model "
+                "would compensate for its force."
             ),
         )
     ]
@@ -231,12 +231,13 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
         return []
     return [
         Finding(
-            topic="effects that were not tried",
+            topic="effects that were no candidates",
             concern="note",
             sentence=(
-                f"Not tried on the last step: {join_names(reasons)}. An effect is left out where "
-                "another stands in its place, where it needs one that the model lacks, or where "
-                "the motion never comes back to a place and so cannot tell place from time."
+                f"No candidates on the last step: {join_names(reasons)}. An effect is no "
+                "candidate if another effect stands in its place, if it needs an effect that the "
+                "model lacks, or if the motion never returns to a position, so that an effect of "
+                "position cannot be distinguished from a drift over time."
             ),
         )
     ]

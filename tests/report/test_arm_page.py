@@ -97,7 +97,7 @@ def test_the_verdict_on_an_arm_names_what_is_missing_or_that_nothing_is(two_join
     undecided = arm._verdict(two_joints.but(verdict="undecided"))
     assert undecided.startswith("Undecided: with stribeck at device the force error")
     nothing = arm._verdict(two_joints.but(verdict="undecided", rungs=two_joints.rungs[:1]))
-    assert "no effect that was tried explains the 8.00\u202f%" in nothing
+    assert "no candidate effect explains the 8.00\u202f%" in nothing
 
 
 def test_a_written_page_holds_the_answer_and_every_joint(two_joints, monkeypatch, tmp_path):

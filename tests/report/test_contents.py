@@ -159,7 +159,7 @@ def test_look_alikes_come_with_the_reason(diagnosis):
 
 def test_what_was_not_tried_says_what_it_needs(diagnosis):
     only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=diagnosis.rungs[1].ranking)
-    found = next(f for f in cannot_tell(only) if f.topic == "effects that were not tried")
+    found = next(f for f in cannot_tell(only) if f.topic == "effects that were no candidates")
     assert "friction_memory at device (needs stribeck beside it)" in found.sentence
 
 

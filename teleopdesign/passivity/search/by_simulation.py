@@ -224,7 +224,7 @@ def search_counterexample(
         better = _refine(strokes, score, stroke=stroke, speed=speed)
         confirmed = confirmed_motion(diagram, better, port=port, computer=computer, give=give)
         if confirmed is not None:
-            return Claim(statement, Refutation(f"a motion found by search, {name}", confirmed))
+            return Claim(statement, Refutation(f"a motion of the search, {name}", confirmed))
     best = max(s for s, _, _ in motions)
     if not np.isfinite([best, *(x for pair in on_the_way for x in pair)]).all():
         return Claim(statement, Unknown("the simulated forces are not finite"))
