@@ -71,7 +71,7 @@ def describe_motion(
         "reversals": float(turns),
         "forth": forth,
         "back": back,
-        "untold": 1.0 - forth - back,
+        "motionless": 1.0 - forth - back,
     }
     missing = "; ".join(dict.fromkeys(poor.values()))
     return Finding(

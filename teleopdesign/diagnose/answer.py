@@ -60,7 +60,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "indistinguishable": [
             [place_data(c.key) for c in g] for g in (*diagnosis.groups, *diagnosis.look_alikes)
         ],
-        "cannot_tell": untold_rows(diagnosis),
+        "cannot_tell": undetermined_rows(diagnosis),
         "set_aside": set_aside_rows(diagnosis),
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
@@ -151,9 +151,11 @@ def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
     }
 
 
-def untold_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+def undetermined_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What the records cannot determine about accepted effects: one sentence each."""
-    return [place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.untold]
+    return [
+        place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.undetermined
+    ]
 
 
 def set_aside_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:

@@ -30,7 +30,7 @@ def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> 
     """
     rows = [
         (
-            "(your model, re-estimated)" if r.added is None else f"+ {r.said}",
+            "(your model, re-estimated)" if r.added is None else f"+ {r.title}",
             f"{100 * r.fit.fit_error:.2f} %",
             f"{100 * r.fit.check_error:.2f} %",
         )
@@ -141,7 +141,7 @@ def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
         lines.append(f"      {could_be}")
     lines += [
         f"      not determined: {one.sentence}"
-        for one in diagnosis.untold
+        for one in diagnosis.undetermined
         if one.candidate == rung.added
     ]
     return lines
@@ -151,7 +151,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
     lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
     for rung in diagnosis.rungs:
-        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.said}"
+        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.title}"
         lines.append(
             f"{name:<42}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
         )
@@ -229,11 +229,11 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         added = [r for r in diagnosis.rungs if r.added is not None]
         names = ", ".join(
-            " or ".join((r.said, *map(str, r.alternatives)))
+            " or ".join((r.title, *map(str, r.alternatives)))
             for r in added
             if r.added in diagnosis.missing
         )
-        less = [r.said for r in added if r.added not in diagnosis.missing]
+        less = [r.title for r in added if r.added not in diagnosis.missing]
         others = (
             f" {', '.join(less)}: less likely than not; the force that this effect describes "
             "counts as unexplained."
@@ -242,13 +242,13 @@ def sentence(diagnosis: Diagnosis) -> str:
         )
         return f"verdict: effects_missing: {names}.{others}{rest}"
     if diagnosis.unlikely:
-        names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
+        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided, leading candidate {names}: less likely than not, because "
             f"{left} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
-        names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
+        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided. {names} help, but explain less than half of what is missing: "
             f"{left} noise floors are left."

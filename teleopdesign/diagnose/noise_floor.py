@@ -25,7 +25,7 @@ from .error import error_of
 from .error_at_command import refer_to_command
 from .prepare import Prepared, Stretch
 from .residual import residuals
-from .sensors import is_noise_seen, sensor_of
+from .sensors import is_noise_estimated, sensor_of
 
 #: records with drawn noise for each noise floor; it differs by a few percent from draw to draw
 DRAWS = 3
@@ -87,10 +87,12 @@ def noise_floor(
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
         again = zip(refer_to_command(model, drawn).residual, command_before, strict=True)
         command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
-    source = "stated resolution and noise" if stated else "step and noise seen in the readings"
+    source = (
+        "stated resolution and noise" if stated else "step and noise estimated from the readings"
+    )
     bodies = {s.motion.body for s in stretches}
-    if stated and any(c.body in bodies and is_noise_seen(c) for c in channels.values()):
-        source = "stated resolution, noise seen in the readings of forces"
+    if stated and any(c.body in bodies and is_noise_estimated(c) for c in channels.values()):
+        source = "stated resolution, noise of forces estimated from the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
     # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what

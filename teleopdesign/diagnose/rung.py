@@ -68,12 +68,12 @@ class Rung(ByValue):
         return None if self.replaced is None else self.replaced.effect
 
     @property
-    def said(self) -> str:
+    def title(self) -> str:
         """The added effect in words, with the effect that it replaced."""
         return "" if self.added is None else named_instead(self.added, self.instead_of)
 
-    def taken_from(self, model: Model) -> Model:
-        """A model without the effect that this rung added, and with the effect that this replaced.
+    def undo_addition(self, model: Model) -> Model:
+        """A model without the effect that this rung added, and with the effect that it replaced.
 
         raises ModelError: another effect of the model needs the added effect
         """
@@ -86,4 +86,4 @@ class Rung(ByValue):
         return whole  # of one kind a body has one: what came back took its place
 
     def __repr__(self) -> str:
-        return f"Rung {self.said or 'of the model'}: {self.fit!r}"
+        return f"Rung {self.title or 'of the model'}: {self.fit!r}"

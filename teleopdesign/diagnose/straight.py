@@ -94,7 +94,7 @@ def _exchange_for_line(
     """The fit with the line and without the curved forces; None: these cannot be removed."""
     try:
         for rung in bent:
-            model = rung.taken_from(model)
+            model = rung.undo_addition(model)
     except ModelError:
         return None
     for candidate in line:

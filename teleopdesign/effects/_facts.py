@@ -108,7 +108,7 @@ class RecordFacts:
         return f"{value:.3g} {unit_of(quantity, self.axis)}"
 
 
-def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
+def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
     """A sentence where no deflection before sliding can be read from the records; else None.
 
     subject: name of the part in the sentence;  ways: deflections before sliding (m, rad)

@@ -126,14 +126,14 @@ def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     remedies = proposal.remedies.get(pair, ())
     if not remedies:
         return said
-    return f"{said} {_remedies_said(remedies)}"
+    return f"{said} {_describe_remedies(remedies)}"
 
 
 #: most remedies in a sentence, so that it stays readable
 MOST_SAID = 3
 
 
-def _remedies_said(remedies: Sequence[Remedy]) -> str:
+def _describe_remedies(remedies: Sequence[Remedy]) -> str:
     helping = [r for r in remedies if r.separation >= DECIDES]
     if helping:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])

@@ -175,7 +175,7 @@ def know_velocity(at, reading, period, smoothing, memory, lane):
         order 2: w^2/(s + w)^2, late by 2/w      order 3: (3 w^2 s + w^3)/(s + w)^3, late by nothing
     for slow motion. OBSERVER 0 is the filtered difference, w/(s + w), late by 1/w.
     """
-    travel = (reading - memory[SEEN + at]) / period
+    travel = (reading - memory[LAST_READING + at]) / period
     known = memory[KNOWN + at]
     left = 1.0 - smoothing
     memory[TRAVEL + at] = travel
@@ -213,7 +213,7 @@ def read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane):
             memory[OBSERVED + at] = reading
         else:
             know_velocity(at, reading, period, smoothing, memory, lane)
-        memory[SEEN + at] = reading
+        memory[LAST_READING + at] = reading
 
 
 @jitted

@@ -45,7 +45,8 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
 def _untold(diagnosis: Diagnosis) -> list[Finding]:
     """Parameters without a determined value, of effects that are certain."""
     return [
-        Finding("values that are not determined", "warning", f"{one}.") for one in diagnosis.untold
+        Finding("values that are not determined", "warning", f"{one}.")
+        for one in diagnosis.undetermined
     ]
 
 

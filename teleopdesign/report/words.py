@@ -93,7 +93,7 @@ def step_name(rung: Rung) -> str:
     """The effect that a rung adds, with equally good ones: "stribeck at device"."""
     if rung.added is None:
         return "your model, re-estimated"
-    return " or ".join((rung.said, *map(str, rung.alternatives)))
+    return " or ".join((rung.title, *map(str, rung.alternatives)))
 
 
 def describe_judgement(experiment: Experiment) -> str:

@@ -7,7 +7,7 @@ import pytest
 
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.comparison import residual_data
-from teleopdesign.diagnose.diagnosis import SetAside, Untold
+from teleopdesign.diagnose.diagnosis import SetAside, Undetermined
 from teleopdesign.report.candidate_table import candidate_rows
 from teleopdesign.report.cannot_tell import cannot_tell
 from teleopdesign.report.page import page_of
@@ -115,7 +115,7 @@ def test_values_that_are_not_told_and_effects_set_aside_stand_on_the_page(diagno
     other = diagnosis.rungs[1].ranking.ranked[-1].candidate
     both = replace(
         diagnosis,
-        untold=(Untold(added, "the level at rest is not told"),),
+        undetermined=(Undetermined(added, "the level at rest is not told"),),
         set_aside=(SetAside(other, 0.034, "it is not told from absence"),),
     )
     found = {f.topic: f for f in cannot_tell(both)}

@@ -211,7 +211,7 @@ def describe_position(
         entry["counts_per_turn"] = per_turn
     else:
         factor = si_factor(unit, quantity="position", axis=axis)
-        step = _seen_step(column.readings)
+        step = _step_of_readings(column.readings)
         if step > 0:
             entry["resolution"] = float(f"{step:.5g}")
             survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
@@ -273,7 +273,7 @@ def _counts(column: SurveyedColumn) -> bool:
     return float(np.ptp(values)) > MOST_ANGLE
 
 
-def _seen_step(values: Array) -> float:
+def _step_of_readings(values: Array) -> float:
     """Step of the encoder, estimated from the readings; 0 if they show none."""
     raw = values[:ENOUGH]
     changes = int(np.count_nonzero(np.diff(raw)))

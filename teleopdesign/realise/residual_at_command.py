@@ -49,7 +49,7 @@ _CARRIED, _INTERACTION = SIGNALS["carried_force"], SIGNALS["interaction_force"]
 
 
 @dataclass(frozen=True)
-class SeenAtCommand:
+class ResidualAtCommand:
     """Residual of a model along one motion (n samples), as an error of the recorded command.
 
     residual: mapped back, SI; in blind samples divided by the largest gain
@@ -86,7 +86,9 @@ def is_between(body: Body) -> bool:
     )
 
 
-def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -> SeenAtCommand:
+def residual_at_command(
+    body: Body, motion: Motion, along: Residual | None = None
+) -> ResidualAtCommand:
     """The residual along a motion as an error of the recorded command.
 
     along: result of `residual_along` for this body and motion; None: it is computed
@@ -104,7 +106,7 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
     if passed.any():
         passed = _transmit(passed, _net(body, motion, known, _INTERACTION), motion)
     weak = bool(blind.any()) and _is_weak(body, motion, model, known)
-    return SeenAtCommand(residual, blind, passed, weak)
+    return ResidualAtCommand(residual, blind, passed, weak)
 
 
 def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
@@ -280,7 +282,7 @@ def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
     return bool(len(whole)) and float(np.median(whole)) > 0.0
 
 
-def blind_share(stretches: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
+def blind_share(stretches: Sequence[ResidualAtCommand], motions: Sequence[Motion]) -> float:
     """Share of blind samples among those where the body slides; of all, where it never slides."""
     blind = np.concatenate([s.blind for s in stretches])
     slides = np.concatenate([m.direction != 0 for m in motions])
