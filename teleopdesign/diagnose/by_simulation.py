@@ -299,7 +299,7 @@ def _deviations(driven: _Driven, horizon: float) -> tuple[Array, Array]:
     each = rows if np.isinf(horizon) else max(round(horizon / motion.sample_time), 2)
     x, v = [], []
     for begin in range(first, end - 1, each):
-        # one row more than counts: the last row of a course has no command after it
+        # one extra row, which is not counted: no command follows the last row of a course
         part = slice(begin, min(begin + each + 1, end))
         course = course_of(driven.led, motion, part)
         x.append(course.position - motion.position[part])

@@ -70,7 +70,7 @@ def _exchange_for(
     ranking: Ranking = search.rank(without, step=state.step, among=(other, added))
     best = next((r for r in ranking.ranked if r.candidate.key == other.key), None)
     if (
-        best is None  # no candidate on these motions
+        best is None  # the other effect is no candidate with these motions
         or best.instead_of is not None
         or not is_supported(without, best, state.floor, criteria=criteria)
         or whole_score(best.fit, state.fit) >= criteria.close

@@ -70,7 +70,7 @@ def conclude(
     trees = learnable(model, search.whole, beside=beside, seed=search.seed)
     last, whole = rungs[-1].fit, search.whole
     floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
-    if floor is not state.floor:  # all that is left is noise, at any moment
+    if floor is not state.floor:  # the remaining error is noise, at all times
         moment = None
     diagnosis = Diagnosis(
         experiment=search.experiment,

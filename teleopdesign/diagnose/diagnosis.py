@@ -152,7 +152,7 @@ class Diagnosis(ByValue):
         They are named nonetheless, because one of the two is the commoner by its file
         (`Effect.commoner`).
         """
-        if self.prepared.is_of_an_arm:  # its links have gravity
+        if self.prepared.is_of_an_arm:  # the links of an arm include gravity
             return ()
         doubted = dict.fromkeys(one.candidate for one in self.undetermined)
         return tuple((one, other) for one in doubted for other in list_look_alikes(one, self.model))

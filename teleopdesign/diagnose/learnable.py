@@ -130,7 +130,7 @@ def learnable(
         return None
     import sklearn.ensemble  # noqa: F401  loaded first: only then can its threads be limited
 
-    # threads of the trees and of other callers would wait for each other by spinning
+    # with more threads, those of the trees and of other callers would wait actively for each other
     with threadpool_limits(limits=1, user_api="openmp"):
         return _measure_learnable(model, prepared, beside, seed)
 

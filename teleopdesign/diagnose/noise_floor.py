@@ -95,8 +95,8 @@ def noise_floor(
         source = "stated resolution, noise of forces estimated from the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
-    # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what
-    # counts as noise is never less than what sensors leave of the force
+    # at the command, sensor noise is larger if a law attenuates the command, and smaller with
+    # one that amplifies it; the floor is at least the error that sensor noise makes in the force
     jitters = any(_jitter(s, prepared) > 0.0 for s in stretches)
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
 
@@ -116,7 +116,7 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
     motion, channels = stretch.motion, prepared.experiment.channels
     side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
-    # a command is held between rows, and read the same a little early or late
+    # a command is held between rows: a small time shift of the reading does not change it
     jitter = _jitter(stretch, prepared)
     late = jitter * generator.standard_normal(len(motion.time)) if jitter > 0.0 else 0.0
     rate = np.gradient(motion.interaction, motion.sample_time)

@@ -79,11 +79,12 @@ class Rung(ByValue):
         """
         assert self.added is not None
         name, at = self.added.key
-        # back first: what needs either of the two is never without both
+        # the replaced effect returns first: an effect that needs one of the two always has one
         whole = model if self.replaced is None else self.replaced.back_in(model)
         if whole.body(at).has(name) or not model.body(at).has(name):
             return whole.without_effect(name, at=at)
-        return whole  # of one kind a body has one: what came back took its place
+        # a body has one effect of a kind: the effect that returned took the place of the added one
+        return whole
 
     def __repr__(self) -> str:
         return f"Rung {self.title or 'of the model'}: {self.fit!r}"

@@ -83,7 +83,7 @@ def stands_in_for_readings(
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    # a floor is known to a fifth
+    # a noise floor is known within a fifth
     if leaves <= criteria.adequate or criteria.weakened * leaves <= left:
         return None
     reason = (

@@ -145,7 +145,7 @@ def _average_held(values: Array, at: Array, grid: Array) -> Array:
     edges = np.append(grid, grid[-1] + 1.0)
     ends = np.append(at, max(at[-1] + 1.0, edges[-1]))
     total = np.concatenate([[0.0], np.cumsum(values * np.diff(ends))])
-    # before the first row the first command is taken to have held
+    # assumption: the first command was held before the first row
     early = np.minimum(edges - ends[0], 0.0) * values[0]
     mean: Array = np.diff(np.interp(edges, ends, total) + early) / np.diff(edges)
     return mean
@@ -158,7 +158,7 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
     nearer = np.where(part <= 0.5, values[left], values[right])
     smooth = _cubic(values, at, grid, left) if len(at) > 3 else np.interp(grid, at, values)
-    # beyond the ends the end's reading stays
+    # beyond the ends the last reading is kept
     smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
     return np.where(slow, _interpolate_in_steps(values[left], values[right], part, step), smooth)

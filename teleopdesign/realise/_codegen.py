@@ -191,7 +191,7 @@ class Generator:
         moving = {*e.rates, *e.joined, *e.inputs}
         if not self.commands:
             return [True] * len(e.late)
-        for _ in e.late:  # a late signal that is late once more
+        for _ in e.late:  # once for each late signal: one may be the delay of another
             moving |= {s for s, (x, _) in e.late.items() if x.free_symbols & moving}
         return [bool(x.free_symbols & moving) for x, _ in e.late.values()]
 

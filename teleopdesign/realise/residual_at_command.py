@@ -139,7 +139,7 @@ def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
     """An expression along the motion (n,); a hidden state without a signal is zero."""
     signals, values = along.signals, along.values
     symbols, call = _function(expression)
-    # arrays all: what is printed for a Max of a number and an array stacks the two
+    # all as arrays: the printed code stacks the arguments of Max, which needs equal shapes
     numbers = [
         signals[s].value if s in signals else np.full(n, values.get(s, 0.0)) for s in symbols
     ]
@@ -247,7 +247,7 @@ def _from_rest(way: _Way) -> NDArray[np.complex128]:
 
 def _transmit(force: Array, way: _Way, motion: Motion) -> Array:
     """The part of a force that passes a transfer; a resonance does not amplify it."""
-    # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
+    # a coupling that opens during the motion has no dynamics at rest: the whole force passes
     gain = np.where(np.isfinite(way.gain), way.gain, 1.0)
     dynamics = np.where(np.isfinite(way.dynamics), way.dynamics, 1.0)
     limited = dynamics / np.maximum(np.abs(dynamics), 1.0)

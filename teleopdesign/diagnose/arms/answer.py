@@ -104,7 +104,7 @@ def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         rows |= {
             n: row
             for n, row in parameter_rows(fit, added).items()
-            if n != f"{j}.inertia"  # its body stands for the links too while it is searched
+            if n != f"{j}.inertia"  # in the search this inertia includes the links
         }
     rows |= {
         f"arm.{n}": {"value": make_plain(value), "stderr": make_plain(error), "unit": unit}

@@ -203,7 +203,7 @@ def _deviations(one: _Along, horizons: Sequence[float]) -> list[tuple[Array, Arr
         each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
         starts = list(range(one.first, one.end - 1, each))
         begins += starts
-        # one row more than counts: the last row of a course has no command after it
+        # one extra row, which is not counted: no command follows the last row of a course
         ends += [min(begin + each + 1, one.end) for begin in starts]
         owner += [h] * len(starts)
     at = np.array(begins), np.array(ends)

@@ -72,7 +72,7 @@ def find_position(
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
-            # friction, and the pressure that it asks for, are much like a velocity
+            # friction, and the pressure against it, resemble a velocity
             if other == name or _is_force(column_2) or is_another_quantity(other):
                 continue
             _, agree = derivative_factor(flat[name], column_2.values, h)
@@ -82,8 +82,8 @@ def find_position(
             if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
                 derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
-    # what says that it is something else is no position, whatever is left
-    known = choices.units  # a unit that was chosen is refused by its name, if it is wrong
+    # a column whose name or unit is of something else is never a position
+    known = choices.units  # except with a chosen unit: a wrong choice is refused with its name
     scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
     if choices.position is not None:
         best = choices.position
