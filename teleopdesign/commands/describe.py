@@ -106,7 +106,7 @@ def _write(description: ResidualDescription, path: Path, folder: Path) -> None:
 
     largest = description.largest
     if largest is None:
-        raise ModelError(f"{path}: not written: what is left depends on nothing for sure")
+        raise ModelError(f"{path}: not written: no dependence of the unexplained force is sure")
     part, described = largest
     write_effect(path, part, described, description.prepared)
     command = f"teleopdesign diagnose {shell_word(folder)} --effect {shell_word(path)}"

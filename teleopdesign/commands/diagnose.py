@@ -165,9 +165,9 @@ def _suggest_for_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
     lines = []
     for joint, one in diagnosis.joints.items():
         if one.groups:
-            lines.append(f"which of them is it: teleopdesign next {source} --body {joint}")
+            lines.append(f"to distinguish them: teleopdesign next {source} --body {joint}")
         if one.verdict != "model_adequate" and one.more_is_missing:
-            lines.append(f"where it fails: teleopdesign describe {source} --body {joint}")
+            lines.append(f"where the model fails: teleopdesign describe {source} --body {joint}")
     return ["", *lines] if lines else []
 
 
@@ -215,14 +215,16 @@ def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -
     source = shell_word(answer or folder)
     lines = []
     if diagnosis.groups:
-        lines.append(f"what to measure to tell them: teleopdesign next {source}")
+        lines.append(f"what to measure to distinguish them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
-        lines.append(f"where it fails: teleopdesign describe {source}")
+        lines.append(f"where the model fails: teleopdesign describe {source}")
         narrower = narrower_band(diagnosis.after.model, diagnosis.prepared)
         if narrower is not None:
             lines.insert(0, f"{narrower}")
         elif motion_beyond(diagnosis.experiment, diagnosis.prepared.bandwidth) is not None:
-            where = f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the motion goes on"
+            where = (
+                f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the records still show motion"
+            )
             lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
     lines.append(f"a compensation: teleopdesign design {source} --output design")
     return ["", *lines]

@@ -131,7 +131,8 @@ def run(options: argparse.Namespace) -> int:
         print(boxes)
     if survey.guesses:
         print(
-            "if a guess is wrong: repeat the command with the option below it, and with --overwrite"
+            "if a guess is wrong: repeat the command with the option below the guess, and with "
+            "--overwrite"
         )
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")

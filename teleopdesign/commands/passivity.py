@@ -175,8 +175,8 @@ def _check_options(options: argparse.Namespace) -> None:
     late = options.delay / options.period if options.period else 0.0
     if abs(late - round(late)) > 1e-6:
         raise ExperimentError(
-            f"--delay: found {late:.4g} periods, expected a whole number: what is proved of a "
-            "sampled law holds for those"
+            f"--delay: found {late:.4g} periods, expected a whole number: the proofs for sampled "
+            "laws need one"
         )
     if options.period is None and (options.wall or options.delay or options.encoder_step):
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
@@ -245,7 +245,9 @@ def _describe_device(
     if device.bristle_damping.high > 0:
         lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
     if device.set_aside:
-        lines.append(f"may supply energy, or is in no theorem: {', '.join(device.set_aside)}")
+        lines.append(
+            f"may supply energy, or no theorem covers the effect: {', '.join(device.set_aside)}"
+        )
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
     return "\n".join([*lines, *claim_lines(claims), "", *map(str, limits)])

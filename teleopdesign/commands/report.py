@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     if answer is not None:
         print(
             f"{answer}: its models are computed along the records of {experiment.folder.name}; "
-            "nothing is searched or estimated anew"
+            "nothing is searched or estimated again"
         )
     if whole is not None:
         write_arm_page(whole, path)

@@ -126,7 +126,7 @@ def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) 
         return f"{subject} never slips within the travel of {travel}: the effect imitates a spring"
     step = facts.text(facts.step, "position")
     return (
-        f"{subject} deflects by less than a step of {step} shows: the effect imitates sgn friction"
+        f"{subject} deflects less than steps of {step} can show: the effect imitates sgn friction"
     )
 
 

@@ -65,7 +65,7 @@ def _explain_nothing_open(proposal: Proposal) -> str:
     if nearest:
         return (
             f"More is missing, and only {nearest[0]} comes near: there is no rival to distinguish "
-            "it from. Longer check records decide whether it is there."
+            "it from. Longer check records decide whether this effect is present."
         )
     return "The present records decide: no rival is left to distinguish."
 
@@ -139,7 +139,7 @@ def _describe_remedies(remedies: Sequence[Remedy]) -> str:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])
         more = len(helping) - MOST_SAID
         others = f"; or in {more} other ways (`Proposal.remedies`)" if more > 0 else ""
-        return f"In simulation, the true one would be identified if {listed}{others}."
+        return f"In simulation, the true effect would be identified if {listed}{others}."
     changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)
     if all(r.separation < SAME for r in remedies):
         return (

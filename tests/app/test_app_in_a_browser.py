@@ -60,7 +60,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
     np.savetxt(log, rows, delimiter=",", header="tick,joint,drive", comments="", fmt="%.9g")
     with opened(address) as page:
         page.locator("input[type=file]").set_input_files(log)
-        page.get_by_text("No name says the unit of").wait_for()
+        page.get_by_text("No column name states the unit of").wait_for()
         fill_in(page, "position unit", "furlong")
         page.get_by_text("unit of 'joint': found 'furlong', expected a unit such as").wait_for()
         fill_in(page, "position unit", "deg")
@@ -74,7 +74,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
         fill_in(page, "time unit", "ms")
         fill_in(page, "torque constant", "0.05 N*m/A")
         page.get_by_text("placeholder for the motor's constant").wait_for(state="detached")
-        page.get_by_text("No name says the unit of").wait_for(state="detached")
+        page.get_by_text("No column name states the unit of").wait_for(state="detached")
         page.wait_for_timeout(3000)  # the log is drawn anew
         picture(page, folder, "units", full_page=True)
         press(page, "Make the experiment")
