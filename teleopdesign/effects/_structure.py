@@ -64,7 +64,7 @@ def make_structure(
     """
     for name in ("tip_inertia", "stiffness") if following else ("tip_inertia",):
         if name not in parameters:
-            raise ModelError(f'structure: found no parameter "{name}", expected one')
+            raise ModelError(f'make_structure: found no parameter "{name}", expected one')
 
     def law(now: Any, p: Any) -> sp.Expr:
         return _join(coupling, now, p) + now.interaction_force - p.tip_inertia * now.acceleration

@@ -78,7 +78,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
         page.wait_for_timeout(3000)  # the log is drawn anew
         picture(page, folder, "units", full_page=True)
         press(page, "Make the experiment")
-        page.get_by_text("bare_experiment is made").wait_for()
+        page.get_by_text("bare_experiment is created").wait_for()
     channels = load_experiment(folder / "bare_experiment").channels.values()
     assert {c.quantity: c.unit for c in channels} == {
         "time": "ms",
@@ -107,7 +107,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         page.wait_for_timeout(3000)  # the shaded spans are drawn anew
         picture(page, folder, "log", full_page=True)
         press(page, "Make the experiment")
-        page.get_by_text("swing_experiment is made").wait_for()
+        page.get_by_text("swing_experiment is created").wait_for()
         press(page, "Open")
         press(page, "Cancel")
         page.get_by_text("cancelled").wait_for()

@@ -87,8 +87,7 @@ def _answers(
     for name in loop:
         if name not in joints:
             raise ModelError(
-                f"recorded loop: no joint {quote(name)}, has {', '.join(joints)}"
-                f"{did_you_mean(name, joints)}"
+                f"loop: no joint {quote(name)}, has {', '.join(joints)}{did_you_mean(name, joints)}"
             )
     each = [loop.get(j, RecordedLoop(0.0)) for j in joints]
     return np.array([[one.stiffness, one.damping] for one in each])
