@@ -11,7 +11,7 @@ from ..errors import ExperimentError
 from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
 from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log
-from ..measurement.value_text import motor_constant, plain_number
+from ..measurement.value_text import lever_arm, motor_constant, plain_number
 from .files import resolve_inside
 
 if TYPE_CHECKING:
@@ -178,12 +178,14 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
 def choices_of(answers: Answers) -> Choices:
     """Columns, axis and constants from a form of the page; an empty answer: to be detected.
 
-    answers: by the names of `ASKED` and `NUMBERS`, "axis", and "torque constant" with its unit
+    answers: by the names of `ASKED` and `NUMBERS`, "axis", and "torque constant" and "lever arm"
+        with their units
     raises ExperimentError: a constant that is no number
     """
     column = {key: answers.get(name) or None for name, key in ASKED.items()}
     number = {key: _number(answers, name) for name, key in NUMBERS.items()}
     constant = (answers.get("torque constant") or "").strip()
+    arm = (answers.get("lever arm") or "").strip()
     return Choices(
         axis=answers.get("axis") or None,
         time=column["time"],
@@ -191,6 +193,7 @@ def choices_of(answers: Answers) -> Choices:
         actuator_force=column["actuator_force"],
         interaction_force=column["interaction_force"],
         torque_constant=motor_constant(constant, where="torque constant") if constant else None,
+        lever_arm=lever_arm(arm, where="lever arm") if arm else None,
         gear_ratio=number["gear_ratio"],
         counts_per_turn=number["counts_per_turn"],
         sample_rate=number["sample_rate"],

@@ -56,6 +56,7 @@ def column_form(columns: Sequence[str]) -> PageElement:
     fields["torque constant"] = mo.ui.text(
         label="torque constant", placeholder="0.037 N*m/A or 12 N/A"
     )
+    fields["lever arm"] = mo.ui.text(label="lever arm of a force in N", placeholder="70 mm")
     fields |= {name: mo.ui.text(label=name) for name in logs.NUMBERS}
     return mo.ui.dictionary(fields)
 
@@ -64,7 +65,7 @@ def form_rows(form: PageElement) -> PageElement:
     """The layout of the form: each column above its unit, then axis and constants."""
     fields = form.elements
     pairs = [mo.vstack([fields[name], fields[f"{name} unit"]]) for name in logs.ASKED]
-    others = [fields[name] for name in ("axis", "torque constant", *logs.NUMBERS)]
+    others = [fields[name] for name in ("axis", "torque constant", "lever arm", *logs.NUMBERS)]
     return mo.vstack([place_side_by_side(*pairs), place_side_by_side(*others)])
 
 

@@ -56,20 +56,20 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="COLUMN=UNIT",
         help="the unit of a column (may be repeated)",
     )
-    parser.add_argument(
-        "--torque-constant",
-        metavar="VALUE",
-        help='torque constant of the motor, such as "0.037 N*m/A"',
-    )
-    parser.add_argument(
-        "--gear-ratio", type=float, metavar="N", help="turns of the motor per turn of the joint"
-    )
-    parser.add_argument(
-        "--counts-per-turn", type=float, metavar="N", help="counts of the encoder per turn"
-    )
-    parser.add_argument(
-        "--sample-rate", type=float, metavar="HZ", help="sample rate of a log without time"
-    )
+    for option, text in (
+        ("torque-constant", 'torque constant of the motor, such as "0.037 N*m/A"'),
+        (
+            "lever-arm",
+            'for a force in N beside an angle: its distance from the axis, such as "70 mm"',
+        ),
+    ):
+        parser.add_argument(f"--{option}", metavar="VALUE", help=text)
+    for option, unit, text in (
+        ("gear-ratio", "N", "turns of the motor per turn of the joint"),
+        ("counts-per-turn", "N", "counts of the encoder per turn"),
+        ("sample-rate", "HZ", "sample rate of a log without time"),
+    ):
+        parser.add_argument(f"--{option}", type=float, metavar=unit, help=text)
     parser.add_argument("--inertia", type=float, help="inertia of the body, if known, kg or kg*m^2")
     for use, text in (
         ("fit", "on which the model is fitted"),
@@ -191,6 +191,8 @@ def _option_of(key: str, survey: Survey) -> str:
     if part == "torque_constant":
         unit = survey.channels[quantity][part]["unit"]
         return f'--torque-constant "VALUE {unit}"'
+    if part == "lever_arm":
+        return '--lever-arm "VALUE m"'
     other = "revolute" if survey.axis == "prismatic" else "prismatic"
     return {
         "channels.position.counts_per_turn": "--counts-per-turn N",
@@ -207,7 +209,7 @@ def _shorten(value: object) -> str:
 
 def _choices(options: argparse.Namespace) -> Choices:
     from ..measurement.survey import Choices
-    from ..measurement.value_text import motor_constant
+    from ..measurement.value_text import lever_arm, motor_constant
 
     units = {}
     for text in options.unit:
@@ -218,6 +220,9 @@ def _choices(options: argparse.Namespace) -> Choices:
     constant = None
     if options.torque_constant is not None:
         constant = motor_constant(options.torque_constant, where="--torque-constant")
+    arm = None
+    if options.lever_arm is not None:
+        arm = lever_arm(options.lever_arm, where="--lever-arm")
     return Choices(
         axis=options.axis,
         time=options.time,
@@ -226,6 +231,7 @@ def _choices(options: argparse.Namespace) -> Choices:
         interaction_force=options.hand,
         units=units,
         torque_constant=constant,
+        lever_arm=arm,
         gear_ratio=options.gear_ratio,
         counts_per_turn=options.counts_per_turn,
         sample_rate=options.sample_rate,
@@ -234,7 +240,7 @@ def _choices(options: argparse.Namespace) -> Choices:
 
 def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
     """The choices, with the user's answers on the guesses; an empty answer accepts a guess."""
-    from ..measurement.value_text import motor_constant, plain_number
+    from ..measurement.value_text import lever_arm, motor_constant, plain_number
 
     units = dict(choices.units)
     for key, why in list(survey.guesses.items()):
@@ -243,6 +249,7 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
             "unit",
             "column",
             "torque_constant",
+            "lever_arm",
             "counts_per_turn",
             "gear_ratio",
         ) and key not in (
@@ -260,6 +267,8 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
             choices = _with_column(choices, quantity, answer)
         elif part == "torque_constant":
             choices = replace(choices, torque_constant=motor_constant(answer, where=key))
+        elif part == "lever_arm":
+            choices = replace(choices, lever_arm=lever_arm(answer, where=key))
         elif part == "counts_per_turn":
             choices = replace(choices, counts_per_turn=plain_number(answer, where=key))
         elif part == "gear_ratio":

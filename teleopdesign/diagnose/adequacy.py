@@ -7,6 +7,7 @@ Every threshold is a field of `Criteria`.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,8 +35,15 @@ class Floors:
     allowed: NoiseFloor
 
 
-def limit_noise_floor(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
+def limit_noise_floor(
+    drawn: NoiseFloor,
+    here: Fit,
+    ranking: Ranking,
+    without: Collection[tuple[str, str]] = (),
+) -> NoiseFloor:
     """The noise floor, at most the error of the model or of any candidate that counts.
+
+    without: effects, with their places, that only weaken errors of the readings
 
     While an effect is missing, a parameter may take a value with which sensor noise would cause any
     force. The error that the records themselves leave shows that the noise is smaller.
@@ -44,7 +52,9 @@ def limit_noise_floor(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFl
     """
     left = [here.check_error]
     if not drawn.jitters:
-        left += [r.fit.check_error for r in ranking.ranked if r.counts]
+        left += [
+            r.fit.check_error for r in ranking.ranked if r.counts and r.candidate.key not in without
+        ]
     return replace(drawn, value=min(drawn.value, *left))
 
 

@@ -50,11 +50,16 @@ class Undetermined:
 
 @dataclass(frozen=True)
 class SetAside:
-    """An effect that lowered the error and was removed again, with its error and the reason."""
+    """An effect that lowered the error and was removed again, with its error and the reason.
+
+    of_readings: whether the effect only weakens errors of the readings: its own error then does not
+        limit the noise floor of the model without it
+    """
 
     candidate: Candidate
     check_error: float
     reason: str
+    of_readings: bool = False
 
     def __str__(self) -> str:
         return f"{self.candidate} ({100 * self.check_error:.2f} %): {self.reason}"

@@ -128,11 +128,12 @@ def bar_what_explains_nothing(
         return None
     gone = {r.added.key for r in new if r.added is not None}
     search.progress(f"set aside: {barred}")
-    return replace(
+    state = replace(
         state,
         supported=tuple(r for r in state.supported if r.candidate.key not in gone),
         barred=(*state.barred, barred),
     )
+    return state.with_floor_limited(criteria) if barred.of_readings else state
 
 
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:

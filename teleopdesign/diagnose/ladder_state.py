@@ -123,6 +123,19 @@ class LadderState:
         return frozenset(one.candidate.key for one in (*self.set_aside, *self.barred))
 
     @property
+    def weakening(self) -> frozenset[tuple[str, str]]:
+        """Barred effects, with their places, that only weaken errors of the readings."""
+        return frozenset(one.candidate.key for one in self.barred if one.of_readings)
+
+    def with_floor_limited(self, criteria: Criteria) -> LadderState:
+        """The state with the noise floor that its candidates allow, without `weakening`."""
+        drawn = self.floors.drawn
+        bounded = limit_noise_floor(drawn, self.fit, self.ranking, self.weakening)
+        first = bounded if self.step == 1 else self.first
+        allowed = allowed_floor(bounded, first, self.rungs[0].fit, criteria=criteria)
+        return replace(self, floors=Floors(drawn, allowed), first=first)
+
+    @property
     def fit(self) -> Fit:
         """The last rung's fit."""
         return self.rungs[-1].fit
@@ -196,7 +209,8 @@ def look(
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn, criteria=criteria)
     ranking = search.rank(here, step=len(rungs), worth=worth)
-    bounded = limit_noise_floor(drawn, here, ranking)
+    weakening = () if before is None else before.weakening
+    bounded = limit_noise_floor(drawn, here, ranking, weakening)
     first = bounded if before is None else before.first
     floors = Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria))
     tone = best_tone(here, prepared)

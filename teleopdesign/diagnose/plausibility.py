@@ -131,6 +131,7 @@ def record_facts(
         film=_film(body, speed, numbers),
         body=numbers,
         duration=max(float(np.ptp(m.time)) for m in motions),
+        sweep=max(float(np.ptp(m.position)) for m in motions),
         places=np.concatenate([m.position[m.direction != 0] for m in motions]),
         speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )

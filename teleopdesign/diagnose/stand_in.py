@@ -78,17 +78,32 @@ def stands_in_for_readings(
     """The effect of a rung that only weakens the error of sensor readings, with the reason.
 
     before, after: the noise floors of the two models, as drawn
-    returns: None where the effect leaves fewer noise floors too, or only noise
+    Where the readings alone explain the error of the base, an effect that weakens their error must
+    leave surely fewer noise floors.
+    returns: None where the effect leaves fewer noise floors too, or only noise of a base that
+        leaves more
     """
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    # a noise floor is known within a fifth
-    if leaves <= criteria.adequate or criteria.weakened * leaves <= left:
+    if _is_of_readings(left, criteria) and after.drawn < criteria.weakened * before.drawn:
+        explains = leaves <= criteria.weakened * left
+    else:
+        explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left
+    if explains:
         return None
     reason = (
         f"lowers the error from the readings of the sensors, from {100 * before.drawn:.2g} to "
         f"{100 * after.drawn:.2g} % of the force, but leaves {leaves:.2g} noise floors, "
         f"{left:.2g} without it"
     )
-    return SetAside(rung.added, rung.fit.check_error, reason)
+    return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
+
+
+def _is_of_readings(floors: float, criteria: Criteria) -> bool:
+    """Whether the readings alone explain an error of so many noise floors.
+
+    A floor is known to a fifth. Where even less is left, the values of the model make more of the
+    readings' errors than these can contain, and say nothing.
+    """
+    return criteria.weakened <= floors <= criteria.adequate

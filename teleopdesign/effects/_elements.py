@@ -41,16 +41,18 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
 
 
 def elements_slip(p: Any, facts: RecordFacts) -> str | None:
-    """A sentence where the softest element slips one way only, or as `slip_is_observable`."""
+    """A sentence where the softest element does not slip both ways, or as `slip_is_observable`."""
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
     softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
-    if softest and 2.0 * ways[softest] > facts.travel > max(ways.values()):
+    travel = min(facts.travel, facts.sweep)
+    if softest and 2.0 * ways[softest] > travel:
         stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
+        seldom = "never slips" if ways[softest] > travel else "slips in one direction only"
         return (
-            f"the softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
-            f"in one direction only within the travel of {facts.text(facts.travel, 'position')}: "
+            f"the softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, "
+            f"{seldom} within the travel of {facts.text(travel, 'position')}: "
             "the record shows no loop, and the effect imitates a spring"
         )
     return slip_is_observable("the softest element", list(ways.values()), facts)

@@ -57,6 +57,8 @@ class RecordFacts:
         body that depend on the velocity alone, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     duration: of the longest record (s)
+    sweep: largest range of its positions in one stretch of a record: hidden states, such as the
+        deflection of a bristle, begin anew at each stretch
     places, speeds: (n,) of the samples in which the body slides, over all records
     """
 
@@ -69,6 +71,7 @@ class RecordFacts:
     film: float
     body: Mapping[str, float]
     duration: float = float("inf")
+    sweep: float = float("inf")
     acting: float = float("inf")
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
@@ -118,12 +121,13 @@ def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) 
             f"{subject} deflects once only where the motion never reverses: the record shows no "
             "loop, and the effect imitates the beginning of friction in a record"
         )
+    travel = min(facts.travel, facts.sweep)
     # a deflection of less than half a step is never read
-    if any(0.5 * facts.step < way < facts.travel for way in ways):
+    if any(0.5 * facts.step < way < travel for way in ways):
         return None
-    if max(ways, default=0.0) >= facts.travel:
-        travel = facts.text(facts.travel, "position")
-        return f"{subject} never slips within the travel of {travel}: the effect imitates a spring"
+    if max(ways, default=0.0) >= travel:
+        within = facts.text(travel, "position")
+        return f"{subject} never slips within the travel of {within}: the effect imitates a spring"
     step = facts.text(facts.step, "position")
     return (
         f"{subject} deflects less than steps of {step} can show: the effect imitates sgn friction"

@@ -43,8 +43,13 @@ _WEIGHT_AT_LEVER = re.compile(
 _OF_TWO = re.compile(
     r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
 )
-#: an object of a field bus: "0x6077:00"
-_ADDRESS = re.compile(r"\b0[xX][0-9A-Fa-f]{2,8}\b")
+#: an object of a field bus: "0x6077:00"; and the words for those of drives (CiA 402)
+_ADDRESS = re.compile(r"\b0[xX]([0-9A-Fa-f]{2,8})(?::\d+)?\b")
+_OBJECTS = {
+    "6062": "target position", "6063": "position", "6064": "position", "606b": "target velocity",
+    "606c": "velocity", "6071": "target torque", "6074": "target torque", "6077": "torque",
+    "6078": "current", "607a": "target position", "60ff": "target velocity",
+}  # fmt: skip
 #: "angle / °", as ISO 80000 writes it: with spaces, so that "pos/vel" is a name
 _SLASH = re.compile(r"\s/\s+\(?([^()/]+(?:/[^()/]+)?)\)?\s*$")
 _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
@@ -178,9 +183,7 @@ def why_no_unit(name: str, said: str | None, quantity: str, axis: str) -> str:
     unit = unit_of_text(text)
     if unit is None:
         return f"{text!r}, of {name!r}, is no unit that is known"
-    lever = quantity == "force" and axis == "revolute" and measures(unit, "force")
-    arm = f": `scale` in experiment.toml is the torque of one {text}" if lever else ""
-    return f"{text!r}, of {name!r}, is no unit of {noun_of(quantity, axis)}{arm}"
+    return f"{text!r}, of {name!r}, is no unit of {noun_of(quantity, axis)}"
 
 
 def unit_of_text(text: str) -> str | None:
@@ -218,6 +221,8 @@ def _suits(unit: str, quantity: str, axis: str) -> bool:
 def words_of(name: str) -> list[str]:
     """The words of a name in lower case, without accents: "Actual_Pos2 (deg)" -> actual, pos."""
     bare = _ADDRESS.sub(" ", bare_name(name))
+    if not bare.strip() and (address := _ADDRESS.search(name)) is not None:
+        bare = _OBJECTS.get(address[1].lower(), "")
     bare = re.sub(r"([a-z])([A-Z])", r"\1 \2", bare)
     letters = unicodedata.normalize("NFD", bare.lower())
     plain = "".join(c for c in letters if not "\u0300" <= c <= "\u036f")

@@ -1,11 +1,13 @@
 """From the columns of a log to a signal in SI: scale, offset, sign, wraps, gears, currents, counts.
 
-    signal = sign * unit * (torque constant) * (gear ratio)^(+-1) * (sum of scale * column + offset)
+    signal = sign * unit * (torque constant) * (lever arm) * (gear ratio)^(+-1)
+             * (sum of scale * column + offset)
 
 A column that wraps (an angle within one turn, a counter) is unwrapped first. `gear_ratio` is the
 number of motor turns per turn of the joint: a position or velocity read at the motor is divided by
 the ratio, a force at the motor is multiplied by it. On a prismatic axis the ratio has a unit, `{
-value = 1.257, unit = "rad/mm" }`.
+value = 1.257, unit = "rad/mm" }`. On a revolute axis a force in N acts at a `lever_arm`, such as a
+handle at `{ value = 70, unit = "mm" }` from the axis.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, quote
-from ..quantity import converting_factor, si_factor, to_si
+from ..quantity import converting_factor, is_unit, measures, si_factor, to_si
 from .toml_table import Table, describe_toml_value
 
 Array = NDArray[np.float64]
@@ -29,7 +31,7 @@ COUNTS = ("counts", "count", "ticks", "increments")
 LONGEST_DELAY = 0.2
 #: keys of a channel that say how its column becomes a signal
 KEYS = (
-    "scale", "offset", "sign", "unwrap", "torque_constant", "gear_ratio", "count",
+    "scale", "offset", "sign", "unwrap", "torque_constant", "lever_arm", "gear_ratio", "count",
     "counts_per_turn", "delay",
 )  # fmt: skip
 
@@ -101,6 +103,9 @@ def conversion_of(
             )
         value, written = _constant(table, "torque_constant", f"{_force(axis)}/A")
         constant, names = constant * value, [*names, f"({written})"]
+    if "lever_arm" in table.content:
+        constant = constant * _lever_arm(table, kind=kind, axis=axis, quantity=quantity)
+        names = [*names, "(m)"]
     if "gear_ratio" in table.content:
         if kind not in ("force", "position", "velocity"):
             raise ExperimentError(
@@ -194,6 +199,23 @@ def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
     return value, unit
 
 
+def _lever_arm(table: Table, *, kind: str, axis: str, quantity: str) -> float:
+    """Distance in m from the axis at which a force in N acts."""
+    if kind != "force" or axis != "revolute":
+        place = f"{quote(quantity)} of a {axis} axis"
+        raise ExperimentError(
+            f"{table.where('lever_arm')}: found on {place}, expected on a force of a revolute axis"
+        )
+    value, unit = _constant(table, "lever_arm", "m")
+    arm = to_si(value, unit, quantity="position", where=table.where("lever_arm"))
+    if not arm > 0:
+        raise ExperimentError(
+            f"{table.where('lever_arm')}: found {value:g}, expected above 0; a force that acts the "
+            "other way has sign = -1"
+        )
+    return arm
+
+
 def _unit_of_count(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
     """Unit of one count and its size in that unit; for a unit other than counts, the unit and 1."""
     keys = [key for key in ("count", "counts_per_turn") if key in table.content]
@@ -224,6 +246,11 @@ def _without_constant(unit: str, kind: str, axis: str, where: str) -> float:
             raise ExperimentError(
                 f"{where}: found {quote(unit)}, expected beside a current "
                 f'torque_constant = {{ value = ..., unit = "{_force(axis)}/A" }} of the motor'
+            ) from None
+        if kind == "force" and axis == "revolute" and is_unit(unit) and measures(unit, "force"):
+            raise ExperimentError(
+                f"{where}: found {quote(unit)}, expected a torque, or beside a force "
+                'lever_arm = { value = ..., unit = "m" }: its distance from the axis'
             ) from None
         raise problem
 

@@ -217,13 +217,17 @@ def channel_table(
         return table
     quantity = BODY_QUANTITIES[key]
     said = units.get(column) or log.units.get(column)
-    unit = as_unit(said) if said else unit_in_name(column, quantity, axis)
+    along = "prismatic" if "lever_arm" in table else axis  # a force in N beside an angle
+    unit = as_unit(said) if said else unit_in_name(column, quantity, along)
     if unit is None and (text := unfit_unit(column)):
+        instead = f"units={{{column!r}: {unit_of(quantity, axis)!r}}}"
+        if quantity == "force" and unit_in_name(column, quantity) and axis == "revolute":
+            instead = f'{{"column": {column!r}, "lever_arm": {{"value": 0.07, "unit": "m"}}}}'
         raise ExperimentError(
             f"{_WHERE}: {key}: {why_no_unit(column, None, quantity, axis)}: state it, such as "
-            f"units={{{column!r}: {unit_of(quantity, axis)!r}}}, if {text!r} is to be read so"
+            f"{instead}, if {text!r} is to be read so"
         )
-    return {**table, "unit": unit or unit_of(quantity, axis)}
+    return {**table, "unit": unit or unit_of(quantity, along)}
 
 
 def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) -> dict[str, Any]:

@@ -40,6 +40,21 @@ def motor_constant(text: str, *, where: str) -> tuple[float, str]:
     return parts[0], f"{force}/{per}"
 
 
+def lever_arm(text: str, *, where: str) -> tuple[float, str]:
+    """Distance of a force from the axis, such as "70 mm".
+
+    raises ExperimentError: no number above 0, or no unit of a length
+    """
+    parts = split_value(text)
+    if parts is None or not parts[0] > 0 or not is_unit(parts[1] or "?"):
+        raise ExperimentError(f'{where}: found {text!r}, expected a length such as "70 mm"')
+    if not measures(parts[1], "position", "prismatic"):
+        raise ExperimentError(
+            f'{where}: found the unit {parts[1]!r}, expected one of a length such as "mm"'
+        )
+    return parts
+
+
 def plain_number(text: str, *, where: str) -> float:
     """A number without a unit; a decimal comma is accepted.
 

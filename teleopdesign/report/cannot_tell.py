@@ -28,7 +28,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     """Effects, parameters and candidates that the records cannot decide; may be empty."""
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
-        *_untold(diagnosis),
+        *_list_undetermined(diagnosis),
         *_set_aside(diagnosis),
         *_findings_at_bound(diagnosis),
         *_clock(diagnosis),
@@ -42,7 +42,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     return (*groups, *rest)
 
 
-def _untold(diagnosis: Diagnosis) -> list[Finding]:
+def _list_undetermined(diagnosis: Diagnosis) -> list[Finding]:
     """Parameters without a determined value, of effects that are certain."""
     return [
         Finding("values that are not determined", "warning", f"{one}.")

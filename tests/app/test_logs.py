@@ -123,6 +123,7 @@ def test_all_that_a_survey_may_be_told_has_a_field_on_the_page(bare):
     answers = {
         **STATED,
         "axis": "revolute",
+        "lever arm": "70 mm",
         "gear ratio": "2",
         "counts per turn": "4096",
         "sample rate (Hz)": "500,0",

@@ -163,7 +163,7 @@ def test_a_ringing_tip_beside_the_mains_may_be_a_hum(hertz, ratio, is_said):
 
 
 @pytest.mark.parametrize("name", sorted(UNTOLD))
-def test_what_records_never_carried_is_said_to_be_untold(name):
+def test_what_records_never_carried_is_said_to_be_undetermined(name):
     told, beyond, known = UNTOLD[name]
     effect, facts = EFFECTS[name], replace(FACTS, duration=60.0)
     assert effect.undetermined(SimpleNamespace(**told), facts) is None
@@ -172,7 +172,7 @@ def test_what_records_never_carried_is_said_to_be_untold(name):
     assert effect.plausible is None or effect.plausible(SimpleNamespace(**beyond), facts) is None
 
 
-def test_every_effect_that_can_be_untold_is_tried_on_both_sides():
+def test_every_effect_that_has_a_rule_on_undetermined_values_is_checked_on_both_sides():
     by_travel = {"spring"}  # not by its parameters: tests/effects/test_gravity.py
     assert {n for n, e in EFFECTS.items() if e.undetermined} == set(UNTOLD) | by_travel
 
@@ -270,6 +270,7 @@ def test_the_facts_are_those_of_all_records(case):
     positions = [s.motion.position for s in prepared.stretches]
     low, high = min(x.min() for x in positions), max(x.max() for x in positions)
     assert facts.travel == pytest.approx(high - low)
+    assert facts.sweep == pytest.approx(max(np.ptp(x) for x in positions))
     assert facts.body == {"inertia": model.parameters["device.inertia"].value}
     assert 0.0 < facts.stroke < 3.0 and facts.step > 0.0 and facts.force > 0.0
 

@@ -144,7 +144,9 @@ def test_an_effect_whose_product_is_sure_is_there_though_each_parameter_is_open(
     assert not is_identifiable(wide, little_more_left(diagnosis.rungs[0], wide).fit)
 
 
-def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, experiment, tmp_path):
+def test_what_was_set_aside_or_is_undetermined_stands_in_text_and_answer(
+    diagnosis, experiment, tmp_path
+):
     added, gone = stribeck_of(diagnosis), Candidate(EFFECTS["backlash"], "device")
     whole = replace(
         diagnosis,
@@ -218,7 +220,7 @@ def test_a_product_is_said_where_one_of_it_is_open_and_it_is_known_twice_as_well
     assert sentence.startswith(said) and bool(sentence) == bool(said)
 
 
-def test_what_is_untold_is_said_of_each_effect_that_the_last_model_has_in_order(monkeypatch):
+def test_what_is_undetermined_is_said_of_each_effect_that_the_last_model_has_in_order(monkeypatch):
     table = Table(lambda names: 1.0)
     rungs = table.rungs("bias", "spring", "viscous")
     by_effect = {"bias": "a level at rest", "viscous": None, "spring": None}

@@ -1,11 +1,13 @@
 """What an effect holds its parameters against: records of one body, and elements that slip."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from teleopdesign.effects import RecordFacts
+from teleopdesign.effects import EFFECTS, RecordFacts
 from teleopdesign.effects._elements import softest_first
-from teleopdesign.effects._facts import follows_gravity, speeds_vary_by_place
+from teleopdesign.effects._facts import follows_gravity, slip_is_observable, speeds_vary_by_place
 
 TIME = np.linspace(0.0, 3.0, 3000)
 
@@ -44,3 +46,19 @@ def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
     assert [values[f"stiffness_{i}"] for i in (1, 2, 3, 4)] == [3.0, 9.0, 27.0, 1.0]
     levels = [values[f"level_{i}"] for i in (2, 3, 4)]
     assert levels == pytest.approx([0.4999, 0.3, 1e-4])
+
+
+def test_what_slips_within_no_stretch_of_a_record_is_a_spring_though_two_records_lie_apart():
+    """Of a pendulum that swung to each side in a record of its own, a hysteresis was named."""
+    assert slip_is_observable("the bristle", [0.8], facts(travel=2.0)) is None
+    said = slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=0.7))
+    assert said is not None and "never slips within the travel of 0.7 rad" in said
+    soft = {"stiffness_1": 0.5, "stiffness_2": 5.0, "stiffness_3": 50.0, "stiffness_4": 500.0}
+    values = SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0)  # element 1: 0.8 rad
+    plausible = EFFECTS["maxwell_slip"].plausible
+    assert plausible(values, facts(travel=2.0, sweep=2.0)) is None
+    said = plausible(values, facts(travel=2.0, sweep=1.0))
+    assert said is not None and "in one direction only within the travel of 1 rad" in said
+    soft["stiffness_1"] = 0.1  # 4 rad: beside others that slip, this one is a spring
+    said = plausible(SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0), facts())
+    assert said is not None and "never slips within the travel of 1 rad" in said

@@ -92,15 +92,10 @@ def test_a_log_in_inches_and_pounds_is_read_in_metres_and_newtons():
 
 
 def test_a_guessed_unit_says_what_stands_in_its_place():
-    """'states no unit' was said of a hand's force in N beside an angle, and 1 N was 1 N m."""
-    survey = look({"t": T, "angle [deg]": np.rad2deg(Q), "u [foo]": U, "Hand [N]": U + 0.01 * Q})
+    survey = look({"t": T, "angle [deg]": np.rad2deg(Q), "u [foo]": U})
     assert (
         "'foo', of 'u [foo]', is no unit that is known"
         in (survey.guesses["channels.actuator_force.unit"])
-    )
-    assert (
-        "'N', of 'Hand [N]', is no unit of a torque: `scale` in experiment.toml is the "
-        in (survey.guesses["channels.interaction_force.unit"])
     )
 
 
@@ -108,7 +103,9 @@ def test_arrays_with_a_unit_that_does_not_fit_are_refused():
     """They were silently read in SI: inches as metres."""
     data = {"t": T, "q": Q, "u": U, "Hand [N]": U}
     words = {"axis": "revolute", "position": "q", "actuator_force": "u", "inertia": 0.02}
-    with pytest.raises(ExperimentError, match=r"'N', of 'Hand \[N\]', is no unit of a torque"):
+    with pytest.raises(
+        ExperimentError, match=r"'N', of 'Hand \[N\]', is no unit of a torque: .*lever_arm"
+    ):
         td.experiment(data, interaction_force="Hand [N]", **words)
     lever = {"column": "Hand [N]", "unit": "N*m", "scale": 0.07}
     scaled = td.experiment(data, interaction_force=lever, **words)

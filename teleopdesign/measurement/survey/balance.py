@@ -2,8 +2,9 @@
 
     k command + hand = m a + c sgn(v) + b v + constant
 
-k is one if both are forces at the joint, the motor constant if the command is a current, and the
-gear ratio if the command is a torque at the motor.
+k is one if both are forces at the joint, the motor constant if the command is a current, the gear
+ratio if the command is a torque at the motor, and the inverse of the lever arm if the hand's force
+is in N beside an angle.
 """
 
 from __future__ import annotations
@@ -108,10 +109,10 @@ def _is_within(known: str, word: str) -> bool:
 
 
 def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
-    """Guess the gear ratio and the motor constant if neither the user nor the log states them.
+    """Guess gear ratio, motor constant and lever arm if neither the user nor the log states them.
 
-    Both are the factor by which the command balances the force of the hand. If this factor is far
-    from one and neither is guessed, a note reports it.
+    Each follows from the factor by which the command balances the force of the hand. If this
+    factor is far from one and none of them is guessed, a note reports it.
     """
     said = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
     is_motors = choices.gear_ratio is None and all(
@@ -129,8 +130,15 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
     scale, error = _command_scale(survey, motion)
     if error > KNOWN * scale:
         return
+    at_lever = [
+        key
+        for key in ("actuator_force", "interaction_force")
+        if f"channels.{key}.lever_arm" in survey.guesses
+    ]
     if _has_placeholder(survey):
         _guess_constant(survey, scale, error)
+    elif len(at_lever) == 1:
+        _guess_lever_arm(survey, at_lever[0], scale, error)
     elif not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
         factor = with_standard_error(scale, error)
         force, hand = (_column_of(survey, f"{k}_force") for k in ("actuator", "interaction"))
@@ -178,10 +186,30 @@ def _guess_constant(survey: Survey, ratio: float, error: float) -> None:
     per_base = si_factor(constant["unit"].rpartition("/")[0], quantity="force", axis=survey.axis)
     value, error = ratio / per_base * PLACEHOLDER, error / per_base * PLACEHOLDER
     constant["value"] = float(f"{value:.4g}")
-    doubt = "channels.interaction_force.unit" in survey.guesses
+    doubt = ""
+    if "channels.interaction_force.unit" in survey.guesses:
+        doubt = f", if the latter is in {hand['unit']}"
+    elif "channels.interaction_force.lever_arm" in survey.guesses:
+        doubt = f", if the latter acts at {PLACEHOLDER:g} m from the axis"
     survey.guesses["channels.actuator_force.torque_constant"] = (
         f"{with_standard_error(value, error)} {constant['unit']}: with it, {force['column']!r} "
-        f"balances {hand['column']!r}" + (f", if the latter is in {hand['unit']}" if doubt else "")
+        f"balances {hand['column']!r}{doubt}"
+    )
+
+
+def _guess_lever_arm(survey: Survey, key: str, scale: float, error: float) -> None:
+    """Set the lever arm of the one force in N from the balance with the other, a torque.
+
+    scale: factor of the command in the balance, with the placeholder in place of the lever arm
+    """
+    if key == "interaction_force":
+        scale, error = 1.0 / scale, error / scale**2
+    names = [_column_of(survey, k) for k in (key, "actuator_force", "interaction_force")]
+    other = names[2] if names[0] == names[1] else names[1]
+    survey.channels[key]["lever_arm"]["value"] = float(f"{scale * PLACEHOLDER:.4g}")
+    survey.guesses[f"channels.{key}.lever_arm"] = (
+        f"{with_standard_error(scale * PLACEHOLDER, error * PLACEHOLDER)} m: at this distance from "
+        f"the axis, {names[0]!r} balances {other!r}"
     )
 
 

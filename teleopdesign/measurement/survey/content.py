@@ -67,7 +67,8 @@ class Choices:
     """What the user states: columns, units, axis, constants; None: to be detected.
 
     interaction_force: "none" if the log has none;  units: column -> unit
-    torque_constant: (value, unit);  gear_ratio: turns of the motor per turn of the joint
+    torque_constant: (value, unit);  lever_arm: (value, unit) of a force in N beside an angle
+    gear_ratio: turns of the motor per turn of the joint
     counts_per_turn: of the encoder;  sample_rate: Hz
     """
 
@@ -78,6 +79,7 @@ class Choices:
     interaction_force: str | None = None
     units: Mapping[str, str] = field(default_factory=dict)
     torque_constant: tuple[float, str] | None = None
+    lever_arm: tuple[float, str] | None = None
     gear_ratio: float | None = None
     counts_per_turn: float | None = None
     sample_rate: float | None = None

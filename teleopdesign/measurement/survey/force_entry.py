@@ -1,30 +1,45 @@
-"""One force of a log as an entry of experiment.toml: its unit, and the motor constant."""
+"""One force of a log as an entry of experiment.toml: unit, motor constant or lever arm."""
 
 from __future__ import annotations
 
 import re
 from typing import Any
 
-from ...quantity import measures, unit_of
-from ..column_names import unit_in_name, why_no_unit
+import numpy as np
+
+from ...quantity import is_unit, measures, unit_of
+from ..column_names import unit_in_name, why_no_unit, words_of
 from ..conversion import conversion_of
 from ..toml_table import Table
 from .acting import names_current, names_torque
-from .content import Choices, Survey
+from .content import Array, Choices, Survey
+from .position import TORQUES
 from .remarks import torque_constant_in
 
-#: N*m/A: constant of a motor if nothing states it
+#: N*m/A or m: constant of a motor, or lever arm of a force beside an angle, if nothing states it
 PLACEHOLDER = 1.0
-#: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
-PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
+#: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille", and objects
+#: of drives on a field bus (CiA 402), which are in thousandths
+PER_CENT = re.compile(r"[%‰]|per ?mill?e|\b0x60(?:71|74|77|78)\b", re.I)
+#: bits of analog inputs; and part of the middle by which their mean may lie beside it: offsets of
+#: amplifiers and a mean force. A count of something else lies there by chance once in ten
+INPUT_BITS, NEAR_MIDDLE = (8, 10, 12, 14, 16), 0.1
 
 
 def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
-    """The channel table of a force: its column and unit, and for a current the motor constant."""
+    """The channel table of a force: column, unit, and the motor constant of a current or the lever
+    arm of a force beside an angle.
+    """
     axis = survey.axis
     # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
     unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
     entry: dict[str, Any] = {"column": name}
+    if unit is None and (middle := _middle_of_input(survey.columns[name].readings)):
+        entry["offset"] = -middle
+        survey.guesses[f"channels.{key}.offset"] = (
+            f"{-middle:g}: {name!r} holds whole numbers about {middle:g} and none below 0, as an "
+            "analog input does whose middle is no force"
+        )
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
         if not names_torque(name):
             unit = choices.torque_constant[1].rpartition("/")[2]
@@ -49,6 +64,8 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
             survey.guesses[f"channels.{key}.torque_constant"] = why
         entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
         return entry
+    if axis == "revolute" and (newton := _unit_at_lever(name, unit)):
+        return {**entry, "unit": newton, "lever_arm": _lever_arm(survey, name, key, choices)}
     if unit is None or not measures(unit, "force", axis):
         unit = unit_of("force", axis)
         why = why_no_unit(name, survey.columns[name].unit, "force", axis)
@@ -61,6 +78,35 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
             "--force COLUMN selects a current"
         )
     return {**entry, "unit": unit}
+
+
+def _middle_of_input(readings: Array) -> float:
+    """The middle of an analog input's range about which the readings lie; 0.0: no such input."""
+    values = readings[np.isfinite(readings)]
+    if not len(values) or values.min() < 0 or not np.array_equal(values, np.round(values)):
+        return 0.0
+    bits = next((n for n in INPUT_BITS if values.max() < 2**n), None)
+    middle = 0.0 if bits is None else 2.0 ** (bits - 1)
+    return middle if abs(float(np.mean(values)) - middle) < NEAR_MIDDLE * middle else 0.0
+
+
+def _unit_at_lever(name: str, unit: str | None) -> str | None:
+    """Unit of a force beside an angle, such as N, by the column's unit or name; None: no force."""
+    if unit is None and not TORQUES.intersection(words_of(name)):
+        unit = unit_in_name(name, "force")
+    return unit if unit and is_unit(unit) and measures(unit, "force") else None
+
+
+def _lever_arm(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
+    """The lever arm of a force beside an angle as in experiment.toml: stated, or a placeholder."""
+    arm = choices.lever_arm
+    if arm is None:
+        arm = (PLACEHOLDER, "m")
+        survey.guesses[f"channels.{key}.lever_arm"] = (
+            f"{arm[0]:g} {arm[1]} is a placeholder: {name!r} is a force beside an angle, and its "
+            "distance from the axis is not known"
+        )
+    return {"value": arm[0], "unit": arm[1]}
 
 
 def force_to_si(survey: Survey, key: str) -> float:

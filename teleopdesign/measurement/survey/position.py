@@ -37,10 +37,11 @@ from .derivative import (
 )
 from .remarks import counts_per_turn_in
 
-#: words in names of a counter's column; and the range, in steps of the column, above which whole
-#: numbers are no rounded angle
+#: words in names of counters, and of angles, which may be whole degrees of many turns; and the
+#: range above which whole numbers are counts: of a counter by its name, and of any other name
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
-MOST_ANGLE = 50
+ANGLES = frozenset("angle winkel theta phi angulo angolo 角度 각도 угол".split())
+MOST_ANGLE, MOST_DEGREES = 50, 1000
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
 #: names of drives that report positions in turns; and words for rotating parts
@@ -265,12 +266,13 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
 
 
 def _counts(column: SurveyedColumn) -> bool:
-    """Whether a column is the counter of an encoder, by its name and its whole numbers."""
+    """Whether a column without a unit is the counter of an encoder, by its whole numbers."""
     values = column.readings[np.isfinite(column.readings)]
-    named = COUNTERS & set(words_of(column.name))
-    if not named or not np.all(values == np.round(values)):
+    if not np.all(values == np.round(values)):
         return False
-    return float(np.ptp(values)) > MOST_ANGLE
+    words = set(words_of(column.name))
+    most = MOST_ANGLE if COUNTERS & words else math.inf if ANGLES & words else MOST_DEGREES
+    return float(np.ptp(values)) > most
 
 
 def _step_of_readings(values: Array) -> float:
