@@ -80,7 +80,7 @@ def described(found: Any, output: Path, name: str) -> dict[str, Any]:
     row = {
         "verdict": found.verdict,
         "ladder": [
-            {"added": rung.said or None, "check_error": rung.fit.check_error}
+            {"added": rung.title or None, "check_error": rung.fit.check_error}
             for rung in found.rungs
         ],
         "missing": [str(c) for c in found.missing],
@@ -94,7 +94,7 @@ def described(found: Any, output: Path, name: str) -> dict[str, Any]:
     left = where_it_fails(found.after, found.prepared, found.floor)[:SENTENCES]
     return row | {
         "indistinguishable": [[str(c) for c in group] for group in found.groups],
-        "cannot_tell": [str(one) for one in found.untold],
+        "cannot_tell": [str(one) for one in found.undetermined],
         "left": [one.sentence for one in left],
     }
 

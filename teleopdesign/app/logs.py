@@ -73,7 +73,8 @@ class Preview:
         ]
         if not guessed:
             return ""
-        return f"No name says the unit of {', '.join(guessed)}: type it where the guess is wrong."
+        names = ", ".join(guessed)
+        return f"No column name states the unit of {names}: type the unit if the guess is wrong."
 
     def spans(self) -> FitAndCheck:
         """The proposed fit and check spans, s from the first row, within the log."""

@@ -50,7 +50,7 @@ def _(TeleopDesignError, files, folder, mo, set_names, set_note):
             except TeleopDesignError as error:
                 set_note(str(error))
             else:
-                set_note(f"{name} is copied into the folder; what is in it stands below")
+                set_note(f"{name} is copied into the folder; its content stands below")
         set_names(lambda n: n + 1)
 
     kinds = f"Drop a log here, or choose one ({files.endings()})"
@@ -142,7 +142,7 @@ def _(
     def make(shown, spans):
         try:
             made = logs.make_experiment(folder, shown, spans)
-            set_note(f"{made} is made: open it above")
+            set_note(f"{made} is created: open it above")
         except TeleopDesignError as error:
             set_note(str(error))
         set_names(lambda n: n + 1)
@@ -168,7 +168,7 @@ def _(choice, folder, mo, names, open_button, views):
             ),
             views.place_side_by_side(choice, open_button)
             if names
-            else mo.md("No experiment here yet. Bring a log of your own:"),
+            else mo.md("The folder has no experiment yet. Add a log:"),
         ]
     )
     return
@@ -212,7 +212,7 @@ def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task, views):
 @app.cell
 def _(log_view, mo, names):
     # nothing else to begin with: not hidden
-    mo.accordion({"Bring a log of your own": log_view}) if names else log_view
+    mo.accordion({"Add a log": log_view}) if names else log_view
     return
 
 

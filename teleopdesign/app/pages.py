@@ -180,7 +180,7 @@ def design_parts(bench: Workbench, body: str) -> list[tuple[str, str, Figure | D
 
 #: what the figures of a design show
 _BEFORE_AND_AFTER = (
-    "What misses of the wanted force in a simulated motion, the friction that is left in slow "
+    "The force error in a simulated motion, the friction that is left in slow "
     "steady motion, and how well the wanted force arrives at a load."
 )
 _BODE = "From the wanted force to the force on a load, in linear theory: 0 dB is perfect."

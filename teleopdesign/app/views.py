@@ -82,7 +82,10 @@ def log_parts(
     make: called by the button with the preview and its spans
     """
     parts = [
-        mo.md("Empty fields: columns are chosen by names and physics. Choose where that is wrong:"),
+        mo.md(
+            "Where a field is empty, the column is chosen by names and physics. Choose another one "
+            "if that is wrong:"
+        ),
         form_rows(form),
     ]
     if understood is None:
@@ -149,8 +152,8 @@ def ladder_view(
             mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
             if bench.candidates
             else mo.md(
-                "What could be added to this model is not fitted yet: "
-                "*Look for what else is missing* does it."
+                "The effects that could be added to this model are not fitted yet: "
+                "*Look for what else is missing* fits them."
             ),
         ]
     )

@@ -70,7 +70,7 @@ def _frames(arm: Chain, position: Array, velocity: Array, acceleration: Array) -
     k = len(arm.links)
     if position.shape[0] != k or not position.shape == velocity.shape == acceleration.shape:
         raise ModelError(
-            f"arm: found a motion of {position.shape[0]} joints, expected {k} with n samples each"
+            f"found a motion of {position.shape[0]} joints, expected {k}, with n samples each"
         )
     n = position.shape[1]
     here = _Frames(

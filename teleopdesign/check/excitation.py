@@ -90,9 +90,9 @@ def _summary(
     for v in hidden:
         reasons.setdefault(_reason(v, poor, base.model), []).append(v.candidate.effect.name)
     for c in never:
-        reasons.setdefault(poor.get("position", "the model has no place for it"), []).append(
-            c.effect.name
-        )
+        reasons.setdefault(
+            poor.get("position", "the model has no place for such an effect"), []
+        ).append(c.effect.name)
     parts = []
     if shown:
         parts.append("can show\n" + _rows([_describe_smallest(v, base.model) for v in shown]))
@@ -112,7 +112,7 @@ def _summary(
     if base.fit_error > CRITERIA.adequate * floor:
         parts.append(
             f"these limits hold above the noise floor, {100 * floor:.2g} % of the force; as long "
-            f"as {100 * base.fit_error:.2g} % are unexplained, small effects hide in them."
+            f"as {100 * base.fit_error:.2g} % are unexplained, small effects may be hidden in them."
         )
     return Finding(
         "what the record can show",
@@ -163,18 +163,18 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
     """Why an effect is invisible: its numbers, and the signals that the motion lacks."""
     signals = list(list_needed_signals(v.candidate.effect))
     if v.silent:
-        why = "it makes no force here"
+        why = "no force in this motion"
     elif v.unique_share < RARE and v.imitated:
         imitated = [n.partition(".")[2] for n in v.imitated]
-        why = "the same as " + " with ".join(imitated)
+        why = "same force as " + " with ".join(imitated)
         body = model.body(v.candidate.at)
         for effect in body.effects:
             if any(n.startswith(f"{effect.name}.") for n in imitated):
                 signals += list_needed_signals(effect)
     elif math.isinf(v.size):
-        why = "drowned by noise"
+        why = "below the noise"
     else:
-        why = f"it would have to make {100 * v.size:.0f} % of the force"
+        why = f"visible only from {100 * v.size:.0f} % of the force"
     facts = dict.fromkeys(poor[s] for s in signals if s in poor)
     return ": ".join([why, "; ".join(facts)] if facts else [why])
 

@@ -31,11 +31,11 @@ def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> d
     if moving < RARE:
         reasons["velocity"] = f"it moves only {100 * moving:.2g} % of the time"
     elif min(forth, back) < RARE * moving:
-        reasons["velocity"] = "it only ever moves one way"
+        reasons["velocity"] = "it moves in one direction only"
     elif (spread := float(np.std(speed[direction != 0]) / np.mean(speed[direction != 0]))) < STEADY:
-        reasons["velocity"] = f"it moves at one speed, give or take {100 * spread:.2g} %"
+        reasons["velocity"] = f"its speed varies by only {100 * spread:.2g} %"
     if not tells_place_from_time(motions):
-        reasons["position"] = "it never returns to a place"
+        reasons["position"] = "it never returns to an earlier position"
     force = _rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     inertia = model.body(place).parameters["inertia"].value
     share = inertia * _rms([m.lowpassed(m.acceleration) for m in motions]) / force if force else 0.0
@@ -71,7 +71,7 @@ def describe_motion(
         "reversals": float(turns),
         "forth": forth,
         "back": back,
-        "untold": 1.0 - forth - back,
+        "motionless": 1.0 - forth - back,
     }
     missing = "; ".join(dict.fromkeys(poor.values()))
     return Finding(
@@ -79,8 +79,8 @@ def describe_motion(
         "note" if missing else "fine",
         f"travels {np.ptp(x):.3g} {unit_of('position', axis)}, up to {fastest:.3g} "
         f"{unit_of('velocity', axis)}, {turns} reversals; "
-        f"{100 * forth:.0f} % of the time forth, {100 * back:.0f} % back, in the rest the position "
-        f"shows no motion{'. Limits: ' + missing if missing else ''}.",
+        f"{100 * forth:.0f} % of the time forward, {100 * back:.0f} % backward, without visible "
+        f"motion in the rest{'. Limits: ' + missing if missing else ''}.",
         numbers,
         place,
     )

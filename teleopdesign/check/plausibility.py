@@ -165,7 +165,7 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
     quantities = {n: body.parameter(n).quantity for n in ratios}
     causes = slips(body.axis, ratios, quantities) or scale_of_forces(ratios)
     strengths = ", ".join(
-        f"{n} {balance.strengths[n].value:.3g} {body.unit(n)} where the model says "
+        f"{n} {balance.strengths[n].value:.3g} {body.unit(n)} where the model states "
         f"{body.parameters[n].value:.3g} {body.unit(n)}"
         for n in ratios
     )
@@ -173,7 +173,7 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
     yield Finding(
         "units",
         "warning",
-        f"the motion asks for {strengths}: {why}.",
+        f"the motion requires {strengths}: {why}.",
         {f"ratio.{n}": r for n, r in ratios.items()},
         balance.body,
     )
@@ -190,7 +190,7 @@ def _force_scale(balance: ForceBalance, ratios: Mapping[str, float]) -> Iterator
     yield Finding(
         "units",
         "note",
-        f"the motion asks for {factor:.3g} times the model's {', '.join(ratios)}, all alike: where "
+        f"the motion requires {factor:.3g} times the model's {', '.join(ratios)}, all alike: where "
         f"these are known, the forces are {factor:.3g} times too large, as by a torque constant or "
         f"a gear ratio; write scale = {1 / factor:.4g} at channels.actuator_force.",
         {"factor": factor, "spread": spread},
@@ -214,7 +214,7 @@ def _poor_guess(
     yield Finding(
         "units",
         "note",
-        f"the motion asks for an inertia of {moved:.3g} {unit}, {inertia:.2g} times the model's "
+        f"the motion requires an inertia of {moved:.3g} {unit}, {inertia:.2g} times the model's "
         f"{body.parameters['inertia'].value:.3g} {unit}: {why}.",
         {f"ratio.{n}": r for n, r in ratios.items()},
         balance.body,
@@ -277,13 +277,15 @@ def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Findin
     said = body.parameters["inertia"].value
     numbers = {"inertia": inertia.value, "left": balance.left, "gain": balance.gain.value}
     if not inertia.sure:
-        text = "no sign or unit contradicts the motion, but it tells no inertia"
+        text = (
+            "no sign or unit contradicts the motion, but the motion does not determine an inertia"
+        )
     else:
         text = (
-            f"signs and units agree: the motion asks for an inertia of {inertia.value:.3g} "
-            f"{body.unit('inertia')}, the model says {said:.3g} {body.unit('inertia')}"
+            f"signs and units agree: the motion requires an inertia of {inertia.value:.3g} "
+            f"{body.unit('inertia')}, the model states {said:.3g} {body.unit('inertia')}"
         )
     if balance.other:
         gain = with_standard_error(balance.gain.value, balance.gain.error)
-        text += f"; {balance.other} balances at {gain} times its size"
+        text += f"; {balance.other} balances the other forces with a factor of {gain}"
     return Finding("signs and units", "fine", f"{text}.", numbers, place)

@@ -76,6 +76,6 @@ def scale_of_forces(ratios: Mapping[str, float]) -> list[str]:
     if max(abs(math.log10(r / factor)) for r in ratios.values()) > NEAR:
         return []
     return [
-        f"the forces are about {factor:.1g} times what the model asks for, as by a torque constant "
+        f"the forces are about {factor:.1g} times what the model requires, as by a torque constant "
         "or a gear ratio"
     ]

@@ -18,7 +18,7 @@ def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
     parser.add_argument(
         "--body",
         metavar="NAME",
-        help="one body of a teleoperator, or the joint of an arm (required for an arm)",
+        help="one body of a teleoperator, or one joint of an arm (required for an arm)",
     )
     if pose:
         parser.add_argument(
@@ -26,8 +26,9 @@ def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
             action="append",
             default=[],
             metavar="JOINT=VALUE[UNIT]",
-            help="of an arm: position of a joint at which the chosen one has its inertia; those "
-            "not said are at 0 (without --pose: the mean over the recorded poses; may be repeated)",
+            help="for an arm: position of a joint in the pose for which the inertia of the chosen "
+            "joint is computed (may be repeated); a joint without a position is at 0; without "
+            "--pose, the inertia is the mean over the recorded poses",
         )
 
 

@@ -22,7 +22,7 @@ EXAMPLES = """\
   teleopdesign check joint
   teleopdesign diagnose joint --json answer.json --report report.html
   teleopdesign design answer.json --output design
-`teleopdesign COMMAND --help` says more"""
+`teleopdesign COMMAND --help` shows the arguments of a command"""
 
 
 def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda: False) -> int:
@@ -95,7 +95,8 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--traceback",
         action="store_true",
-        help=f"print Python's traceback of an error too (as the environment's {TRACEBACK}=1 does)",
+        help=f"also print the Python traceback of an error (as with {TRACEBACK}=1 in the "
+        "environment)",
     )
     subparsers = parser.add_subparsers(required=True, metavar="COMMAND")
     for module in pkgutil.iter_modules(commands.__path__):

@@ -15,7 +15,7 @@ def add_folder(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "folder",
         type=Path,
-        help="folder with experiment.toml and its records, or an answer of it (.json)",
+        help="folder with experiment.toml and its records, or an answer for this folder (.json)",
     )
 
 
@@ -27,7 +27,7 @@ def add_effect_files(parser: argparse.ArgumentParser) -> None:
         default=[],
         type=Path,
         metavar="FILE",
-        help="an effect file of your own that takes part (may be repeated)",
+        help="file that defines a further effect (may be repeated)",
     )
 
 
@@ -104,7 +104,8 @@ def add_answer(parser: argparse.ArgumentParser) -> None:
         "--answer",
         type=Path,
         metavar="F",
-        help="an answer of `teleopdesign diagnose --json` for that folder, in place of a diagnosis",
+        help="use this answer of `teleopdesign diagnose --json` for the folder, without a new "
+        "diagnosis",
     )
 
 
@@ -113,8 +114,8 @@ def add_search(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quick",
         action="store_true",
-        help="a first diagnosis: at most two effects, no pairs, no exchanges, windows of long "
-        "records; what was left out is printed",
+        help="a fast first diagnosis: at most two effects, no pairs that mask each other, no "
+        "exchange of effects, parts of long records; prints what was left out",
     )
     add_candidate_options(parser)
 
@@ -122,7 +123,7 @@ def add_search(parser: argparse.ArgumentParser) -> None:
 def add_candidate_options(parser: argparse.ArgumentParser) -> None:
     """Arguments: the effects that are candidates, and the effects that are not."""
     for option, text in (
-        ("--only", "only these effects are candidates (default: all that the model lacks)"),
+        ("--only", "only these effects are candidates (default: all effects that the model lacks)"),
         ("--exclude", "these effects are no candidates"),
     ):
         parser.add_argument(

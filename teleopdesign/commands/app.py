@@ -1,4 +1,4 @@
-"""open a page in the browser: see what a model leaves, add effects, take them back"""
+"""open a page in the browser: see which force a model does not explain, add and remove effects"""
 
 from __future__ import annotations
 
@@ -32,12 +32,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=Path,
         nargs="?",
         default=Path(),
-        help="folder of experiments or logs (the present one); no file outside of it is opened",
+        help="folder of experiments or logs (default: the current folder); files outside of it "
+        "are not opened",
     )
     add_candidate_options(parser)
-    parser.add_argument("--port", type=int, default=0, metavar="N", help="port (a free one)")
     parser.add_argument(
-        "--no-browser", action="store_true", help="print the address, open no browser"
+        "--port", type=int, default=0, metavar="N", help="port (default: a free port)"
+    )
+    parser.add_argument(
+        "--no-browser", action="store_true", help="print the address and open no browser"
     )
 
 

@@ -33,7 +33,7 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser, answer=False)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the findings there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the findings (.json)")
 
 
 def run(options: argparse.Namespace) -> int:

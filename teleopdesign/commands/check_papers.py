@@ -25,9 +25,11 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "statement", nargs="*", help="P1 to P65: these only, with every step and number"
+        "statement",
+        nargs="*",
+        help="P1 to P65: check only these statements, and print every step and number",
     )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the results there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the results (.json)")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -17,7 +17,10 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "--output", type=Path, default=Path("demo"), help="folder for what it writes"
+        "--output",
+        type=Path,
+        default=Path("demo"),
+        help="folder for the files that are written (default: demo)",
     )
 
 
@@ -32,9 +35,7 @@ def run(options: argparse.Namespace) -> int:
         "figure": output / "ladder.png",
         "report": output / "report.html",
     }
-    print(
-        "The experiment that ships with the package, held against a model that lacks an effect:\n"
-    )
+    print("The example experiment of the package, compared with a model that lacks an effect:\n")
     parser = argparse.ArgumentParser()
     diagnose.add(parser)
     arguments = [f"--{name}={path}" for name, path in written.items()]

@@ -29,13 +29,18 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
         "diagram",
-        help="a TOML file, or a shipped one: haptic-interface, world-haptics-2005, ...; or a "
-        "diagnosis's answer (.json), or a folder with experiment.toml, which is diagnosed",
+        help="a diagram: a TOML file, or the name of a diagram of the package (haptic-interface, "
+        "world-haptics-2005, ...); or the answer of a diagnosis (.json); or a folder with "
+        "experiment.toml, which is then diagnosed",
     )
     add_answer(parser)
     add_body(parser, pose=True)
-    parser.add_argument("--latex", action="store_true", help="print LaTeX, an align's body")
-    parser.add_argument("--json", type=Path, metavar="F", help="write expressions and numbers")
+    parser.add_argument(
+        "--latex", action="store_true", help="print LaTeX, for an align environment"
+    )
+    parser.add_argument(
+        "--json", type=Path, metavar="F", help="write expressions and numbers (.json)"
+    )
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="draw the diagram (.svg, .pdf, .png)"
     )
@@ -44,7 +49,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar="V",
-        help="m/s or rad/s at which smoothed friction and schedules are frozen (default 0)",
+        help="speed, m/s or rad/s, at which smoothed friction and gain schedules are replaced by "
+        "constants (default: 0)",
     )
     add_effect_files(parser)
 
@@ -139,5 +145,5 @@ def _numbers(transfers: Transfers, speed: float) -> list[str]:
         above, below = (polynomial_as_text(p[0][0]) for p in (system.num, system.den))
         lines.append(f"{name} = ({above}) / ({below})")
     if gone:
-        lines.append(f"Left out, for they have no linear form: {', '.join(sorted(gone))}")
+        lines.append(f"Left out, because they have no linear form: {', '.join(sorted(gone))}")
     return lines

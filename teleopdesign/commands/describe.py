@@ -1,4 +1,4 @@
-"""describe where a model fails and what no candidate explains"""
+"""describe where a model fails, and the force that no candidate effect explains"""
 
 from __future__ import annotations
 
@@ -34,17 +34,19 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--as-is",
         action="store_true",
-        help="describe where your own model fails, re-estimated, with no effect added",
+        help="describe where the model of experiment.toml fails: its parameters are estimated "
+        "again, no effect is added",
     )
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the description there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the description (.json)")
     parser.add_argument(
         "--effect-file",
         type=Path,
         metavar="NAME.py",
-        help="write the largest dependence as an effect file, to diagnose with",
+        help="write the strongest dependence of the unexplained force as an effect file, for "
+        "`diagnose --effect`",
     )
 
 
@@ -104,7 +106,7 @@ def _write(description: ResidualDescription, path: Path, folder: Path) -> None:
 
     largest = description.largest
     if largest is None:
-        raise ModelError(f"{path}: not written: what is left depends on nothing for sure")
+        raise ModelError(f"{path}: not written: no dependence of the unexplained force is sure")
     part, described = largest
     write_effect(path, part, described, description.prepared)
     command = f"teleopdesign diagnose {shell_word(folder)} --effect {shell_word(path)}"

@@ -20,16 +20,17 @@ if TYPE_CHECKING:
 
 #: assumption -> (unit on the command line, what it is)
 STATED = {
-    "load": ("kg or kg*m^2", "of what stands for the hand (three times the device's inertia)"),
-    "sample_period": ("s", "of the controller (that of the record)"),
-    "delay": ("s", "from a sample to the change of the command (one sample period)"),
-    "bandwidth": ("Hz", "of the low-pass in H (20)"),
-    "velocity_bandwidth": ("Hz", "of the velocity filter (50, at most 0.1/period)"),
-    "errors": ("1", "standard errors that a level may be off to either side (1.96)"),
-    "fraction": ("1", "part of the least level that is cancelled (0.9)"),
-    "delay_factor": ("1", "times its delay that the loop of H bears (3)"),
-    "amplitude": ("m or rad", "of the motion that is predicted (a quarter of the travel)"),
-    "frequency": ("Hz", "of that motion (so that its rms speed is the recorded one)"),
+    "load": "inertia that stands for the hand, kg or kg*m^2 (default: three times the device's)",
+    "sample_period": "sample period of the controller, s (default: that of the record)",
+    "delay": "time from a sample to the change of the command, s (default: one sample period)",
+    "bandwidth": "bandwidth of the low-pass in H, Hz (default: 20)",
+    "velocity_bandwidth": "bandwidth of the velocity filter, Hz (default: 50, at most 0.1/period)",
+    "errors": "half width of the interval of a friction level, in standard errors (default: 1.96)",
+    "fraction": "part of the least friction level that is cancelled (default: 0.9)",
+    "delay_factor": "the loop of H remains stable with X times its delay (default: 3)",
+    "amplitude": "amplitude of the predicted motion, m or rad (default: a quarter of the travel)",
+    "frequency": "frequency of the predicted motion, Hz (default: that with the recorded rms "
+    "speed)",
 }
 
 
@@ -43,16 +44,16 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
     add_body(parser, pose=True)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the designs there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the designs (.json)")
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
     parser.add_argument(
-        "--output", type=Path, metavar="DIR", help="write figures, data and controllers there"
+        "--output", type=Path, metavar="DIR", help="folder for figures, data and controllers"
     )
-    for name, (unit, text) in STATED.items():
+    for name, text in STATED.items():
         option = f"--{name.replace('_', '-')}"
-        parser.add_argument(option, type=float, metavar="X", help=f"{unit}: {text}")
+        parser.add_argument(option, type=float, metavar="X", help=text)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -42,10 +42,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "folder",
         type=Path,
         nargs="+",
-        help="folder with experiment.toml and its records; several with --output",
+        help="folder with experiment.toml and its records; several folders need --output",
     )
     parser.set_defaults(answer=None)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the answer there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the answer (.json)")
     parser.add_argument(
         "--predictions",
         type=Path,
@@ -58,26 +58,26 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--simulate",
         action="store_true",
-        help="also drive the final model by the recorded command alone",
+        help="also simulate the final model, driven by the recorded command alone",
     )
     parser.add_argument(
         "--loop",
         type=float,
         nargs=2,
         metavar=("K", "B"),
-        help="with --simulate: stiffness and damping (SI) of the loop that held the device, of an "
-        "arm: each joint",
+        help="with --simulate: stiffness and damping (SI) of the position loop that held the "
+        "device; in an arm, each joint has such a loop",
     )
     parser.add_argument(
-        "--report", type=Path, metavar="F", help="write a page with everything (.html)"
+        "--report", type=Path, metavar="F", help="write a report of the whole diagnosis (.html)"
     )
     add_search(parser)
     parser.add_argument(
         "--output",
         type=Path,
         metavar="DIR",
-        help="write an answer for each folder there, and table.csv; what is there already and has "
-        "not changed is not diagnosed again",
+        help="write an answer for each folder, and table.csv, to DIR; a folder that has an answer "
+        "in DIR and has not changed is not diagnosed again",
     )
     parser.add_argument(
         "--workers",
@@ -165,9 +165,9 @@ def _suggest_for_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
     lines = []
     for joint, one in diagnosis.joints.items():
         if one.groups:
-            lines.append(f"which of them is it: teleopdesign next {source} --body {joint}")
+            lines.append(f"to distinguish them: teleopdesign next {source} --body {joint}")
         if one.verdict != "model_adequate" and one.more_is_missing:
-            lines.append(f"where it fails: teleopdesign describe {source} --body {joint}")
+            lines.append(f"where the model fails: teleopdesign describe {source} --body {joint}")
     return ["", *lines] if lines else []
 
 
@@ -215,14 +215,16 @@ def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -
     source = shell_word(answer or folder)
     lines = []
     if diagnosis.groups:
-        lines.append(f"what to measure to tell them: teleopdesign next {source}")
+        lines.append(f"what to measure to distinguish them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
-        lines.append(f"where it fails: teleopdesign describe {source}")
+        lines.append(f"where the model fails: teleopdesign describe {source}")
         narrower = narrower_band(diagnosis.after.model, diagnosis.prepared)
         if narrower is not None:
             lines.insert(0, f"{narrower}")
         elif motion_beyond(diagnosis.experiment, diagnosis.prepared.bandwidth) is not None:
-            where = f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the motion goes on"
+            where = (
+                f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the records still show motion"
+            )
             lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
     lines.append(f"a compensation: teleopdesign design {source} --output design")
     return ["", *lines]

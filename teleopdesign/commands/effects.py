@@ -14,7 +14,7 @@ EXAMPLES = """
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("name", nargs="?", help="show this effect's page")
+    parser.add_argument("name", nargs="?", help="name of one effect, whose page is shown")
     add_effect_files(parser)
 
 

@@ -20,9 +20,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
     add_body(parser, pose=True)
-    parser.add_argument("--to", required=True, choices=("mjcf", "urdf"), help="the format")
+    parser.add_argument("--to", required=True, choices=("mjcf", "urdf"), help="format of the file")
     parser.add_argument(
-        "--output", type=Path, metavar="F", help="the file (default: beside the answer)"
+        "--output", type=Path, metavar="F", help="write this file (default: beside the answer)"
     )
 
 

@@ -13,8 +13,12 @@ EXAMPLES = """
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("name", help="emps, psm_insertion, mtm_wrist or hsm150")
-    parser.add_argument("--folder", type=Path, help="where to put it; default: the user's cache")
+    parser.add_argument(
+        "name", help="name of the recording: emps, psm_insertion, mtm_wrist or hsm150"
+    )
+    parser.add_argument(
+        "--folder", type=Path, help="folder for the recording (default: the cache of the user)"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

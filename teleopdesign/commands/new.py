@@ -32,16 +32,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         type=Path,
         metavar="LOG",
-        help="csv of any dialect, xlsx, mat, parquet, npz, h5, bag or mcap; of several, the last "
-        "one is the check record",
+        help="log file: csv of any dialect, xlsx, mat, parquet, npz, h5, bag or mcap; of several "
+        "files, the last one is the check record",
     )
     parser.add_argument("--output", type=Path, metavar="FOLDER", help="folder of the experiment")
     parser.add_argument(
-        "--overwrite", action="store_true", help="replace an experiment.toml that exists"
+        "--overwrite", action="store_true", help="replace an existing experiment.toml"
     )
-    parser.add_argument("--yes", action="store_true", help="accept every guess, ask nothing")
-    parser.add_argument("--title", help="title of the experiment; default: the log's name")
-    parser.add_argument("--axis", choices=("prismatic", "revolute"))
+    parser.add_argument("--yes", action="store_true", help="accept every guess without a question")
+    parser.add_argument("--title", help="title of the experiment (default: the name of the log)")
+    parser.add_argument("--axis", choices=("prismatic", "revolute"), help="kind of motion")
     for name, text in (
         ("time", "time"),
         ("position", "the position"),
@@ -56,25 +56,31 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="COLUMN=UNIT",
         help="the unit of a column (may be repeated)",
     )
-    parser.add_argument(
-        "--torque-constant", metavar="VALUE", help='of the motor, such as "0.037 N*m/A"'
-    )
-    parser.add_argument(
-        "--lever-arm",
-        metavar="VALUE",
-        help='of a force in N beside an angle: its distance from the axis, such as "70 mm"',
-    )
-    parser.add_argument("--gear-ratio", type=float, metavar="N", help="turns of the motor per turn")
-    parser.add_argument("--counts-per-turn", type=float, metavar="N", help="of the encoder")
-    parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where the log has no time")
-    parser.add_argument("--inertia", type=float, help="of the body, if known: kg or kg*m^2")
-    for use, text in (("fit", "that is fitted"), ("check", "on which errors are computed")):
+    for option, text in (
+        ("torque-constant", 'torque constant of the motor, such as "0.037 N*m/A"'),
+        (
+            "lever-arm",
+            'for a force in N beside an angle: its distance from the axis, such as "70 mm"',
+        ),
+    ):
+        parser.add_argument(f"--{option}", metavar="VALUE", help=text)
+    for option, unit, text in (
+        ("gear-ratio", "N", "turns of the motor per turn of the joint"),
+        ("counts-per-turn", "N", "counts of the encoder per turn"),
+        ("sample-rate", "HZ", "sample rate of a log without time"),
+    ):
+        parser.add_argument(f"--{option}", type=float, metavar=unit, help=text)
+    parser.add_argument("--inertia", type=float, help="inertia of the body, if known, kg or kg*m^2")
+    for use, text in (
+        ("fit", "on which the model is fitted"),
+        ("check", "on which errors are computed"),
+    ):
         parser.add_argument(
             f"--{use}-span",
             nargs=2,
             type=float,
             metavar=("BEGIN", "END"),
-            help=f"s from the first row: the part of a single log {text}",
+            help=f"the part of a single log {text}, in s from the first row",
         )
 
 
@@ -125,7 +131,8 @@ def run(options: argparse.Namespace) -> int:
         print(boxes)
     if survey.guesses:
         print(
-            "if a guess is wrong: repeat the command with the option below it, and with --overwrite"
+            "if a guess is wrong: repeat the command with the option below the guess, and with "
+            "--overwrite"
         )
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")

@@ -1,4 +1,4 @@
-"""propose the experiment that distinguishes best the effects that a recording leaves open"""
+"""propose the experiment that best distinguishes the effects which a recording leaves open"""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--output", type=Path, metavar="F", help="write the position reference (.csv)"
     )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the proposal there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the proposal (.json)")
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
@@ -56,11 +56,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="[BODY.]NAME=VALUE[UNIT]",
-        help="another limit than the largest value in the records: low, high, speed, acceleration, "
-        "jerk or force, such as speed=0.2m/s; SI where no unit is given (may be repeated)",
+        help="limit that replaces the largest value in the records: low, high, speed, "
+        "acceleration, jerk or force, such as speed=0.2m/s; without a unit, in SI (may be "
+        "repeated)",
     )
     parser.add_argument(
-        "--duration", type=float, default=20.0, metavar="S", help="longest motion, s (20)"
+        "--duration",
+        type=float,
+        default=20.0,
+        metavar="S",
+        help="longest duration of the motion, s (default: 20)",
     )
     parser.add_argument(
         "--simulate",
@@ -68,8 +73,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=float,
         const=120.0,
         metavar="S",
-        help="simulate each rival as the true effect and diagnose; no simulation starts after S "
-        "seconds (120)",
+        help="for each possible effect, simulate the experiment with this effect and diagnose the "
+        "result; no simulation starts after S seconds (default: 120)",
     )
 
 

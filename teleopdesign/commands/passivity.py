@@ -1,4 +1,4 @@
-"""say how much friction may be compensated before a device can release energy, and prove it"""
+"""compute and prove how much friction may be compensated before a device can release energy"""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "source",
         nargs="?",
         type=Path,
-        help="folder with experiment.toml, which is diagnosed, a diagnosis's answer (.json), or a "
-        "diagram: a file NAME.toml or a shipped one",
+        help="folder with experiment.toml, which is then diagnosed; or the answer of a diagnosis "
+        "(.json); or a diagram: a file NAME.toml, or the name of a diagram of the package",
     )
     add_answer(parser)
     add_body(parser, pose=True)
@@ -51,24 +51,24 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.01,
         metavar="AMPLITUDE",
-        help="of a diagram: largest position of the motions that are searched for one that "
-        "releases energy, m or rad (%(default)g)",
+        help="for a diagram: largest position in the search for a motion that releases energy, m "
+        "or rad (default: %(default)g)",
     )
     parser.add_argument(
         "--speed",
         type=float,
         default=0.1,
         metavar="SPEED",
-        help="of a diagram: largest speed of these motions, m/s or rad/s (%(default)g)",
+        help="for a diagram: largest speed in this search, m/s or rad/s (default: %(default)g)",
     )
     parser.add_argument(
-        "--json", type=Path, metavar="F", help="write claims, certificates and motions"
+        "--json", type=Path, metavar="F", help="write claims, certificates and motions (.json)"
     )
     parser.add_argument(
         "--check",
         type=Path,
         metavar="F",
-        help="only check the certificates of a file that --json wrote",
+        help="only check the certificates in a file that --json wrote",
     )
     add_effect_files(parser)
 
@@ -102,14 +102,14 @@ def _add_computer(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar="DELAY",
-        help="delay of the computer, s, a whole number of periods (0); needs --period",
+        help="delay of the computer, s, a whole number of periods (default: 0); needs --period",
     )
     parser.add_argument(
         "--encoder-step",
         type=float,
         default=0.0,
         metavar="STEP",
-        help="step of the encoder, m or rad (0: none); needs --period",
+        help="step of the encoder, m or rad (default: 0, no step); needs --period",
     )
     parser.add_argument(
         "--wall",
@@ -175,8 +175,8 @@ def _check_options(options: argparse.Namespace) -> None:
     late = options.delay / options.period if options.period else 0.0
     if abs(late - round(late)) > 1e-6:
         raise ExperimentError(
-            f"--delay: found {late:.4g} periods, expected a whole number: what is proved of a "
-            "sampled law holds for those"
+            f"--delay: found {late:.4g} periods, expected a whole number: the proofs for sampled "
+            "laws need one"
         )
     if options.period is None and (options.wall or options.delay or options.encoder_step):
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
@@ -245,7 +245,9 @@ def _describe_device(
     if device.bristle_damping.high > 0:
         lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
     if device.set_aside:
-        lines.append(f"may supply energy, or is in no theorem: {', '.join(device.set_aside)}")
+        lines.append(
+            f"may supply energy, or no theorem covers the effect: {', '.join(device.set_aside)}"
+        )
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
     return "\n".join([*lines, *claim_lines(claims), "", *map(str, limits)])

@@ -1,4 +1,4 @@
-"""write the page of a diagnosis, of a saved answer or made now"""
+"""write the report of a diagnosis: of a saved answer, or of a new diagnosis"""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="F",
-        help="the page (default: beside the answer, or report.html)",
+        help="write this page (default: beside the answer, or report.html)",
     )
     add_search(parser)
 
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     if answer is not None:
         print(
             f"{answer}: its models are computed along the records of {experiment.folder.name}; "
-            "nothing is searched or estimated anew"
+            "nothing is searched or estimated again"
         )
     if whole is not None:
         write_arm_page(whole, path)

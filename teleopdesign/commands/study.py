@@ -32,14 +32,14 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         type=Path,
-        help="a study: FILE.toml, which needs no Python; or FILE.py, which is RUN, with all its "
-        f"code, and sets {_NAME} to the arguments of td.study",
+        help="a study: FILE.toml, which needs no Python; or FILE.py, a script that is RUN as a "
+        f"whole and sets {_NAME} to the arguments of td.study",
     )
     parser.add_argument(
         "--workers", type=count_argument, metavar="N", help="processes (default: one for each core)"
     )
     parser.add_argument(
-        "--scheduler", default="", metavar="A", help="a Dask cluster: tcp://ADDRESS:PORT"
+        "--scheduler", default="", metavar="A", help="address of a Dask cluster: tcp://ADDRESS:PORT"
     )
     parser.add_argument(
         "--out",

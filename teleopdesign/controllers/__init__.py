@@ -113,7 +113,7 @@ def scheduled_force_feedback(
         within the time constant of the filter. The paper does not state it.
     """
     if schedule not in ("before", "after"):
-        raise ModelError(f'schedule: "before" or "after", found "{schedule}"')
+        raise ModelError(f'schedule: expected "before" or "after", found "{schedule}"')
     values = {"gain": gain, "scheduling_velocity": scheduling_velocity}
     scheduled = controller("velocity_schedule", values)
     low_pass = controller("low_pass", {"bandwidth": bandwidth})

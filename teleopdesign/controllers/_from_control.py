@@ -115,14 +115,15 @@ def invert_plant(system: control.LTI, *, bandwidth: float, name: str = "inverse"
 
     whole = control.tf(system)
     if whole.isdtime(strict=True) or (whole.ninputs, whole.noutputs) != (1, 1):
-        raise ModelError("inverted: expected one input, one output and continuous time")
+        raise ModelError("invert_plant: expected one input, one output and continuous time")
     above, below = (np.trim_zeros(x[0][0], "f") for x in (whole.num, whole.den))
     if not len(above):
-        raise ModelError("inverted: the transfer function is zero")
+        raise ModelError("invert_plant: the transfer function is zero")
     bad = [z for z in np.roots(above) if z.real >= 0]
     if bad:
         raise ModelError(
-            f"inverted: the zero at s = {bad[0]:.4g} 1/s would be an unstable pole of the inverse"
+            f"invert_plant: the zero at s = {bad[0]:.4g} 1/s would be an unstable pole of the "
+            "inverse"
         )
     pole = 2 * np.pi * bandwidth
     low = np.ones(1)

@@ -81,7 +81,7 @@ def hybrid_from_impedance(z: sp.Matrix, *, convention: Convention) -> sp.Matrix:
     check_convention(convention)
     _check_shape(z)
     if z[1, 1] == 0:
-        raise ModelError("hybrid matrix: Z_ss is 0: no force determines the slave's motion")
+        raise ModelError("hybrid_from_impedance: Z_ss is 0: no force determines the slave's motion")
     return _second_port_turned(z, convention)
 
 
@@ -94,7 +94,7 @@ def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
     check_convention(convention)
     _check_shape(h)
     if h[1, 1] == 0:
-        raise ModelError("impedance matrix: h_22 is 0: no force moves the slave")
+        raise ModelError("impedance_from_hybrid: h_22 is 0: no force moves the slave")
     return _second_port_turned(h, convention)
 
 

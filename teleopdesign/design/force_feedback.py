@@ -123,7 +123,7 @@ def force_feedback(
     why += f"{1e3 * delay:.3g} ms"
     if gain == MOST_GAIN:
         why = f"no more than {MOST_GAIN:g}; " + why.replace("the largest whose", "its")
-    slow = f"b (1 + k) >= a k asks for {least:.3g} {speed} (P13)"
+    slow = f"b (1 + k) >= a k requires {least:.3g} {speed} (P13)"
     above = f"the recorded rms speed is {reach.rms_speed:.3g} {speed}; {slow}"
     reasons = (
         Reason("velocity_schedule.gain", gain, "1", why),

@@ -35,8 +35,8 @@ def _model(design: Design, answer: DiagnosedModel) -> list[str]:
         lines.append(
             f"The model leaves {say_floors(answer.left)} noise floors unexplained (verdict "
             f"{answer.verdict}): standard errors hold within the model only, so the least level "
-            "may be lower than they say, and the fraction of "
-            f"{design.assumptions.fraction:g} is the only margin against that."
+            "may be lower than these errors state, and the fraction "
+            f"{design.assumptions.fraction:g} is the only margin against this."
         )
     friction = design.friction
     if friction is not None and friction.unknown:
@@ -68,7 +68,7 @@ def _friction(design: Design) -> list[str]:
     if bias is not None and abs(bias.value) > 0:
         lower = max(friction.lowest.low - abs(bias.value), 0.0)
         lines.append(
-            f"A constant force of {bias.value:.3g} {unit} is taken for gravity or an offset, which "
+            f"A constant force of {bias.value:.3g} {unit} is taken as gravity or an offset, which "
             "stores energy. No record distinguishes it from friction with two levels, one for each "
             f"direction. Then the lower level is {lower:.3g} {unit}, and motion in one direction "
             "only would need a level below that."
@@ -83,13 +83,13 @@ def _friction(design: Design) -> list[str]:
     if friction.presliding is not None:
         lines.append(
             "Friction is a spring before it slides: a smoothed Coulomb cancellation is not "
-            "proposed, for in small motion it is a negative damper that such a spring does not "
-            "stop."
+            "proposed, because in small motion it is a negative damper, which such a spring does "
+            "not stop."
         )
     if design.body.has("transmission_compliance") or design.body.has("backlash"):
         lines.append(
-            "Behind the compliance only the friction of the motor side is cancelled; f_D within "
-            "that is passive whatever lies beyond (P53)."
+            "Only the friction on the motor side of the compliance is cancelled; a compensator "
+            "level f_D within this friction is passive with any load beyond the compliance (P53)."
         )
     return lines
 
@@ -103,12 +103,12 @@ def _explain_no_proposal(friction: FrictionInterval, travel: float, unit: str) -
     elif friction.lowest.low <= 0:
         why = (
             f"the least level within the interval is {friction.lowest.low:.3g} {unit} (at "
-            f"{friction.where_lowest}), so that no level is sure"
+            f"{friction.where_lowest}), so that no level is certain to be passive"
         )
     elif friction.presliding is not None and friction.presliding.low <= 0:
         why = (
-            "the presliding stiffness cannot be distinguished from zero, so no stiffness is sure "
-            "(P43)"
+            "the presliding stiffness cannot be distinguished from zero, so no stiffness is "
+            "certain to be passive (P43)"
         )
     else:
         why = (
@@ -123,7 +123,7 @@ def _sensors(design: Design) -> list[str]:
         return []
     return [
         "No interaction force is a channel of this experiment: H needs a force sensor between hand "
-        "and device; without one, the case MBC is what can be built."
+        "and device; without such a sensor, only the case MBC can be built."
     ]
 
 
@@ -140,7 +140,7 @@ def _list_left_out(design: Design) -> list[str]:
     if design.prediction.rigid:
         lines.append(
             f"{design.prediction.rigid} cannot be simulated at these values: the simulation takes "
-            "the device for rigid, with the inertia of both sides."
+            "the device as rigid, with the inertia of both sides."
         )
     if more:
         lines.append(f"Slow motion leaves out: {', '.join(more)}.")
@@ -165,7 +165,7 @@ def _compare_predictions(design: Design) -> list[str]:
         lines.append(
             f"{case}: simulation and slow motion are {p.apart:.3g} {unit} rms apart, "
             f"{100 * p.apart / p.simulated:.0f} % of the simulated error, {share:.0f} % of the "
-            f"squares {where} (below 0.3 of the peak speed)."
+            f"squared difference {where} (below 0.3 of the peak speed)."
         )
         if not math.isclose(p.linear, p.simulated, rel_tol=CLOSE):
             lines[-1] += f" Linear theory is off by {100 * (p.linear / p.simulated - 1):+.0f} %."

@@ -60,7 +60,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "indistinguishable": [
             [place_data(c.key) for c in g] for g in (*diagnosis.groups, *diagnosis.look_alikes)
         ],
-        "cannot_tell": untold_rows(diagnosis),
+        "cannot_tell": undetermined_rows(diagnosis),
         "set_aside": set_aside_rows(diagnosis),
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
@@ -151,9 +151,11 @@ def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
     }
 
 
-def untold_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+def undetermined_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What the records cannot determine about accepted effects: one sentence each."""
-    return [place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.untold]
+    return [
+        place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.undetermined
+    ]
 
 
 def set_aside_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
@@ -177,7 +179,7 @@ def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
         if (one.accepted, one.probability()) > (before.accepted, before.probability()):
             best[one.ranked.candidate.key] = one
     rows = [_row(diagnosis, one) for one in best.values()]
-    # equal ones stay in the order of the rankings, whatever the last digits are on this machine
+    # rounded: candidates of equal probability keep the order of the rankings on every machine
     return sorted(rows, key=lambda c: -round(c["probability"], 6))
 
 
@@ -195,11 +197,11 @@ def _evidence(one: CandidateEvidence) -> dict[str, Any]:
 def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
     candidate, fit = one.ranked.candidate, one.ranked.fit
     effect, at = candidate.key
-    if one.accepted:  # fitted again with what was exchanged or left out since: as in the ladder
+    if one.accepted:  # the fit of the ladder: later exchanges and removals changed it
         fit = next(r.fit for r in diagnosis.rungs if r.added == candidate)
     model = fit.model
     if one.accepted and diagnosis.model.body(at).has(effect):
-        model = diagnosis.model  # all parameters are re-estimated with each effect that follows
+        model = diagnosis.model  # each later rung estimates all parameters again
     return {
         "effect": effect,
         "at": at,

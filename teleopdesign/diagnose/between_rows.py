@@ -58,7 +58,7 @@ def floor_between_rows(
         return floor
     experiment = with_noise(prepared.experiment, scatter)
     drawn = noise_floor(fit.model, replace(prepared, experiment=experiment), generator)
-    # no floor lies above what a right model leaves
+    # a noise floor is at most the error that a right model leaves
     limited = replace(drawn, value=min(drawn.value, fit.check_error))
     source = f"{floor.source}, and a command that changes within a row"
     explains = is_adequate(fit, limited, criteria=criteria)

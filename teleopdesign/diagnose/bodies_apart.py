@@ -95,7 +95,7 @@ def body_by_body(
 
     def here(i: int, there: Model, x: Array, units: Array) -> tuple[Array, Array]:
         known = memory.get(i)
-        # one body is what the fit is about; a far way along which little changes bends
+        # not for a single body, which is the whole fit; nor far away, where the residual bends
         if known is not None and len(parts) > 1 and _is_near(x, known.x):
             change = known.jacobian @ (x - known.x)
             largest = EFFORTS.followed * tolerance * float(known.residual @ known.residual)

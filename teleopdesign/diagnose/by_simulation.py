@@ -59,7 +59,7 @@ class RecordedLoop:
     def __post_init__(self) -> None:
         if not (0.0 <= self.stiffness < np.inf and 0.0 <= self.damping < np.inf):
             raise ModelError(
-                "recorded loop: expected stiffness and damping of zero or more, found "
+                "RecordedLoop: expected stiffness and damping of zero or more, found "
                 f"{self.stiffness:g}, {self.damping:g}"
             )
 
@@ -109,7 +109,7 @@ class SimulationComparison(ByValue):
             if (one.horizon, one.use) == (horizon, use) and at in (None, one.at):
                 return one
         there = ", ".join(f"{e.horizon:g} s ({e.use}, {e.at})" for e in self.errors)
-        raise ModelError(f"comparison: no horizon {horizon:g} s ({use}), has {there}")
+        raise ModelError(f"no error for a horizon of {horizon:g} s ({use}), has {there}")
 
     @property
     def title(self) -> str:
@@ -299,7 +299,7 @@ def _deviations(driven: _Driven, horizon: float) -> tuple[Array, Array]:
     each = rows if np.isinf(horizon) else max(round(horizon / motion.sample_time), 2)
     x, v = [], []
     for begin in range(first, end - 1, each):
-        # one row more than counts: the last row of a course has no command after it
+        # one extra row, which is not counted: no command follows the last row of a course
         part = slice(begin, min(begin + each + 1, end))
         course = course_of(driven.led, motion, part)
         x.append(course.position - motion.position[part])

@@ -136,7 +136,9 @@ def _is_distinguishable(
     if not motions or not depends_on_position(effect):
         return True
     repeats = period(effect)
-    if isinstance(repeats, str):  # of any length: whether it is seen to repeat, its fit decides
+    if isinstance(
+        repeats, str
+    ):  # the period is a parameter: the fit decides whether the record shows repeats
         return True
     return tells_place_from_time(motions, separate_zeros=separate_zeros, turn=repeats)
 
@@ -156,14 +158,14 @@ def tells_place_from_time(
     for group in groups.values():
         position = np.concatenate([m.position for m in group])
         time = np.concatenate([m.time for m in group])
-        # by the way covered: a body at rest shows one place, however long
+        # weighted by travel: a body at rest shows one position only, however long it rests
         way = np.concatenate([np.abs(np.gradient(m.position)) * (m.direction != 0) for m in group])
         if not way.any():
             continue
         here = np.mod(position, turn) if turn is not None else position
         spread = _spread_of_time(here, time, way)
         among, whole = among + spread[0], whole + spread[1]
-    # 0: no motion is sure, nor its direction
+    # whole = 0: no motion is certain
     return among > RETURNING_SHARE * whole or whole == 0.0
 
 

@@ -68,7 +68,7 @@ def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
         if again.check_error < fit.check_error:
             fit = again
     for shift in shifts_of(fit.model, prepared.stretches):
-        if shift.at not in fit.model.bodies:  # of a hand's force: no actuator is late there
+        if shift.at not in fit.model.bodies:  # a shift of the hand's force: there is no actuator
             continue
         if shift.at_bound and shift.late < 0.0 and _stands_for_a_delay(fit, shift.at, prepared):
             fit = _with_shift(fit, shift.at, Value(0.0, fixed=True), prepared)
@@ -102,7 +102,7 @@ def with_late_hand(
         if hand in fit.model.record_shift:
             continue
         late = _with_shift(fit, hand, Value(0.0), prepared)
-        if late.model.log_late(hand) <= 0.0:  # no sensor is early
+        if late.model.log_late(hand) <= 0.0:  # a sensor cannot be early
             continue
         if check_squares(late) < least and is_better(fit, late, floor, criteria=criteria):
             return late

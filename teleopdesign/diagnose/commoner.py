@@ -5,7 +5,7 @@ remaining error is noise, either the records distinguish the two, or the simpler
 more than noise remains, an unknown effect acts too, and may be as large as the difference of the
 two effects. Then a smaller error, or one parameter less, is weak evidence, and the effect that most
 machines have is named. The file of an effect says which effect is more common (`commoner`), and on
-which travel the two are hardly distinguished (`untold`).
+which travel the two are hardly distinguished (`undetermined`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .evidence import whole_score
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
 from .order import simplicity
-from .plausibility import untold_of
+from .plausibility import undetermined_of
 from .ranking import Ranking
 from .rung import Rung
 from .rungs import estimate_without, reorder_and_refit
@@ -61,7 +61,7 @@ def _exchange_for(
     assert added is not None
     if (
         rung.replaced is not None
-        or untold_of(added.effect, added.at, model, search.prepared) is None
+        or undetermined_of(added.effect, added.at, model, search.prepared) is None
     ):
         return None
     without = estimate_without(model, rung, search.prepared)
@@ -70,7 +70,7 @@ def _exchange_for(
     ranking: Ranking = search.rank(without, step=state.step, among=(other, added))
     best = next((r for r in ranking.ranked if r.candidate.key == other.key), None)
     if (
-        best is None  # no candidate on these motions
+        best is None  # the other effect is no candidate with these motions
         or best.instead_of is not None
         or not is_supported(without, best, state.floor, criteria=criteria)
         or whole_score(best.fit, state.fit) >= criteria.close

@@ -110,7 +110,7 @@ def compare(
         if experiment.arm is not None:
             return compare_arm_by_simulation(model, experiment, loop=loop)
         if isinstance(loop, Mapping):
-            raise ModelError("compare: a loop for each joint: found an experiment without an arm")
+            raise ModelError("compare: found a loop for each joint, but the experiment has no arm")
         return compare_by_simulation(model, experiment, loop=loop)
     if loop is not None:
         raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')

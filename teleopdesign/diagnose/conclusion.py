@@ -33,7 +33,7 @@ from .ranking import REFUSALS
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
 from .stand_in import check_error_on_all
-from .untold import untold
+from .undetermined import find_undetermined
 
 
 def conclude(
@@ -70,7 +70,7 @@ def conclude(
     trees = learnable(model, search.whole, beside=beside, seed=search.seed)
     last, whole = rungs[-1].fit, search.whole
     floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
-    if floor is not state.floor:  # all that is left is noise, at any moment
+    if floor is not state.floor:  # the remaining error is noise, at all times
         moment = None
     diagnosis = Diagnosis(
         experiment=search.experiment,
@@ -85,7 +85,7 @@ def conclude(
         learnable=trees,
         near_reversals=error_near_reversals(model, search.whole),
         left_out=search.plan.omissions(),
-        untold=untold(rungs, search.whole),
+        undetermined=find_undetermined(rungs, search.whole),
         set_aside=set_aside,
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
     )

@@ -38,7 +38,7 @@ class OpenQuestion(ByValue):
 
 
 @dataclass(frozen=True)
-class Untold:
+class Undetermined:
     """A sentence on parameters of an accepted effect that the records do not determine."""
 
     candidate: Candidate
@@ -83,7 +83,7 @@ class Diagnosis(ByValue):
     learnable: how much of the residual a black box can learn; None without the extra `learn`
     near_reversals: the check error near reversals of the motion; None where there are none
     left_out: parts of a full search that this one left out, in words
-    untold: what the records cannot determine about the accepted effects
+    undetermined: what the records cannot determine about the accepted effects
     set_aside: effects that were accepted first and removed again, because the final errors do not
         support them
     on_all_records: check error of the final model estimated on all records; None: not computed,
@@ -107,7 +107,7 @@ class Diagnosis(ByValue):
     learnable: Learnable | None = None
     near_reversals: NearReversals | None = None
     left_out: tuple[str, ...] = ()
-    untold: tuple[Untold, ...] = ()
+    undetermined: tuple[Undetermined, ...] = ()
     set_aside: tuple[SetAside, ...] = ()
     on_all_records: float | None = None
     sensor_floor: NoiseFloor | None = None
@@ -157,9 +157,9 @@ class Diagnosis(ByValue):
         They are named nonetheless, because one of the two is the commoner by its file
         (`Effect.commoner`).
         """
-        if self.prepared.is_of_an_arm:  # its links have gravity
+        if self.prepared.is_of_an_arm:  # the links of an arm include gravity
             return ()
-        doubted = dict.fromkeys(one.candidate for one in self.untold)
+        doubted = dict.fromkeys(one.candidate for one in self.undetermined)
         return tuple((one, other) for one in doubted for other in list_look_alikes(one, self.model))
 
     @property

@@ -18,7 +18,12 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
 from ..realise.along_motion import residual_along
-from ..realise.seen_at_command import SeenAtCommand, blind_share, is_between, seen_at_command
+from ..realise.residual_at_command import (
+    ResidualAtCommand,
+    blind_share,
+    is_between,
+    residual_at_command,
+)
 from .prepare import Stretch, measured_force
 from .record_offsets import apply_offset_groups, offset_groups
 
@@ -43,7 +48,7 @@ class AtCommand:
 
 
 def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
-    """Residual of the model as an error of the recorded forces: see `seen_at_command`.
+    """Residual of the model as an error of the recorded forces: see `residual_at_command`.
 
     Equal to `residuals` where no effect lies between the recorded forces and the body. Where the
     model withholds a part of the interaction force from a body, the residual is scaled up
@@ -80,11 +85,11 @@ def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     )
 
 
-def _map_back(body: Body, motion: Motion) -> SeenAtCommand:
+def _map_back(body: Body, motion: Motion) -> ResidualAtCommand:
     if is_between(body):
-        return seen_at_command(body, motion)
+        return residual_at_command(body, motion)
     none = np.zeros(len(motion.time), dtype=bool)
-    return SeenAtCommand(
+    return ResidualAtCommand(
         residual_along(body, motion).residual.value, none, motion.interaction, False
     )
 
@@ -93,7 +98,7 @@ def _scale_to_command(
     stretches: Sequence[Stretch],
     motions: Sequence[Motion],
     values: list[Array],
-    command_errors: Sequence[SeenAtCommand],
+    command_errors: Sequence[ResidualAtCommand],
 ) -> list[Array]:
     """Residuals scaled as if all of the interaction force reached the body.
 

@@ -202,14 +202,14 @@ def _fit_held_out(
     parts: list[Array] = []
     command_errors: list[AtCommand] = []
     squares = at_commands = 0.0
-    for known, unseen in folds(prepared.of("fit")):
+    for known, held_out in folds(prepared.of("fit")):
         solution = solve(fitted, free, prepared, known, EFFORTS.held_out)
         model = solution.model
-        held += unseen
-        parts += [v for v, _ in relative_residuals(model, unseen)]
-        command_errors.append(refer_to_command(model, unseen))
-        measured = sum(s.measured for s in unseen)
-        squares += force_error(model, unseen) ** 2 * measured
+        held += held_out
+        parts += [v for v, _ in relative_residuals(model, held_out)]
+        command_errors.append(refer_to_command(model, held_out))
+        measured = sum(s.measured for s in held_out)
+        squares += force_error(model, held_out) ** 2 * measured
         at_commands += command_errors[-1].error ** 2 * measured
     whole = sum(s.measured for s in held)
     together = AtCommand(

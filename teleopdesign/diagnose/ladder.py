@@ -69,7 +69,7 @@ def with_candidates_named(among: Collection[str] | None, diagnosis: Diagnosis) -
     """
     if among is None:
         return diagnosis
-    words = f"only these effects were tried: {', '.join(sorted(among))}"
+    words = f"only these effects were candidates: {', '.join(sorted(among))}"
     return replace(diagnosis, left_out=(*diagnosis.left_out, words))
 
 
@@ -94,7 +94,7 @@ def climb(
                 continue
             stays = len(barred.supported) == len(state.supported)
             state = barred
-            if stays:  # no candidate less: the same move would come again
+            if stays:  # no candidate was removed: the same move would follow again
                 break
         rungs = ended(search, state)
         less = remove_doubtful_rung(search, state, rungs)
@@ -149,14 +149,16 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
     added = add(search, state)
     if added is not None:
         fewer = remove(search, added)
-        # two effects that each make the other one superfluous would take turns
+        # else two effects, each of which makes the other superfluous, would alternate for ever
         return added if fewer is None or fewer.effects in state.visited else fewer
     for settle in (straighten, compare_alternatives, compare_look_alikes):
         if (moved := settle(search, state)) is not None:
             return moved
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
         return None
-    if state.set_aside:  # pairs and exchanges were sought before, beside what was set aside
+    if (
+        state.set_aside
+    ):  # pairs and exchanges were searched before, with the effects that were set aside
         return None
     moves = (add_pair, add_transmission, exchange, replace_by_pair, add_together)
     attempts = (move(search, state) for move in moves)

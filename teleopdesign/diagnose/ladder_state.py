@@ -224,7 +224,7 @@ def look(
     )
     late = with_late_hand(here, supported, floors.allowed, prepared, criteria=criteria)
     if late is not None and tone.is_beaten_by(late):
-        # no effect: all of them are looked at again beside it
+        # a late log is no effect: all effects are ranked again with it
         return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)
     if before is None:
         return LadderState(rungs, floors, first, ranking, tone, supported)

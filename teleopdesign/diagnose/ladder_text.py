@@ -30,7 +30,7 @@ def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> 
     """
     rows = [
         (
-            "(your model, re-estimated)" if r.added is None else f"+ {r.said}",
+            "(your model, re-estimated)" if r.added is None else f"+ {r.title}",
             f"{100 * r.fit.fit_error:.2f} %",
             f"{100 * r.fit.check_error:.2f} %",
         )
@@ -76,9 +76,11 @@ def command_error_text(fit: Fit) -> str | None:
     if alike and command_error.blind == 0.0:
         return None
     blind = (
-        f", blind in {100 * command_error.blind:.2g} % of the motion" if command_error.blind else ""
+        f", undefined in {100 * command_error.blind:.2g} % of the motion"
+        if command_error.blind
+        else ""
     )
-    return f"check error seen at the command: {_percent(command_error.error)}{blind}"
+    return f"check error at the command: {_percent(command_error.error)}{blind}"
 
 
 def _percent(error: float) -> str:
@@ -98,7 +100,7 @@ def refused_lines(diagnosis: Diagnosis) -> list[str]:
         why = helps_but_is_barred(diagnosis.last.base, r, diagnosis.floor)
         if why and r.fit.check_error < (1.0 - LESS) * after.check_error:
             lines.append(
-                f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
+                f"refused: {r.candidate} ({_percent(r.fit.check_error)}; at the command "
                 f"{_percent(r.fit.at_command.error)}): {why}"
             )
     return lines
@@ -114,11 +116,9 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
         return None
     others = ", ".join(map(str, rung.could_be))
     if named:
-        others = others or "nothing else that was tried"
-        return f"without it the model leaves only noise; it could also be: {others}"
-    also = (
-        f"it could also be: {others}" if others else "no other effect that was tried does as much"
-    )
+        others = others or "none of the other candidates"
+        return f"without this effect the model leaves only noise; other possible effects: {others}"
+    also = f"other possible effects: {others}" if others else "no other candidate explains as much"
     return f"unexplained: this effect is less likely than not; {also}"
 
 
@@ -135,13 +135,13 @@ def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
         lines.append(f"      {text}")
     if rung.alternatives:
         others = ", ".join(map(str, rung.alternatives))
-        lines.append(f"      no different on these records: {others}")
+        lines.append(f"      equivalent on these records: {others}")
     named = rung.added in diagnosis.named or bool(rung.alternatives)
     if (could_be := could_be_text(rung, named=named)) is not None:
         lines.append(f"      {could_be}")
     lines += [
         f"      not determined: {one.sentence}"
-        for one in diagnosis.untold
+        for one in diagnosis.undetermined
         if one.candidate == rung.added
     ]
     return lines
@@ -151,7 +151,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
     lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
     for rung in diagnosis.rungs:
-        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.said}"
+        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.title}"
         lines.append(
             f"{name:<42}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
         )
@@ -168,7 +168,9 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"  ({diagnosis.floor.source})"
     )
     if diagnosis.left > CRITERIA.countable:
-        lines.append(f"{'':<42}the floor holds no noise of the force: state noise at its channel")
+        lines.append(
+            f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"
+        )
     if (near := diagnosis.near_reversals) is not None:
         lines.append(f"check error {near}")
     if diagnosis.learnable is not None:
@@ -213,7 +215,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         more = (
             f" The remaining error is {left} noise floors of {100 * diagnosis.floor.value:.3g} "
             f"%. With this model sensor errors leave {100 * diagnosis.floor.drawn:.3g} %: these "
-            "records do not tell whether more is missing."
+            "records do not show whether more is missing."
         )
     rest = more if diagnosis.more_is_missing else ""
     if (moment := diagnosis.moment) is not None:
@@ -227,34 +229,35 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         added = [r for r in diagnosis.rungs if r.added is not None]
         names = ", ".join(
-            " or ".join((r.said, *map(str, r.alternatives)))
+            " or ".join((r.title, *map(str, r.alternatives)))
             for r in added
             if r.added in diagnosis.missing
         )
-        less = [r.said for r in added if r.added not in diagnosis.missing]
+        less = [r.title for r in added if r.added not in diagnosis.missing]
         others = (
-            f" {', '.join(less)}: less likely than not; the force that it describes is unexplained."
+            f" {', '.join(less)}: less likely than not; the force that this effect describes "
+            "counts as unexplained."
             if less
             else ""
         )
         return f"verdict: effects_missing: {names}.{others}{rest}"
     if diagnosis.unlikely:
-        names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
+        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided, leading candidate {names}: less likely than not, because "
             f"{left} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
-        names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
+        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided. {names} help, but explain less than half of what is missing: "
             f"{left} noise floors are left."
         )
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
-        return f"verdict: undecided between {names}: these records cannot tell.{rest}"
+        return f"verdict: undecided between {names}: these records do not decide.{rest}"
     return (
-        f"verdict: undecided. No effect tried explains the {left} noise floors that are left."
+        f"verdict: undecided. No candidate effect explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"
     )
 

@@ -68,11 +68,11 @@ class Learnable:
     def __str__(self) -> str:
         left, rest = 100 * self.left, 100 * min(self.error, self.left)
         if not self.part > 0.0:
-            return f"{left:.2g} % left; none of it could be learned from the motion"
+            return f"{left:.2g} % left; no part of it follows from the motion"
         where = f", {self.where}" if self.where else ""
         return (
-            f"{left:.2g} % left; {100 * self.part:.2g} of it could be learned{where}; "
-            f"{rest:.2g} does not repeat"
+            f"{left:.2g} % left; {100 * self.part:.2g} % follows from the motion{where}; "
+            f"{rest:.2g} % does not repeat"
         )
 
 
@@ -130,7 +130,7 @@ def learnable(
         return None
     import sklearn.ensemble  # noqa: F401  loaded first: only then can its threads be limited
 
-    # threads of the trees and of other callers would wait for each other by spinning
+    # with more threads, those of the trees and of other callers would wait actively for each other
     with threadpool_limits(limits=1, user_api="openmp"):
         return _measure_learnable(model, prepared, beside, seed)
 
@@ -140,7 +140,7 @@ def _measure_learnable(
 ) -> Learnable:
     stretches = prepared.stretches  # without check records all are fit records
     measured = [measured_force(s) for s in stretches]
-    unseen: list[Stretch] = []
+    held_out: list[Stretch] = []
     before: list[Array] = []
     after: list[Array] = []
     alone: list[Array] = []
@@ -150,16 +150,16 @@ def _measure_learnable(
         left = [r for r, _ in residuals(there, stretches)]
         of_rest = _predict_held_out(stretches, inputs, left, held, seed)
         of_force = _predict_held_out(stretches, inputs, measured, held, seed)
-        unseen += [_select_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
+        held_out += [_select_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
         before += [r[rows] for r, rows in zip(left, held, strict=True)]
         after += [r[rows] - p for r, rows, p in zip(left, held, of_rest, strict=True)]
         alone += [f[rows] - p for f, rows, p in zip(measured, held, of_force, strict=True)]
     gain = [b**2 - a**2 for b, a in zip(before, after, strict=True)]
     return Learnable(
-        left=error_of(unseen, before),
-        error=error_of(unseen, after),
-        alone=error_of(unseen, alone),
-        where=_where(model, unseen, gain),
+        left=error_of(held_out, before),
+        error=error_of(held_out, after),
+        alone=error_of(held_out, alone),
+        where=_where(model, held_out, gain),
     )
 
 
@@ -206,11 +206,11 @@ def _turns(
         yield [np.full(len(s.keep), s.motion.file in group) for s in stretches], model
     if files:
         return
-    for known, unseen in folds(stretches):
-        as_check = tuple(replace(s, use="check") for s in unseen)
+    for known, held_out in folds(stretches):
+        as_check = tuple(replace(s, use="check") for s in held_out)
         turn = replace(prepared, stretches=(*known, *as_check))
         there = estimate(model, turn, effort=EFFORTS.held_out).model
-        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, unseen, strict=True)]
+        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, held_out, strict=True)]
         yield held, there
 
 

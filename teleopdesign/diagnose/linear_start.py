@@ -123,7 +123,7 @@ def _best_multiples(rows: Array, target: Array) -> Array:
     along = rows[0] @ rows[1]
     across = rows[1] - along * rows[0]
     size = np.linalg.norm(across)
-    if size < 1e-5:  # nearly along each other: one orthogonalisation would leave errors over 1e-10
+    if size < 1e-5:  # nearly parallel: one orthogonalisation would leave errors above 1e-10
         return np.asarray(np.linalg.lstsq(rows.T, target, rcond=1e-10)[0])
     second = across @ target / size**2
     return np.array([first - along * second, second])

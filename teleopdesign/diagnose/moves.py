@@ -54,14 +54,16 @@ def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> La
     )
     for earlier in state.rungs[1:]:
         assert earlier.added is not None
-        if earlier.instead_of == best.candidate:  # both are there: nothing was replaced
+        if (
+            earlier.instead_of == best.candidate
+        ):  # both effects are in the model now: nothing is replaced
             rungs = [replace(r, replaced=None) if r is earlier else r for r in state.rungs]
             order = reorder_and_refit(rungs, best.fit, prepared)
             if order is None:
                 return None
             back = state.came_back | {best.candidate.key}
             return replace(state.with_rungs(order), came_back=back)
-        if best.instead_of == earlier.added:  # that one only stood in for this
+        if best.instead_of == earlier.added:  # the earlier effect only imitated the new one
             kept = [r for r in state.rungs if r is not earlier]
             rung = replace(rung, replaced=earlier.replaced)
             order = reorder_and_refit([*kept, rung], best.fit, prepared)

@@ -25,7 +25,7 @@ from .error import error_of
 from .error_at_command import refer_to_command
 from .prepare import Prepared, Stretch
 from .residual import residuals
-from .sensors import is_noise_seen, sensor_of
+from .sensors import is_noise_estimated, sensor_of
 
 #: records with drawn noise for each noise floor; it differs by a few percent from draw to draw
 DRAWS = 3
@@ -87,14 +87,16 @@ def noise_floor(
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
         again = zip(refer_to_command(model, drawn).residual, command_before, strict=True)
         command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
-    source = "stated resolution and noise" if stated else "step and noise seen in the readings"
+    source = (
+        "stated resolution and noise" if stated else "step and noise estimated from the readings"
+    )
     bodies = {s.motion.body for s in stretches}
-    if stated and any(c.body in bodies and is_noise_seen(c) for c in channels.values()):
-        source = "stated resolution, noise seen in the readings of forces"
+    if stated and any(c.body in bodies and is_noise_estimated(c) for c in channels.values()):
+        source = "stated resolution, noise of forces estimated from the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
-    # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what
-    # counts as noise is never less than what sensors leave of the force
+    # at the command, sensor noise is larger if a law attenuates the command, and smaller with
+    # one that amplifies it; the floor is at least the error that sensor noise makes in the force
     jitters = any(_jitter(s, prepared) > 0.0 for s in stretches)
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
 
@@ -114,7 +116,7 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
     motion, channels = stretch.motion, prepared.experiment.channels
     side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
-    # a command is held between rows, and read the same a little early or late
+    # a command is held between rows: a small time shift of the reading does not change it
     jitter = _jitter(stretch, prepared)
     late = jitter * generator.standard_normal(len(motion.time)) if jitter > 0.0 else 0.0
     rate = np.gradient(motion.interaction, motion.sample_time)

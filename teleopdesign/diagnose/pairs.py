@@ -102,7 +102,9 @@ def _best_pair(
         if r.counts and r.candidate.key not in gone and fit_squares(r.fit) < fit_squares(here)
     ]
     for first in trials[: search.plan.trials]:
-        if frozenset(first.fit.model.effects) in state.visited:  # all was ranked beside it before
+        if (
+            frozenset(first.fit.model.effects) in state.visited
+        ):  # all effects were ranked beside this effect before
             continue
         beside = search.rank(first.fit, step=state.step, among=among)
         supported = (
@@ -142,5 +144,5 @@ def _needs_both(
     if not best_tone(base, search.prepared).is_beaten_by(both):
         return False
     without = estimate_without(both.model, first, search.prepared)
-    # None: the second needs the first
+    # None: the second effect needs the first
     return without is None or is_better(without, both, floor, criteria=criteria)

@@ -48,13 +48,13 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
     return meanings
 
 
-def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str | None:
+def undetermined_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str | None:
     """A sentence of an effect's file on parameters that these records do not determine; None: none.
 
     raises ModelError: as `implausible_effects`
     """
     place = model.holder(at)
-    return _ask_effect(effect, "untold", record_facts(model, place, prepared))
+    return _ask_effect(effect, "undetermined", record_facts(model, place, prepared))
 
 
 def _explain_cancelled(
@@ -88,9 +88,9 @@ def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:
 
 
 def _ask_effect(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
-    """The sentence of the effect's `plausible` or `untold`; None where it has none.
+    """The sentence of the effect's `plausible` or `undetermined`; None where it has none.
 
-    hook: "plausible" or "untold"
+    hook: "plausible" or "undetermined"
     raises ModelError: it fails, or returns neither None nor a sentence
     """
     check: Callable[[Any, RecordFacts], str | None] | None = getattr(effect, hook)

@@ -175,7 +175,7 @@ def _thin_motion(motion: Motion, count: int) -> Motion:
     at = slice(None, None, count)
     fine = motion.spectrum
     coarse = spectrum(len(motion.time[at]), count * motion.sample_time)
-    # what is smoothed away afterwards is left out before, or it would pass for something slower
+    # removed before the decimation: else these frequencies would alias
     gain = fine.hold() * fine.lowpass(PASSED * motion.bandwidth, order=16)
     force = fine.multiply(motion.command, gain)[at]
     below = coarse.frequency <= PASSED * motion.bandwidth

@@ -62,11 +62,11 @@ class CandidateEvidence:
         real = self.share * (1.0 - chance(self.ranked.score))
         if not (self.accepted or self.as_good):
             return criteria.true_of_others * real * self.explained
-        # none of 4 accepted effects was true that left 3.9 to 29 floors; squares: of what is left
-        # unexplained, as much as noise is sure to be no effect
+        # of 4 accepted effects that left 3.9 to 29 noise floors none was true. Squares: only the
+        # part of the unexplained force that is noise is certain to hide no effect
         trusted = 1.0 if self.left <= criteria.adequate else (criteria.adequate / self.left) ** 2
         trusted = max(trusted, self.outweighs**criteria.outweighing)
-        if self.from_noise:  # an effect that is there takes away nearly all that noise does not
+        if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
         return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
 
@@ -148,7 +148,7 @@ def select_independent(
         if new is None or new.key not in named or model.body(new.at).lacks(new.effect):
             continue
         there.append(new)
-        if rung.instead_of is None:  # else one of its kind is there already
+        if rung.instead_of is None:  # else the body has an effect of its kind already
             model = model.with_effect(new.effect.name, at=new.at)
     return tuple(there)
 
@@ -173,7 +173,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     weights = {}
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
-        # what was accepted may have a parameter at a bound: it was supported so
+        # an accepted effect may have a parameter at its bound, because it was supported with it
         gone = (
             list_displaced_parameters(ranking.base, r.fit, least=CRITERIA.close)
             if accepted

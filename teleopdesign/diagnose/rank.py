@@ -161,7 +161,7 @@ def rank_candidates(
     if among is not None:
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
-    # those with hidden states take longest: begun last, they would be waited for
+    # effects with hidden states take longest, so they begin first
     fits = map_in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))
     fits = map_in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)

@@ -50,7 +50,7 @@ class Ranked(ByValue):
         return self.is_identifiable and not self.refused and not self.implausible
 
     @property
-    def said(self) -> str:
+    def title(self) -> str:
         """The candidate, with the effect that it replaces: "... at device instead of viscous"."""
         return named_instead(self.candidate, self.instead_of)
 
@@ -64,7 +64,7 @@ class Ranked(ByValue):
         return "" if self.is_identifiable else "not determined"
 
     def __repr__(self) -> str:
-        return f"Ranked {self.said}: score {self.score:.1f}, behind {self.behind:.1f}"
+        return f"Ranked {self.title}: score {self.score:.1f}, behind {self.behind:.1f}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ class Ranking(ByValue):
         rows: list[tuple[str, ...]] = [("(the model)", *base, "", "", "")]
         for r in self.ranked:
             errors = (f"{r.fit.fit_error:.4f}", f"{r.fit.check_error:.4f}")
-            rows.append((r.said, *errors, f"{r.score:.1f}", f"{r.behind:.1f}", r.note))
+            rows.append((r.title, *errors, f"{r.score:.1f}", f"{r.behind:.1f}", r.note))
         head = ("candidate", "fit error", "check error", "score", "behind", "")
         return html_table("Candidates, best first", head, rows)
 
@@ -100,6 +100,6 @@ class Ranking(ByValue):
         for r in self.ranked:
             note = f"  {r.note}" if r.note else ""
             lines.append(
-                f"{r.said:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
+                f"{r.title:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
             )
         return "\n".join(lines)

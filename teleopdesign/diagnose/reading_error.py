@@ -74,7 +74,7 @@ def reading_error(
 
     returns: None where the motion of the model cannot be simulated, or an estimate is not finite
     """
-    # what is simulated is logged in time
+    # the simulated records have no late log
     truth = _with_whole_dead_times(fit.model.with_record_shift({}), prepared)
     true = coordinates(truth, fit.free)
     made = [_simulate_records(truth, prepared, g, d) for g, d in product(BRISTLE_STEPS, DAMPED)]

@@ -68,22 +68,23 @@ class Rung(ByValue):
         return None if self.replaced is None else self.replaced.effect
 
     @property
-    def said(self) -> str:
+    def title(self) -> str:
         """The added effect in words, with the effect that it replaced."""
         return "" if self.added is None else named_instead(self.added, self.instead_of)
 
-    def taken_from(self, model: Model) -> Model:
-        """A model without the effect that this rung added, and with the effect that this replaced.
+    def undo_addition(self, model: Model) -> Model:
+        """A model without the effect that this rung added, and with the effect that it replaced.
 
         raises ModelError: another effect of the model needs the added effect
         """
         assert self.added is not None
         name, at = self.added.key
-        # back first: what needs either of the two is never without both
+        # the replaced effect returns first: an effect that needs one of the two always has one
         whole = model if self.replaced is None else self.replaced.back_in(model)
         if whole.body(at).has(name) or not model.body(at).has(name):
             return whole.without_effect(name, at=at)
-        return whole  # of one kind a body has one: what came back took its place
+        # a body has one effect of a kind: the effect that returned took the place of the added one
+        return whole
 
     def __repr__(self) -> str:
-        return f"Rung {self.said or 'of the model'}: {self.fit!r}"
+        return f"Rung {self.title or 'of the model'}: {self.fit!r}"

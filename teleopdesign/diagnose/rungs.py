@@ -30,7 +30,7 @@ def without_rise(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
 def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None:
     """The fit of a model without a rung's effect; None: another effect needs this effect."""
     try:
-        return estimate(rung.taken_from(model), prepared)
+        return estimate(rung.undo_addition(model), prepared)
     except ModelError:
         return None
 
@@ -98,7 +98,7 @@ def reorder_and_refit(
     model = last.model
     for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):
         try:
-            model = later.taken_from(model)
+            model = later.undo_addition(model)
         except ModelError:
             return None
         backwards.append(replace(rung, fit=estimate(model, prepared)))

@@ -42,12 +42,12 @@ def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
         # levels of a force may be commanded ones; those of a position are its encoder's
         if channel.quantity == "position":
             step = step or reading_step(readings)
-    elif is_noise_seen(channel):
+    elif is_noise_estimated(channel):
         noise = math.sqrt(max(reading_noise(readings) ** 2 - step**2 / 12.0, 0.0))
     return Sensor(step, noise)
 
 
-def is_noise_seen(channel: Channel) -> bool:
+def is_noise_estimated(channel: Channel) -> bool:
     """Whether a channel is a measured force without stated noise, which its readings then show.
 
     A command has no noise, and the steps of an encoder are the only error of its readings.

@@ -115,7 +115,7 @@ def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course
     rows: of the motion;  hidden states start at zero
     """
     step, time = grid(motion), motion.time[rows] - motion.time[rows][0]
-    # what a row holds on average where the log of the command is late
+    # where the log of the command is late: the mean command over a row
     command = motion.command
     if motion.command_late:
         command = np.interp(motion.time + motion.command_late, motion.time, command)
@@ -139,7 +139,7 @@ def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course
     )
     rate, _ = fastest_rate(prepared.program, prepared.diagram.values)
     finer = int(np.ceil(rate * step / FASTEST))
-    # what a bristle's reload asks for is far below what sensors see
+    # not as fine as the reload of a bristle requires: no sensor resolves the reload
     kept, _ = prepared.run(prepared.timing(STEPS * min(max(finer, 1), MOST_STEPS // STEPS)))
     columns = list(prepared.program.layout.columns)
     n = len(time)

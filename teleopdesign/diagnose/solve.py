@@ -84,7 +84,7 @@ def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _S
     lower[decades] = -DECADES * np.log(10)
     upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
     start[decades] = np.log(np.maximum(start[decades], 1e-300))
-    # a law may divide by a parameter whose bound is zero: stay a trifle inside
+    # slightly inside the bounds: a law may divide by a parameter whose bound is zero
     return _SearchSpace(scale, decades, lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND, start)
 
 

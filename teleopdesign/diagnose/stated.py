@@ -15,7 +15,7 @@ def reset_to_stated(model: Model, stated: Model, at: str | None = None) -> Model
 
     at: place whose body is reset; None: all bodies
     """
-    there = model.parameters  # another effect may have replaced one of the user's
+    there = model.parameters  # another effect may have replaced an effect of the user
     values = {n: v.value for n, v in stated.parameters.items() if n in there}
     if at is not None:
         values = {n: v for n, v in values.items() if model.locate(n)[0] == model.holder(at)}

@@ -47,7 +47,7 @@ def _take_out_absent(model: Model) -> tuple[Model, list[Replaced]]:
     absent, rest = [], [Candidate(model.body(at).effect(n), at) for n, at in model.absent]
     rest = [one for one in rest if len(one.effect.parameters) > 1]
     whole = model
-    for _ in range(len(rest)):  # one that another of them needs goes after that one
+    for _ in range(len(rest)):  # an effect that another one needs is removed after it
         for one in list(rest):
             try:
                 model = model.without_effect(one.effect.name, at=one.at)

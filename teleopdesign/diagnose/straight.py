@@ -61,7 +61,7 @@ def _with_line(
     straight = (e for e in state.fit.model.known.values() if is_straight(e))
     gone = {one.candidate.key for one in state.set_aside}
     line = [Candidate(e, at) for e in straight if not (body.has(e.name) or body.lacks(e))]
-    # what the bends took the place of is back when they are taken away
+    # without the curved laws, the effects that they replaced return
     back = [r.instead_of for r in bent if r.instead_of is not None]
     line = [c for c in line if c.key not in gone | {one.key for one in back}]
     saved = sum(_count_required(r.added.effect) for r in bent if r.added is not None)
@@ -94,7 +94,7 @@ def _exchange_for_line(
     """The fit with the line and without the curved forces; None: these cannot be removed."""
     try:
         for rung in bent:
-            model = rung.taken_from(model)
+            model = rung.undo_addition(model)
     except ModelError:
         return None
     for candidate in line:

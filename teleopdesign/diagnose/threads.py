@@ -45,5 +45,6 @@ def keep_freed_memory() -> None:
     After that, glibc keeps blocks up to this size, and twice as many bytes in all. Other allocators
     are not affected.
     """
-    # the largest that counts, 32 MiB with its head; less: arrays of long records are cleared anew
+    # the largest size that glibc adapts to, 32 MiB with the header; with less, glibc would clear
+    # arrays of long records again and again
     np.empty(32 * 2**20 - 2**14, dtype=np.uint8)

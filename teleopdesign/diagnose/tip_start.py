@@ -132,7 +132,7 @@ class _LinearProblem:
 
     def refine(self, course: _Course, plan: SearchPlan) -> _Solved:
         """The best course near this one, within a factor of `SearchPlan.tip_near`."""
-        from scipy.optimize import minimize  # half a second: only where a gear is sought
+        from scipy.optimize import minimize  # takes half a second: imported only for a gear
 
         start = np.array([v for v in (course.gap, course.swing, course.slowing) if v])
         near = np.log(plan.tip_near)

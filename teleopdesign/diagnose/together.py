@@ -95,7 +95,7 @@ def _fit_all(search: LadderSearch, base: Fit, chosen: Sequence[Ranked]) -> Fit:
         start = f"{at}.{name}."
         try:
             model = model.with_effect(ranked.candidate.effect, at=at)
-        except ModelError:  # one of this kind is there
+        except ModelError:  # the body has an effect of this kind already
             continue
         alone = ranked.fit.model.parameters
         model = model.with_values({n: v.value for n, v in alone.items() if n.startswith(start)})

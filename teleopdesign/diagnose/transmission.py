@@ -107,7 +107,7 @@ def _fit_pair(
         criteria=search.criteria,
         widths=OpenWidths(prepared, search.criteria),
     )
-    # alone it explains little, and may be no gap at all: what is said of it is said beside friction
+    # alone, a transmission explains little and may have no gap: it is judged together with friction
     first = replace(rank(base, transmission, both), fit=alone)
     return (
         Rung(transmission, alone, Ranking(base, (first,))),

@@ -21,7 +21,7 @@ def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] =
 
     beside: for each motion, those of an arm's other joints at the same times
     """
-    if beside:  # another motion that stands beside a joint is that of one of these
+    if beside:  # the other motion of a joint is the motion of one of these
         motions = [replace(m, further=_without_other_motion(m)) for m in motions]
     inputs = [_columns_of_body(m, [o for o in motions if o.body == m.body]) for m in motions]
     if not beside:

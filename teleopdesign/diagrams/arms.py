@@ -51,15 +51,15 @@ class Arm:
     def __post_init__(self) -> None:
         known = {joint(n + 1) for n in range(len(self.joints))}
         for expression in self.coordinates:
-            if unknown := as_expression(expression, where="arm").free_symbols - known:
+            if unknown := as_expression(expression, where="Arm: coordinates").free_symbols - known:
                 raise ModelError(
-                    f"arm: coordinate {expression} has {min(map(str, unknown))}, joints are "
+                    f"Arm: coordinate {expression} has {min(map(str, unknown))}, joints are "
                     f"{', '.join(sorted(map(str, known)))}"
                 )
         for name in ("cancellations", "pose"):
             entries = getattr(self, name)
             if entries and len(entries) != len(self.joints):
-                raise ModelError(f"arm: {len(entries)} {name} for {len(self.joints)} joints")
+                raise ModelError(f"Arm: {len(entries)} {name} for {len(self.joints)} joints")
 
 
 def tip_coordinates(jacobian: Any) -> tuple[sp.Expr, ...]:
@@ -103,8 +103,8 @@ def teleoperator_of_arms(
     if len(slave.coordinates) != size or any(g.shape != (size, size) for g in gains.values()):
         sizes = ", ".join(f"{name} {g.shape}" for name, g in gains.items())
         raise ModelError(
-            f"arms: {size} coordinates of the master, {len(slave.coordinates)} of the slave, "
-            f"{sizes}: expected one size"
+            f"teleoperator_of_arms: {size} coordinates of the master, {len(slave.coordinates)} of "
+            f"the slave, {sizes}: expected one size"
         )
     blocks: list[Block] = []
     junctions = [Junction(f"X_e{k}", {f"X_m{k}": 1, f"X_s{k}": -1}) for k in range(1, size + 1)]

@@ -97,8 +97,8 @@ class Effect:
     counts_as: needed effects that it can replace, for effects whose laws hold no parameter of these
     takes_over: needed effects that may be zero beside it, because it can have all of their force
     always: properties for any values of its parameters, such as "even in velocity"
-    commoner: name of the effect that gives nearly the same force where `untold` says so, and acts
-        on far more machines; "" for none
+    commoner: name of the effect that gives nearly the same force where `undetermined` says so, and
+        acts on far more machines; "" for none
     elsewhere: axis where the law does not hold ("prismatic" or "revolute") -> the effect of the
         same physics there
     led: inertia(p) of a hidden body whose position is corrected; the force of this correction is
@@ -106,8 +106,8 @@ class Effect:
     coupling: of a structure, coupling(now, p), from which `make_structure` makes law and states
     plausible: plausible(p, facts): None, or one sentence that says why the parameters do not
         deserve the effect's name. A diagnosis then does not name the effect
-    untold: untold(p, facts): None, or one sentence on parameters that the records do not determine,
-        such as a level that was never reached. The effect keeps its name
+    undetermined: undetermined(p, facts): None, or one sentence on parameters that the records do
+        not determine, such as a level that was never reached. The effect keeps its name
     """
 
     role: Role
@@ -130,7 +130,7 @@ class Effect:
     led: Callable[[Any], sp.Expr] | None = None
     coupling: Callable[[Any, Any], sp.Expr] | None = None
     plausible: Callable[[Any, RecordFacts], str | None] | None = None
-    untold: Callable[[Any, RecordFacts], str | None] | None = None
+    undetermined: Callable[[Any, RecordFacts], str | None] | None = None
     source: str = ""
     name: str = ""
     text: str = ""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ._facts import RecordFacts, slip_is_seen
+from ._facts import RecordFacts, slip_is_observable
 
 #: an element whose level is below this part of the friction level comes last, whatever its
 #: stiffness, because records do not determine its stiffness. A higher limit puts visible elements
@@ -41,7 +41,7 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
 
 
 def elements_slip(p: Any, facts: RecordFacts) -> str | None:
-    """A sentence where the softest element does not slip both ways, or as `slip_is_seen`."""
+    """A sentence where the softest element does not slip both ways, or as `slip_is_observable`."""
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
@@ -55,4 +55,4 @@ def elements_slip(p: Any, facts: RecordFacts) -> str | None:
             f"{seldom} within the travel of {facts.text(travel, 'position')}: "
             "the record shows no loop, and the effect imitates a spring"
         )
-    return slip_is_seen("the softest element", list(ways.values()), facts)
+    return slip_is_observable("the softest element", list(ways.values()), facts)

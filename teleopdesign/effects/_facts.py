@@ -111,7 +111,7 @@ class RecordFacts:
         return f"{value:.3g} {unit_of(quantity, self.axis)}"
 
 
-def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
+def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
     """A sentence where no deflection before sliding can be read from the records; else None.
 
     subject: name of the part in the sentence;  ways: deflections before sliding (m, rad)
@@ -130,7 +130,7 @@ def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str
         return f"{subject} never slips within the travel of {within}: the effect imitates a spring"
     step = facts.text(facts.step, "position")
     return (
-        f"{subject} deflects by less than a step of {step} shows: the effect imitates sgn friction"
+        f"{subject} deflects less than steps of {step} can show: the effect imitates sgn friction"
     )
 
 

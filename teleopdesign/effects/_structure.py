@@ -36,7 +36,7 @@ BESIDE, TONE = 0.05, 0.1
 #: difference between the coupling and a spring without a gap. Half a percent is less than models of
 #: real machines leave. A lower limit names other differences from a spring a gap; a higher one
 #: misses a small gap in a soft transmission
-SEEN = 0.005
+OBSERVABLE = 0.005
 
 
 @check_types
@@ -49,7 +49,7 @@ def make_structure(
     linear: bool = False,
     source: str = "",
     plausible: Callable[[Any, RecordFacts], str | None] | None = None,
-    untold: Callable[[Any, RecordFacts], str | None] | None = None,
+    undetermined: Callable[[Any, RecordFacts], str | None] | None = None,
 ) -> Effect:
     """The effect of a coupling between the actuator's side and a tip; absent: zero tip inertia.
 
@@ -59,12 +59,12 @@ def make_structure(
         and its part of the body's inertia: a lighter tip, whose force is less visible, is corrected
         less. The force for this, m_t rate / K dr/dt, is unexplained too. 0: no correction
     plausible: as in `Effect`; None: the tip's inertia must be a part of the body's
-    untold: as in `Effect`
+    undetermined: as in `Effect`
     raises ModelError: a parameter is missing
     """
     for name in ("tip_inertia", "stiffness") if following else ("tip_inertia",):
         if name not in parameters:
-            raise ModelError(f'structure: found no parameter "{name}", expected one')
+            raise ModelError(f'make_structure: found no parameter "{name}", expected one')
 
     def law(now: Any, p: Any) -> sp.Expr:
         return _join(coupling, now, p) + now.interaction_force - p.tip_inertia * now.acceleration
@@ -88,7 +88,7 @@ def make_structure(
         energy=energy,
         linear=linear,
         plausible=plausible or tip_is_part,
-        untold=untold,
+        undetermined=undetermined,
         source=source,
     )
 
@@ -135,7 +135,7 @@ def tip_springs_back(p: Any, facts: RecordFacts) -> str | None:
     )
 
 
-def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
+def gap_is_observable(p: Any, facts: RecordFacts) -> str | None:
     """A sentence where the gap is not crossed or hardly changes the force, or as `tip_is_part`."""
     if math.isinf(facts.stroke):
         return (
@@ -143,7 +143,7 @@ def gap_is_seen(p: Any, facts: RecordFacts) -> str | None:
             "never reverses: the effect imitates the beginning of friction in a record"
         )
     worth = p.stiffness * p.gap / 2
-    if worth >= SEEN * facts.force:
+    if worth >= OBSERVABLE * facts.force:
         return tip_is_part(p, facts)
     return (
         f"a gap of {facts.text(p.gap, 'position')} changes the force by no more than "

@@ -13,7 +13,7 @@ measured motion a correction leads the computed tip back to its course (`_struct
 from sympy import Piecewise
 
 from ._effect import FitSearch, Parameter
-from ._structure import gap_is_seen, make_structure
+from ._structure import gap_is_observable, make_structure
 
 
 def coupling(now, p):
@@ -54,6 +54,6 @@ EFFECT = make_structure(
             ),
         ),
     },
-    plausible=gap_is_seen,
+    plausible=gap_is_observable,
     source="two masses with lost motion",
 )

@@ -29,7 +29,7 @@ def plausible(p, facts):
     )
 
 
-def untold(p, facts):
+def undetermined(p, facts):
     if p.time_constant <= facts.duration:
         return None
     return (
@@ -52,7 +52,7 @@ EFFECT = Effect(
     },
     absent={"fraction": 0.0},
     plausible=plausible,
-    untold=untold,
+    undetermined=undetermined,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="first-order warm-up of a lubricant",

@@ -28,7 +28,7 @@ def plausible(p, facts):
     )
 
 
-def untold(p, facts):
+def undetermined(p, facts):
     if (bend := facts.bend(lambda place: np.sin(place + p.phase))) >= STRAIGHT:
         return None
     travel = facts.text(facts.travel, "position")
@@ -52,6 +52,6 @@ EFFECT = Effect(
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
     plausible=plausible,
-    untold=untold,
+    undetermined=undetermined,
     source="pendulum: Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), 6.3",
 )

@@ -9,7 +9,7 @@ presliding looks like `actuation_delay`: both round the corners of the friction 
 """
 
 from ._effect import Effect, FitSearch, Parameter, State
-from ._facts import slip_is_seen
+from ._facts import slip_is_observable
 
 
 def law(now, p):
@@ -24,7 +24,7 @@ def bristle(now, p):
 def plausible(p, facts):
     level = facts.body["coulomb.level"]
     said = f"a bristle of {facts.text(p.stiffness, 'stiffness')} at {facts.text(level, 'force')}"
-    return slip_is_seen(said, [level / p.stiffness], facts) if p.stiffness > 0 else None
+    return slip_is_observable(said, [level / p.stiffness], facts) if p.stiffness > 0 else None
 
 
 EFFECT = Effect(

@@ -17,7 +17,7 @@ def law(now, p):
     return p.stiffness * now.position
 
 
-def untold(p, facts):
+def undetermined(p, facts):
     if facts.axis != "revolute" or (bend := facts.bend(np.sin)) >= STRAIGHT:
         return None
     travel = facts.text(facts.travel, "position")
@@ -35,6 +35,6 @@ EFFECT = Effect(
     parameters={"stiffness": Parameter("stiffness", "K: force per displacement")},
     absent={"stiffness": 0.0},
     commoner="gravity",
-    untold=untold,
+    undetermined=undetermined,
     source="Hooke's law",
 )

@@ -19,7 +19,7 @@ def law(now, p):
     return p.extra_static_level * exp(-((now.velocity / p.stribeck_velocity) ** 2))
 
 
-def untold(p, facts):
+def undetermined(p, facts):
     at_rest = facts.body["coulomb.level"] + p.extra_static_level
     if at_rest <= facts.force:
         return None
@@ -46,7 +46,7 @@ EFFECT = Effect(
         ),
     },
     absent={"extra_static_level": 0.0},
-    untold=untold,
+    undetermined=undetermined,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",

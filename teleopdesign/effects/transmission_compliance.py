@@ -43,6 +43,6 @@ EFFECT = make_structure(
         ),
     },
     plausible=tip_springs_back,
-    untold=rings_like_a_hum,
+    undetermined=rings_like_a_hum,
     source="two masses on a spring; Mahvash, Okamura, IEEE CDC 2006",
 )

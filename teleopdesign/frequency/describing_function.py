@@ -39,7 +39,7 @@ def describing_function(
     """
     sizes, f = np.broadcast_arrays(np.asarray(amplitude, float), np.asarray(frequency, float))
     if not ((sizes > 0).all() and (f > 0).all()):
-        raise ModelError("describing function: amplitude and frequency must be positive")
+        raise ModelError("describing_function: amplitude and frequency must be positive")
     law = body_law(of) if isinstance(of, Body) else controller_law(of)
     amplitudes, frequencies = sizes.reshape(-1, 1), f.reshape(-1, 1)
     coefficients = np.empty(sizes.size, dtype=complex)
@@ -125,5 +125,5 @@ def controller_law(of: Controller) -> LawExpressions:
     rates = {s: r.subs(numbers) for s, r in equation.rates.items()}
     names = ", ".join(stage.law.name for stage in of.stages)
     if any(e.has(delayed) for e in (equation.output, *equation.rates.values())):
-        raise ModelError(f"describing function: controller {names}: give the delay its own block")
+        raise ModelError(f"describing_function: controller {names}: give the delay its own block")
     return LawExpressions(equation.output.subs(numbers), rates, f"controller {names}")

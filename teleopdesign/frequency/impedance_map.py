@@ -69,7 +69,9 @@ class ImpedanceMap(ByValue):
         import xarray
 
         if self.on_profile:
-            raise ModelError("impedance map: amplitude follows frequency, spread needs a grid")
+            raise ModelError(
+                "spread: the amplitude is a function of frequency, expected amplitudes on a grid"
+            )
         z, size = self.data["impedance"], self.decibel
         turned = np.degrees(np.unwrap(np.angle(z), axis=z.get_axis_num("amplitude")))
         turn = z.copy(data=turned)

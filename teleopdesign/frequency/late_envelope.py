@@ -91,7 +91,7 @@ def halve_steps(
     middle = (w[wide] + w[wide + 1]) / 2
     steps, middle = (x[(middle > w[wide]) & (middle < w[wide + 1])] for x in (wide, middle))
     if len(w) + len(steps) > _MOST:
-        raise ModelError("margins: the phase turns more often than can be followed")
+        raise ModelError("gain_margin: the phase turns more often than can be followed")
     after = np.insert(points, steps + 1, at(middle), axis=1)
     return np.insert(w, steps + 1, middle), after, steps
 

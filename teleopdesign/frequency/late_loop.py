@@ -83,7 +83,7 @@ def late_ratio(expression: sp.Expr) -> LateRatio:
     plain = expression.xreplace(dict(zip(powers, marks, strict=True)))
     sides = sp.fraction(sp.cancel(sp.together(plain)))
     if not all(t.is_Rational for t in times) or not all(p.is_polynomial(S, *marks) for p in sides):
-        raise ModelError("delay margin: expected a ratio of polynomials in s and dead times")
+        raise ModelError("loop: expected a ratio of polynomials in s and dead times")
     made: list[dict[Fraction, dict[int, float]]] = []
     for side in sides:
         terms: dict[Fraction, dict[int, float]] = {}

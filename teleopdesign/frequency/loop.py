@@ -144,7 +144,7 @@ def unity_crossings(
     if isinstance(loop, LoopGain):
         if gone := [name for name in loop.left_out if "." not in name]:
             raise ModelError(
-                f"delay margin: {', '.join(gone)} has no linear form and is not in the gain: "
+                f"loop: {', '.join(gone)} has no linear form and is not in the gain: "
                 f'judge the rest with `diagram.without("{gone[0]}")`, or simulate'
             )
         if loop.expression.atoms(AppliedUndef):
@@ -172,12 +172,12 @@ def unity_crossings(
 
 
 def _unstable() -> UnstableLoop:
-    return UnstableLoop("delay margin: the loop is unstable without delay")
+    return UnstableLoop("the loop is unstable without delay")
 
 
 def _ratio_of(system: control.TransferFunction) -> LateRatio:
     if system.isdtime(strict=True):
-        raise ModelError("delay margin: expected a system in continuous time, found a discrete one")
+        raise ModelError("loop: expected a system in continuous time, found a discrete one")
     above, below = (np.trim_zeros(np.ravel(p[0][0]), "f") for p in (system.num, system.den))
     return LateRatio({0.0: above}, {0.0: below})
 
@@ -216,9 +216,7 @@ def _crossings(loop: LoopGain, ratio: LateRatio | None) -> tuple[np.ndarray, np.
     grid = grid if ratio is None else unity_grid(ratio, grid)
     size = np.abs(call(1j * grid))
     if np.isfinite(loop.fastest) and size[-1] >= 1:
-        raise ModelError(
-            f"delay margin: the loop's gain is still {size[-1]:.3g} at half the sampling rate"
-        )
+        raise ModelError(f"the loop's gain is still {size[-1]:.3g} at half the sampling rate")
     turns = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
     crossings = np.array([brentq(above, grid[k], grid[k + 1], rtol=1e-12) for k in turns])
     return np.degrees(np.angle(call(1j * crossings))) + 180, crossings

@@ -48,7 +48,7 @@ def gain_margin(loop: LoopGain) -> float:
     if loop.sampled is not None:
         return sampled_margins.gain_margin(loop.sampled)
     if loop.expression.atoms(AppliedUndef):
-        raise ModelError("gain margin: expected a loop without a measured response")
+        raise ModelError("gain_margin: expected a loop without a measured response")
     call = numerical(loop.expression)
 
     def height(w: float) -> float:

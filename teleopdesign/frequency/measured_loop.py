@@ -38,7 +38,7 @@ def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.nda
     size = np.abs(gain)
     if size[-1] >= 1:
         raise ModelError(
-            f"delay margin: the loop's gain is still {size[-1]:.3g} at {w[-1]:.4g} rad/s, the "
+            f"the loop's gain is still {size[-1]:.3g} at {w[-1]:.4g} rad/s, the "
             "highest frequency that was measured: measure further"
         )
     angle = np.angle(1 + gain)
@@ -48,12 +48,11 @@ def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.nda
     if np.abs(steps).max() > _SURE:
         at = w[int(np.argmax(np.abs(steps)))]
         raise ModelError(
-            f"delay margin: too few frequencies were measured beside {at:.4g} rad/s to follow the "
-            "phase there"
+            f"too few frequencies were measured beside {at:.4g} rad/s to follow the phase there"
         )
     turns = round((angle[0] + steps.sum() - angle[-1]) / (2 * np.pi))
     if 2 * turns != growing:
-        raise UnstableLoop("delay margin: the loop is unstable without delay")
+        raise UnstableLoop("the loop is unstable without delay")
 
     def above(x: float) -> float:
         return float(np.log(np.abs(call(np.array([1j * x]))[0])))
@@ -68,7 +67,7 @@ def _frequencies(expression: sp.Expr) -> np.ndarray:
     every = measured_frequencies(expression)
     low, high = max(w[0] for w in every), min(w[-1] for w in every)
     if low >= high:
-        raise ModelError("delay margin: measured responses have no frequencies in common")
+        raise ModelError("measured responses have no frequencies in common")
     w = np.unique(np.concatenate([w[(w >= low) & (w <= high)] for w in every] + [[low, high]]))
     parts = np.arange(_BETWEEN) / _BETWEEN
     between = np.exp(np.log(w[:-1, None]) + np.diff(np.log(w))[:, None] * parts)

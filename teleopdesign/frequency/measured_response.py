@@ -38,20 +38,20 @@ def measured_response(
         data, omega = np.asarray(values.frdata), np.asarray(values.omega)
         if data.ndim == 3 and data.shape[:2] != (1, 1):
             raise ModelError(
-                f"measured response: found {data.shape[1]} inputs and {data.shape[0]} outputs, "
+                f"measured_response: found {data.shape[1]} inputs and {data.shape[0]} outputs, "
                 "expected one of each: index the data"
             )
         numbers, f = data.reshape(-1), omega / (2 * np.pi)
     elif frequency is None:
-        raise ModelError("measured response: arrays need frequency, in Hz")
+        raise ModelError("measured_response: arrays need frequency, in Hz")
     else:
         numbers, f = np.asarray(values, dtype=complex), np.asarray(frequency, dtype=float)
     if numbers.shape != f.shape or f.ndim != 1:
         raise ModelError(
-            f"measured response: values of shape {numbers.shape} at frequencies of shape {f.shape}"
+            f"measured_response: values of shape {numbers.shape} at frequencies of shape {f.shape}"
         )
     if not len(f) or f[0] <= 0 or (np.diff(f) <= 0).any():
-        raise ModelError("measured response: frequency must be positive and rise")
+        raise ModelError("measured_response: frequency must be positive and rise")
     return _points(numbers[None, :], [case], f, output, input, unit)
 
 

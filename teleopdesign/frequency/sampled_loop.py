@@ -90,8 +90,7 @@ class SampledLoop:
         """
         if self.samples > MOST_SAMPLES:
             raise ModelError(
-                f"sampled loop: a dead time of {self.samples} samples, expected at most "
-                f"{MOST_SAMPLES}"
+                f"loop: a dead time of {self.samples} samples, expected at most {MOST_SAMPLES}"
             )
         with mpmath.workdps(_DIGITS):
             return not _decays(self._characteristic())

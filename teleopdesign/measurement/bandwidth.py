@@ -73,7 +73,7 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
     for name, record in _moving(experiment):
         frequency, density, noise = _spectrum(record, name, even_out=True)
         above = (density > ABOVE * noise) & (frequency <= PROPOSED / record.sample_time)
-        # of what stands above the scatter of the readings
+        # only the part above the noise of the readings
         acceleration = np.where(above, density - noise, 0.0) * frequency**4
         beyond = frequency > chosen
         if acceleration[beyond].sum() <= acceleration[~beyond].sum():

@@ -198,7 +198,7 @@ def unit_of_text(text: str) -> str | None:
         "nm",
         "1/min",
         "min^-1",
-    ):  # a nanometre and a sixtieth of a hertz elsewhere, not in a log
+    ):  # in a log no nanometre and no 1/60 Hz
         return ALIASES[text]
     if text in COUNTS:
         return "counts"
@@ -250,11 +250,15 @@ def likeness(name: str, quantity: str) -> float:
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
     listed = WORDS[quantity]
-    may_end = quantity != "interaction_force"  # a "Stromsensor" measures no force
+    may_end = (
+        quantity != "interaction_force"
+    )  # a word that ends in "sensor", such as "Stromsensor", names no force
     best = 0.0
     for word in words:
         for rank, known in enumerate(listed):
-            exact = word == known or not known.isascii() and known in word  # no spaces between
+            exact = (
+                word == known or not known.isascii() and known in word
+            )  # without spaces between words
             # the last part of a compound names it: "Drehmoment", "Istwinkel"
             ends = may_end and len(known) > 4 and word.endswith(known)
             if exact or ends or len(known) > 3 and word.startswith(known):

@@ -269,7 +269,7 @@ def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[f
         if "counts_per_turn" in table.content:
             return table.number("counts_per_turn")
         raise ExperimentError(f"{where}: found true with counts, expected where the counter wraps")
-    try:  # an angle wraps at one turn of what the encoder is on
+    try:  # an angle wraps at one turn of the shaft with the encoder
         turn = to_si(1.0, "turn", quantity="angle") / si_factor(unit, quantity="angle")
     except ExperimentError:
         raise ExperimentError(

@@ -29,7 +29,7 @@ DIFFERENCE = 8
 def reading_noise(position: Array) -> float:
     """Rms noise of one position reading, estimated from the content near the Nyquist frequency."""
     fourth = np.diff(position, 4)
-    # white noise passes a fourth difference with gain sqrt(70); the median ignores sharp motion
+    # the fourth difference amplifies white noise by sqrt(70); the median ignores sharp motion
     return float(np.median(np.abs(fourth)) / 0.6745 / np.sqrt(70.0))
 
 
@@ -48,7 +48,7 @@ def reading_step(position: Array) -> float:
     step = float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
     rounding = float(np.sqrt(12.0)) * reading_noise(position)
     moving = float(np.mean(np.diff(position) != 0)) > 0.5
-    # readings that are all alike in their fourth difference show no noise at all
+    # a fourth difference of zero in most readings: no visible noise
     is_noisy = rounding > 1e-9 * float(np.ptp(position))
     if not (is_noisy and moving and step > 3.0 * rounding):
         return step
@@ -103,11 +103,11 @@ def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
     pieces = x[: count * PIECE].reshape(count, PIECE)
     speed = np.sqrt(np.mean(np.diff(pieces, axis=1) ** 2, axis=1)) / sample_time
     scatter = np.sqrt(np.mean(np.diff(pieces, DIFFERENCE, axis=1) ** 2, axis=1))
-    scatter /= np.sqrt(comb(2 * DIFFERENCE, DIFFERENCE))  # what white noise passes with
+    scatter /= np.sqrt(comb(2 * DIFFERENCE, DIFFERENCE))  # gain of the difference for white noise
     fast = speed >= np.quantile(speed, 0.75)
     slow = speed <= np.quantile(speed, 0.25)
     rest = max(0.29 * step, float(np.median(scatter[slow])))
-    # twice the scatter of rest: less may be rounding alone
+    # less than twice the scatter at rest may be rounding alone
     if np.median(scatter[fast]) < 2.0 * rest:
         return 0.0
     squares = np.median(speed[fast] ** 2) - np.median(speed[slow] ** 2)

@@ -38,7 +38,7 @@ def _least_squares_period(stamps: Array, segments: Sequence[slice]) -> float | N
         below += float(index @ index)
     if below == 0 or not math.isfinite(above) or above <= 0:
         return None
-    # 12 digits: below any clock's error, and 0.001 stays 0.001
+    # rounded to 12 digits, finer than the error of any clock: 0.001 stays 0.001
     return float(f"{above / below:.12g}")
 
 
@@ -48,7 +48,9 @@ def _is_even(stamps: Array, segments: Sequence[slice], period: float) -> bool:
     within[[segment.start - 1 for segment in segments[1:]]] = False
     if not within.any():
         return False
-    usual = float(np.quantile(steps[within], 0.5, method="higher"))  # one that occurs
+    usual = float(
+        np.quantile(steps[within], 0.5, method="higher")
+    )  # a step that occurs, no mean of two
     steps = np.where(within, steps, usual)
     if np.all(np.abs(steps - usual) <= _JITTER * usual):
         return True

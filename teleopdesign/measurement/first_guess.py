@@ -63,7 +63,7 @@ def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, A
     band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     s = spectrum(len(position), sample_time)
     low = s.lowpass(band)
-    # from its first place on: at rest far from zero rounding is no motion
+    # relative to the first position: else rounding far from zero would look like motion
     moved = s.transform(position - position[:1]) * low
     velocity, acceleration = s.back(moved * s.derivative(1)), s.back(moved * s.derivative(2))
     speed = np.abs(velocity)
@@ -111,10 +111,10 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     (acceleration, direction, velocity, _), (target, place) = stretch
     place = place - place.mean()
     force = target - target.mean()
-    parts: list[tuple[float, float, float]] = []  # size of its force, value, what is left
+    parts: list[tuple[float, float, float]] = []  # size of the force, value, remaining error
     inertia: list[tuple[float, float]] = []
     for braked in (direction, velocity):
-        apart = braked - braked.mean()  # from a constant force, which belongs to neither
+        apart = braked - braked.mean()  # without the part that a constant force explains
         if np.std(braked) <= _ONE_WAY * np.sqrt(np.mean(braked**2)):
             continue
         columns = np.stack([acceleration - acceleration.mean(), apart])

@@ -183,7 +183,7 @@ def motion_of(
     smoothing = s.lowpass(min(SMOOTHING * bandwidth, 0.45 / sample_time), order=8)
     transformed = s.transform(position) * smoothing
     noise = reading_noise(position)
-    # rounding to a step looks like noise of 0.29 steps: more than that is real noise
+    # rounding to steps has an rms of 0.29 steps: more is noise
     step, reading = resolution or reading_step(position), position
     if noise > 0.6 * step:
         step = max(step, 4.0 * noise)

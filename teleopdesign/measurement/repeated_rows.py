@@ -65,7 +65,7 @@ def repeated_rows(
     if len(channels) < 2 or count < 2:
         return out
     same = np.logical_and.reduce([np.diff(y) == 0 for y in channels])
-    if not same.any() or same.mean() > MOST:  # where all is still, all is the same
+    if not same.any() or same.mean() > MOST:  # at rest all rows are equal
         return out
     first, past = runs_of(same)
     steps = [reading_step(x) for x in positions]
@@ -87,7 +87,7 @@ def repeated_rows(
         a, b = int(first[k]), int(past[k])
         inside[k] = bool(stuck[a + 1 : b + 1].all())
         inside[k] |= any(_leaps(x, a, b, s) for x, s in zip(positions, steps, strict=True))
-        # a force on a body at rest may be held and go on in a step, but not in the middle
+        # a force on a body at rest may be constant and then step, but not in the middle of a change
         inside[k] |= any(_leaps(f, a, b, 0.0) and _goes_on(f, a, b) for f in forces)
         inside[k] |= any(_noise_vanishes(f, a, b) for f in noisy)
     for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
@@ -118,7 +118,7 @@ def rows_between_readings(
     if not (between > 0).all():
         return none
     period = float(np.median(between))
-    if period < 1.5 * float(np.median(np.diff(stamps))):  # as many readings as rows, and rests
+    if period < 1.5 * float(np.median(np.diff(stamps))):  # a reading for each row, with rests
         return none
     count = np.concatenate([[0.0], np.cumsum(np.round(between / period))])
     slope, start = np.polyfit(count, at, 1)
@@ -133,7 +133,7 @@ def rows_between_readings(
         return none
     kept = none.copy()
     kept[changed] = True
-    for k in np.flatnonzero(between > 1.6 * period):  # at rest, or rows are lost
+    for k in np.flatnonzero(between > 1.6 * period):  # a rest, or lost rows
         first, past = changed[k], changed[k + 1]
         nth = np.floor((stamps[first:past] - stamps[first]) / period + 0.1)
         kept[first:past] |= np.diff(nth, prepend=0.0) > 0
@@ -179,7 +179,7 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
             continue
         ends = b == len(change)
         leaps = not ends and abs(change[b]) > LEAP * max(usual, step)
-        # a reading that was stuck leaps once; a body that rested at a reversal goes on as it began
+        # a stuck reading jumps once; a body that rested at a reversal continues with similar steps
         leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < 0.5 * abs(change[b]))
         if quantity == "position":
             slowing = abs(change[a - 1] - change[a - 3]) / 2

@@ -22,7 +22,7 @@ Rule = Literal["held", "position", "line"]
 STEPS = 2.5
 #: fewest pairs of rows for this test; part of the pairs between the same two changes that must
 #: agree; and step of the search for the phase, in samples
-_SEEN, _ALIKE, _PHASE = 20, 0.95, 0.005
+_FEWEST_PAIRS, _ALIKE, _PHASE = 20, 0.95, 0.005
 #: rows that are removed and filled again to measure the error of filling
 TRIALS = 2000
 
@@ -84,13 +84,13 @@ def command_phase(values: Array, clock: RecordClock) -> float | None:
     )
     pairs = pairs[np.diff(clock.places)[pairs] == 1]
     equal = values[pairs] == values[pairs + 1]
-    if equal.sum() < _SEEN:
+    if equal.sum() < _FEWEST_PAIRS:
         return None
     best: tuple[float, float] | None = None
     for phase in np.arange(-0.5, 0.5, _PHASE):
         cell = np.floor(at - phase)
         same = cell[pairs] == cell[pairs + 1]
-        if same.sum() < _SEEN or same.all():
+        if same.sum() < _FEWEST_PAIRS or same.all():
             continue
         within, across = float(equal[same].mean()), float(equal[~same].mean())
         if (
@@ -109,13 +109,13 @@ def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[
     """
     at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
     out = np.empty(len(clock.time))
-    unseen = 0
+    missing = 0
     for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
         cells, first = np.unique(np.floor(at[rows] - phase), return_index=True)
-        unseen += int(cells[-1] - cells[0]) + 1 - len(cells)
+        missing += int(cells[-1] - cells[0]) + 1 - len(cells)
         grid = np.arange(samples.start, samples.stop, dtype=np.float64)
         out[samples] = _average_held(*_fill_held(values[rows][first], cells + phase), grid)
-    return out, unseen / len(clock.time)
+    return out, missing / len(clock.time)
 
 
 def _fill_held(values: Array, at: Array) -> tuple[Array, Array]:
@@ -145,7 +145,7 @@ def _average_held(values: Array, at: Array, grid: Array) -> Array:
     edges = np.append(grid, grid[-1] + 1.0)
     ends = np.append(at, max(at[-1] + 1.0, edges[-1]))
     total = np.concatenate([[0.0], np.cumsum(values * np.diff(ends))])
-    # before the first row the first command is taken to have held
+    # assumption: the first command was held before the first row
     early = np.minimum(edges - ends[0], 0.0) * values[0]
     mean: Array = np.diff(np.interp(edges, ends, total) + early) / np.diff(edges)
     return mean
@@ -158,7 +158,7 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
     nearer = np.where(part <= 0.5, values[left], values[right])
     smooth = _cubic(values, at, grid, left) if len(at) > 3 else np.interp(grid, at, values)
-    # beyond the ends the end's reading stays
+    # beyond the ends the last reading is kept
     smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
     return np.where(slow, _interpolate_in_steps(values[left], values[right], part, step), smooth)

@@ -65,28 +65,28 @@ def signals_of_log(
         if phase is None:
             signals[key] = _resample_channel(values, channel, conversion, clock)
             continue
-        signals[key], unseen = commands_on_clock(values, clock.clock, phase)
-        steps.append(_describe_signal_clock(values, clock, phase, unseen, file, name))
+        signals[key], missing = commands_on_clock(values, clock.clock, phase)
+        steps.append(_describe_signal_clock(values, clock, phase, missing, file, name))
     if clock.clock.lost:
         steps.append(_describe_lost_rows(columns, channels, conversions, clock, file))
     return signals, steps
 
 
 def _describe_signal_clock(
-    values: Array, clock: LogClock, phase: float, unseen: float, file: str, name: str
+    values: Array, clock: LogClock, phase: float, missing: float, file: str, name: str
 ) -> ReadingStep:
     """Reading step for a command that changes on an even clock while rows are read at others."""
     wrong = filling_error(values, clock.clock, "held", step=0.0)
-    size = float(np.sqrt(unseen)) * wrong / max(float(np.sqrt(np.mean(values**2))), 1e-300)
+    size = float(np.sqrt(missing)) * wrong / max(float(np.sqrt(np.mean(values**2))), 1e-300)
     return ReadingStep(
         file,
         f"{name} changes on an even clock, rows are read at others",
-        f"each row tells the command between two changes; {100 * unseen:.2g} % are in no row and "
-        "are filled by the line between",
+        f"each row gives the command between two changes; {100 * missing:.2g} % of the commands "
+        "are in no row and are interpolated linearly",
         f"adds at most {100 * size:.2g} % of the force",
         size,
         "sample clock",
-        (("phase", phase * clock.clock.sample_time), ("unseen", unseen), ("force_error", size)),
+        (("phase", phase * clock.clock.sample_time), ("missing", missing), ("force_error", size)),
     )
 
 

@@ -20,7 +20,7 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     """Unit of a time column from its usual step, and the reason if the unit is a guess."""
     finite = stamps[np.isfinite(stamps)]
     step = float(np.median(np.abs(np.diff(finite))))
-    # a spreadsheet counts days; in s, such a log would be shorter than a record may be
+    # a spreadsheet counts days; read in seconds, such a log would be too short for a record
     if step < LONGEST_DAYS and _SHORTEST / DAY < float(np.ptp(finite)) < _SHORTEST:
         return "day", f"steps of {step:.4g} are those of a log only in days"
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))

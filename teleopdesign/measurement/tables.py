@@ -130,7 +130,7 @@ def _door_by_content(path: Path, file: str) -> Callable[[Path, str], Log] | None
         return None
     try:
         open_text(path, file)
-    except ExperimentError:  # a text, but no table: its ending is what is wrong
+    except ExperimentError:  # a text without a table: the message names the ending of the file
         return None
     return open_text
 
@@ -139,7 +139,7 @@ def tables_in(folder: Path) -> list[Path]:
     """The files of a folder that are tables, sorted by name; empty for an experiment."""
     if (folder / EXPERIMENT).exists():
         return []
-    inside = folder.resolve()  # no link leads out of it
+    inside = folder.resolve()  # links out of the folder are not followed
     files = [p for p in folder.iterdir() if p.is_file() and p.resolve().parent == inside]
     return sorted(p for p in files if is_log(p) and not is_bag(p))
 

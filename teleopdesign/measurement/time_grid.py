@@ -86,5 +86,5 @@ def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[flo
     slope = above / below
     left = sum(float(np.sum((b - slope * m) ** 2)) for b, m in pairs)
     number = sum(len(b) for b, _ in pairs)
-    # neighbouring second differences share readings: six samples' worth count as one
+    # neighbouring second differences share readings: six of them count as one
     return slope, math.sqrt(6.0 * left / max(number, 1) / below)

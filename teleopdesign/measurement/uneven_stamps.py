@@ -46,7 +46,7 @@ def rows_in_order(
             moved += int(np.sum(order != np.arange(len(part))))
             part = part[order]
             again = np.r_[False, np.diff(stamps[part]) <= 0]
-            # a stamp may differ by rounding from its repeat: a row that says the same far too early
+            # stamps of a repeated row may differ by rounding: an equal row far too early is one
             early = np.r_[False, np.diff(stamps[part]) < 0.25 * usual] & same_as_before[part]
             dropped += int(np.sum(again | early))
             parts.append(part[~(again | early)])
@@ -63,7 +63,7 @@ def sparse_clock(
     dropped, moved, restarts = changes
     count = sum(map(len, parts))
     if dropped > TOO_COARSE * len(stamps):
-        # stamps that many rows share cannot place them: rows are counted at the mean rate
+        # many rows share a stamp: rows are counted at the mean rate
         return _counted_clock(stamps, where)
     period = _usual_step([stamps[part] for part in parts])
     pieces: list[RowNumbers] = []
@@ -188,7 +188,7 @@ def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[RowNumb
         turns = np.exp(2j * np.pi * (stamps - stamps[0]) / period)
         phase = float(np.angle(turns.mean()) / (2 * np.pi))
         place = np.rint((stamps - stamps[0]) / period - phase)
-        # a row that came late by half a row or more stands before the next one all the same
+        # a row that is late by half a row or more remains before the next row
         count = np.arange(len(place))
         place = np.minimum.accumulate((place - count)[::-1])[::-1] + count
         off = (stamps - stamps[0]) / period - phase - place

@@ -96,8 +96,8 @@ def filter_both_ways(y: Array, extended: Array, sos: Array, steady_state: Array)
             extended[m + n + k, j] = 2.0 * y[n - 1, j] - y[n - 2 - k, j]
     copy_rows(y, extended[m : m + n])
     states = np.empty((2, 2, r))
-    # there and back by one call: of a copy of the loop for each LLVM makes no good vectors, and it
-    # takes twice as long
+    # one loop for both directions: LLVM vectorises two copies of the loop badly, which takes twice
+    # as long
     for way in range(2):
         there = extended[way * m :]
         settle(states, steady_state, there[way * (len(there) - 1)])

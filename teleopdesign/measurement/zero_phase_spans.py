@@ -44,12 +44,12 @@ def spans_of(rows: NDArray[np.intp], n: int, m: int, cutoff: float) -> NDArray[n
         return np.array([[0, n + 2 * m]])
     changed = np.zeros(n + 2 * m, dtype=bool)
     changed[m + rows] = True
-    # the continuation is mirrored at the outermost rows, and goes with them
+    # the continuation is the mirror image of the outermost rows, so it changes with them
     changed[m - rows[rows <= m]] = True
     changed[m + 2 * (n - 1) - rows[rows >= n - 1 - m]] = True
     changed[:m] |= rows[0] == 0
     changed[m + n :] |= rows[-1] == n - 1
-    changed[[0, -1]] = True  # where the filter begins, either way
+    changed[[0, -1]] = True  # where the filter begins in each direction
     places = np.flatnonzero(changed)
     ends = np.flatnonzero(np.diff(places) > NEAR + 1)
     return np.column_stack([places[np.append(0, ends + 1)], places[np.append(ends, -1)] + 1])
@@ -72,9 +72,9 @@ def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[in
     apart = np.flatnonzero(np.diff(rows) > 2 * reach)
     begins = np.maximum(rows[np.append(0, apart + 1)] - reach, 0)
     ends = np.minimum(rows[np.append(apart, -1)] + reach + 1, n)
-    if begins[0] == 0:  # the continuation there is made of the first m rows
+    if begins[0] == 0:  # the continuation there mirrors the first m rows
         ends[0] = max(ends[0], min(m + 1, n))
-    if ends[-1] == n:  # and there of the last
+    if ends[-1] == n:  # and here the last m rows
         begins[-1] = min(begins[-1], max(n - 1 - m, 0))
     if np.any(begins[1:] < ends[:-1]) or (ends - begins).sum() > MOST_SHARE * n:
         return [(0, n)]
@@ -177,8 +177,8 @@ def filter_spans(
     sos, steady_state, steps, swings = filters
     m = (extended.shape[0] - n) // 2
     count = len(spans)
-    states = np.zeros((2 * count, 4, r))  # after each span, there and back
-    # there and back by one call of `go_on`, as in `filter_both_ways`
+    states = np.zeros((2 * count, 4, r))  # after each span, in both directions
+    # one call of `go_on` for both directions, as in `filter_both_ways`
     for visit in range(2 * count):
         back = visit >= count
         c = 2 * count - 1 - visit if back else visit

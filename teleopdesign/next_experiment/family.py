@@ -22,7 +22,7 @@ SPEEDS = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 #: amplitudes of sums of sines over the largest amplitude
 SHARES = (1.0, 0.4, 0.15)
 #: fewest encoder steps of a motion
-SEEN = 10.0
+FEWEST_STEPS = 10.0
 #: intended duration of a part, s; and longest duration of a sweep over the whole stroke, s
 ABOUT, LONGEST = 4.0, 8.0
 #: speed of the motion to the start of a part, over the largest speed
@@ -93,7 +93,7 @@ def _sums_of_sines(s: Setting) -> Iterator[PathPart]:
                 sample_time=s.sample_time,
             )
             size = float(np.abs(path).max())
-            if size > SEEN * s.step:
+            if size > FEWEST_STEPS * s.step:
                 text = (
                     f"follow a sum of sines from {s.show(low, 'frequency')} to "
                     f"{s.show(high, 'frequency')}, up to {s.show(size, 'position')} from the middle"
@@ -109,7 +109,7 @@ def _runs(s: Setting) -> Iterator[PathPart]:
     for ratio in SPEEDS:
         speed = ratio * s.limits.speed
         reach = _reach(s, speed, 0.25 * ABOUT)
-        if reach < SEEN * s.step:
+        if reach < FEWEST_STEPS * s.step:
             continue
         times = max(1, round(ABOUT * speed / (4 * reach)))
         legs: list[Move | Hold] = []
@@ -141,7 +141,7 @@ def _sweeps(s: Setting) -> Iterator[PathPart]:
 def _two_speeds(s: Setting) -> Iterator[PathPart]:
     for reach in (s.limits.high, 0.3 * s.limits.high):
         fast, slow = s.limits.speed, max(2 * reach / LONGEST, 0.1 * s.limits.speed)
-        if reach < SEEN * s.step or slow >= fast:
+        if reach < FEWEST_STEPS * s.step or slow >= fast:
             continue
         legs: list[Move | Hold] = []
         for speed in (fast, slow):
@@ -157,7 +157,7 @@ def _starts_after_rest(s: Setting) -> Iterator[PathPart]:
     for ratio in (0.5, 0.05):
         speed = ratio * s.limits.speed
         reach = _reach(s, speed, 0.5)
-        if reach < SEEN * s.step:
+        if reach < FEWEST_STEPS * s.step:
             continue
         legs: list[Move | Hold] = []
         for rest in (0.05, 0.2, 0.8):
@@ -174,7 +174,7 @@ def _starts_after_rest(s: Setting) -> Iterator[PathPart]:
 def _steps(s: Setting) -> Iterator[PathPart]:
     for share in (1.0, 0.2):
         size = share * s.limits.high
-        if size < SEEN * s.step:
+        if size < FEWEST_STEPS * s.step:
             continue
         legs: list[Move | Hold] = []
         for to in (0.6, -0.4, 1.0, -1.0, 0.3, -0.6, 0.0):
@@ -184,7 +184,7 @@ def _steps(s: Setting) -> Iterator[PathPart]:
 
 def _places(s: Setting) -> Iterator[PathPart]:
     brisk, small = BRISK * s.limits.speed, 0.15 * s.limits.high
-    if small < SEEN * s.step:
+    if small < FEWEST_STEPS * s.step:
         return
     for ratio in (0.5, 0.05):
         speed = max(ratio * s.limits.speed, small)  # four runs of a small stroke take 4 s at most
@@ -203,7 +203,7 @@ def _places(s: Setting) -> Iterator[PathPart]:
 def _grow_amplitude(s: Setting) -> Iterator[PathPart]:
     t = np.arange(0.0, 1.5 * ABOUT, s.sample_time)
     for largest in (0.3 * s.limits.high, 100 * s.step):
-        smallest = 0.5 * SEEN * s.step
+        smallest = 0.5 * FEWEST_STEPS * s.step
         if largest < 2 * smallest:
             continue
         grown = smallest * (largest / smallest) ** (t / t[-1])

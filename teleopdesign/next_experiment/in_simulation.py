@@ -26,7 +26,7 @@ class SimulatedDiagnosis:
 
     def __str__(self) -> str:
         what = ", ".join(str(c) for c in self.diagnosis.missing) or self.diagnosis.verdict
-        return f"if {self.truth} is right, the diagnosis says: {what}"
+        return f"if {self.truth} is the true effect, the diagnosis states: {what}"
 
 
 def show_in_simulation(
@@ -47,7 +47,7 @@ def show_in_simulation(
         if proposal.plan is None or time.perf_counter() - began > seconds:
             break
         if progress is not None:
-            progress(f"simulating: {rival} is right")
+            progress(f"simulating records with {rival} as the true effect")
         new = run_twice(rival.model, proposal.plan, proposal.bench, seed=seed + i)
         experiment = with_records(proposal.diagnosis.experiment, new)
         diagnosis = find_missing(experiment, proposal.diagnosis.before.model)

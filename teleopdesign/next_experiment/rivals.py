@@ -79,7 +79,7 @@ def rival_instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit:
     rung = next(r for r in diagnosis.rungs if r.added == added)
     gone = rung.instead_of
     try:
-        model = rung.taken_from(model)
+        model = rung.undo_addition(model)
         if gone is not None and not fit.model.body(gone.at).has(gone.effect.name):
             model = model.without_effect(gone.effect.name, at=gone.at)  # the other needs it no more
         return estimate(model.with_effect(effect, at=at, values=values), diagnosis.prepared)

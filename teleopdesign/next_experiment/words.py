@@ -65,7 +65,7 @@ def _explain_nothing_open(proposal: Proposal) -> str:
     if nearest:
         return (
             f"More is missing, and only {nearest[0]} comes near: there is no rival to distinguish "
-            "it from. Longer check records decide whether it is there."
+            "it from. Longer check records decide whether this effect is present."
         )
     return "The present records decide: no rival is left to distinguish."
 
@@ -126,20 +126,20 @@ def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     remedies = proposal.remedies.get(pair, ())
     if not remedies:
         return said
-    return f"{said} {_remedies_said(remedies)}"
+    return f"{said} {_describe_remedies(remedies)}"
 
 
 #: most remedies in a sentence, so that it stays readable
 MOST_SAID = 3
 
 
-def _remedies_said(remedies: Sequence[Remedy]) -> str:
+def _describe_remedies(remedies: Sequence[Remedy]) -> str:
     helping = [r for r in remedies if r.separation >= DECIDES]
     if helping:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])
         more = len(helping) - MOST_SAID
         others = f"; or in {more} other ways (`Proposal.remedies`)" if more > 0 else ""
-        return f"In simulation, the true one would be identified if {listed}{others}."
+        return f"In simulation, the true effect would be identified if {listed}{others}."
     changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)
     if all(r.separation < SAME for r in remedies):
         return (

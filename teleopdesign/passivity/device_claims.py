@@ -167,7 +167,7 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     ]
     presliding = device.presliding
     if presliding is None:
-        text = "largest f_D that drives no motion, viscous damping counted"
+        text = "largest f_D that drives no motion, with viscous damping"
         return [*limits, Margin(text + alone, _round_limit(device.least_resistance.low), force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
     if device.damping.low * device.lowest.low < recoil:

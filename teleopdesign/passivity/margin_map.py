@@ -85,7 +85,7 @@ def margin_map(
 
     if len(values) != 2 or len({name.partition(".")[0] for name in values}) != 2:
         raise ModelError(
-            f"margin map: expected values of two blocks, found {', '.join(values) or 'none'}"
+            f"margin_map: expected values of two blocks, found {', '.join(values) or 'none'}"
         )
     f = np.geomspace(*_FREQUENCY) if frequency is None else np.asarray(frequency, dtype=float)
     device = linear_tips(diagram.without("Z_H", "Z_E"))

@@ -181,7 +181,7 @@ def draw_ladder(ax: Axes, rungs: Sequence[Rung | ArmRung], floor: float, *, of: 
 
     floor: noise floor, relative like the errors;  of: words for what the errors are relative to
     """
-    names = ["your model, re-estimated" if r.added is None else f"+ {r.said}" for r in rungs]
+    names = ["your model, re-estimated" if r.added is None else f"+ {r.title}" for r in rungs]
     errors = [100 * r.fit.check_error for r in rungs]
     rows = np.arange(len(names))
     colors = [BEFORE] + [AFTER] * (len(names) - 1)

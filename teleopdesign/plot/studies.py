@@ -62,9 +62,7 @@ class StudyPlots:
         self._study.require(across, dims)
         each = [d for d in dims if d != across]
         if len(each) > 1:
-            raise ModelError(
-                f"study: curves: give values of all but two of {join_names(dims)}: at=..."
-            )
+            raise ModelError(f"curves: give values of all but two of {join_names(dims)}: at=...")
         with plt.style.context(house_style()):
             figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
             lines = self.data[each[0]].values if each else [None]
@@ -131,7 +129,7 @@ class StudyPlots:
 
         values = self._study.measure(measure)
         if values.ndim != 1:
-            raise ModelError("study: scatter: points drawn together alone, without further axes")
+            raise ModelError("scatter: expected points drawn together alone, without further axes")
         names = self._study.axes[:MOST_PANELS]
         columns = min(len(names), 4)
         rows = -(-len(names) // columns)

@@ -161,7 +161,7 @@ class Generator:
             **dict.fromkeys(("SLOPES", "LAST_SLOPES", "WORST"), bristles),
             **dict.fromkeys(("E_HALF", "G_HALF", "E_STEP"), bristles),
             **dict.fromkeys(("WEIGHT_0", "WEIGHT_1", "WEIGHT_3"), bristles),
-            **dict.fromkeys(("POSITIONS", "VELOCITIES", "SEEN", "TRAVEL"), motions),
+            **dict.fromkeys(("POSITIONS", "VELOCITIES", "LAST_READING", "TRAVEL"), motions),
             **dict.fromkeys(("KNOWN", "OBSERVED", "BEND"), motions),
             "NOW": len(self._analog_signals()),
             "MADE": len(self._computer_signals()),
@@ -191,7 +191,7 @@ class Generator:
         moving = {*e.rates, *e.joined, *e.inputs}
         if not self.commands:
             return [True] * len(e.late)
-        for _ in e.late:  # a late signal that is late once more
+        for _ in e.late:  # once for each late signal: one may be the delay of another
             moving |= {s for s, (x, _) in e.late.items() if x.free_symbols & moving}
         return [bool(x.free_symbols & moving) for x, _ in e.late.values()]
 
@@ -266,7 +266,7 @@ class Generator:
         motions, made = self.motions, self._computer_signals()
         rows = {
             "NOW": [reading_symbol(x.name) for x in self._analog_signals()],
-            "SEEN": [reading_symbol(m) for m in motions],
+            "LAST_READING": [reading_symbol(m) for m in motions],
             "TRAVEL": [travel_rate(m) for m in motions],
             "KNOWN": [estimate(m) for m in motions],
             "COMPUTER_STATES": self.computer_states,

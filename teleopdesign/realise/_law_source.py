@@ -70,7 +70,10 @@ def write_reader(name: str, many: int) -> str:
 
     Beyond the last column the function returns the last one: a table of one column is constant.
     """
-    numbers = [*(f"table[{i}, column]" for i in range(many)), "0.0"]  # there may be no input
+    numbers = [
+        *(f"table[{i}, column]" for i in range(many)),
+        "0.0",
+    ]  # 0.0: a tuple also without inputs
     held = "    column = min(column, table.shape[1] - 1)\n" if many else ""
     return f"@jitted\ndef {name}(table, column):\n{held}    return ({', '.join(numbers)},)\n\n\n"
 

@@ -32,12 +32,12 @@ def solve_linear(
             for x in sorted(left & row.free_symbols, key=str):
                 factor = sp.diff(row, x)
                 if left & factor.free_symbols:
-                    continue  # it may stand alone once others are known
+                    continue  # its factor may become known with other unknowns
                 cost = (not factor.is_Number, len(left & row.free_symbols), factor.count_ops())
                 if factor != 0 and (choice is None or cost < choice[0]):
                     choice = (cost, i, x, factor)
         if choice is None:
-            for row in rows:  # an unknown that enters other than linearly is named
+            for row in rows:  # name an unknown that does not enter linearly, if there is one
                 for x in sorted(left & row.free_symbols, key=str):
                     _factor(row, x, left, name)
             raise _undetermined_error(left, name)
@@ -48,7 +48,7 @@ def solve_linear(
         row = rows.pop(i)
         value = -row.xreplace({x: sp.S(0)}) / factor
         rows = [r.xreplace({x: value}) if r.has(x) else r for r in rows]
-        # like terms must meet, or a pivot that is zero would not be seen
+        # like terms are collected: else a pivot that is zero would not be recognised
         rows = [_gather(r, left - {x}) for r in rows]
         solution = {s: e.xreplace({x: value}) for s, e in solution.items()} | {x: value}
         left.remove(x)
@@ -71,7 +71,7 @@ def _gather(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
     here = sorted(unknown & row.free_symbols, key=str)
     factors = {x: sp.diff(row, x) for x in here}
     if any(unknown & f.free_symbols for f in factors.values()):
-        return row  # a law of what is not known yet
+        return row  # not linear in its unknowns yet
     factors = {x: sp.expand(f, power_exp=False) for x, f in factors.items()}
     rest = row.xreplace(dict.fromkeys(here, sp.S(0)))
     return sp.Add(rest, *(f * x for x, f in factors.items()))

@@ -143,7 +143,7 @@ def _write_rates(effect: Effect) -> list[str]:
                 for j, k in law_slopes.items()
             ]
         each.append(f"g_{i} = {moved}")
-    # a stage may follow itself, so slopes are stored when all of them are known
+    # slopes are stored when all are known, because a state may depend on the slope of another
     each += [f"g[stage, {i}, c] = g_{i}" for i in range(len(states))]
     lines.append("for c in range(q + 1):")
     lines += [f"    {line}" for line in each]
@@ -161,7 +161,7 @@ def _write_dry(effect: Effect) -> list[str]:
         before, moved, by_parameter = _write_tangents(f"dry_{i}", bound, states, parameters, names)
         lines += [*assignments({f"most_{i}": bound}, names), *before]
         lines += [
-            # half a step on, for what drives it changes on the way: else a stuck state creeps
+            # half a step ahead, because the driving force changes: else a stuck state creeps
             f"wanted = z_{i} / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
             f"within = abs(wanted) <= most_{i}",
             f"hold[{i}] = wanted if within else copysign(most_{i}, wanted)",
@@ -217,7 +217,7 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
     n = drive.shape[1]
     s, q = {len(effect.states)}, dout.shape[1]
 {indent(parameters, 4)}
-    # the last column is a difference that nothing drives: how much it grows
+    # the last column is a difference without input, whose growth is measured
     d = np.zeros((s, q + 1))
     d[:, q] = size
     f = np.zeros((4, s))
@@ -234,7 +234,7 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
         if grown > growth:
             d[:] = 0.0
             d[:, q] = size
-        elif 0.0 < grown < 1.0:  # what was forgotten since does not count
+        elif 0.0 < grown < 1.0:  # a difference that decayed is restored to its first size
             d[:, q] /= grown
         for i in range(s):
             out[i, k] = z[i]

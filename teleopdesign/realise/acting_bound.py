@@ -24,7 +24,7 @@ def largest_acting_force(
     box = signal_ranges(reach) | parameter_box(body, errors=errors)
     largest = command
     for effect in sort_by_action(body.effects, "actuation"):
-        # what acted a while ago lay in the same range; a state of the stage may be held in it
+        # delayed signals and states of a stage lie in the same range
         law = effect.expression().replace(delayed, lambda signal, _: signal)
         states = effect.state_symbols().values()
         within = dict.fromkeys((SIGNALS["command"], *states), (-largest, largest))

@@ -58,7 +58,7 @@ def _balance(
     for turn in range(STEPS + 1):
         if turn == 1:
             filter_both_ways(left, extended, sos, steady)
-            for k in range(n):  # from here on: by what it changes from one step to the next
+            for k in range(n):  # from now on: only the change from one step to the next
                 for j in range(r):
                     left[k, j] = 0.0
         elif turn > 1:
@@ -70,8 +70,8 @@ def _balance(
         for i, k in enumerate(rows):
             value = ahead[i, 0] + smooth[i, 0] + extended[m + k, 0]
             clipped = 2 if value >= there[2, i, 0] else 1 if value <= there[1, i, 0] else 0
-            # where the value is clipped, its tangents are the bound's; a loop for each case, for
-            # with all in one numba makes no vector instructions
+            # a clipped value has the tangents of its bound. One loop for each case: numba makes no
+            # vector instructions of a loop with both cases
             if clipped:
                 for j in range(r):
                     smooth[i, j] += extended[m + k, j]
@@ -125,7 +125,7 @@ def balance_within_bounds(
             low.between(here),
             high.between(here),
             mine,
-            # between others a window's ends are felt at no open row
+            # a window between others has no effect of its ends at the open rows
             m if first == 0 or last == n else 1,
             (bandwidth, sample_time),
         )

@@ -63,7 +63,7 @@ def _is_private(folder: Path) -> bool:
                 return False
             if stat.S_IMODE(state.st_mode) & 0o077:
                 if state.st_mode & _OTHERS_WRITE:
-                    return False  # what lies there may be another's
+                    return False  # other users could have written the files in this folder
                 folder.chmod(0o700)
         with tempfile.TemporaryFile(dir=folder):
             return True
@@ -106,7 +106,7 @@ def compiled_module(source: str, function: str) -> Mapping[str, Any]:
         path = None
     with _EXECUTING:  # candidates are fitted in threads; numba's cache finds the module by its name
         if path is not None:
-            with suppress(RuntimeError):  # numba finds no place for machine code
+            with suppress(RuntimeError):  # numba has no folder for machine code
                 return _names(source, name, str(path))
         return _names(source.replace("cache=True", "cache=False"), name, f"<{name}>")
 

@@ -99,7 +99,7 @@ def _electronic_signals(diagram: Diagram) -> set[str]:
     electronic = {c.output for c in diagram.controls if c.analog} - sensors
     electronic |= {c.input for c in diagram.controls if c.analog and c.input in made}
     grown = True
-    while grown:  # a junction of electronic signals alone or with others is electronic as well
+    while grown:  # a junction with an electronic signal is electronic as well
         behind = {j.output for j in made.values() if electronic & set(j.terms)}
         grown, electronic = not behind <= electronic, electronic | behind
     return electronic

@@ -95,7 +95,7 @@ def affine_slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
     moving = {f(m) for m in equations.motions for f in (signal, velocity)}
     by_state = {}
     for state, rate in equations.rates.items():
-        # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
+        # not simplified: exp(-u) could become 1/exp(u), which overflows
         slope = sp.diff(rate, state) if state not in moving else sp.S(0)
         if slope != 0 and not slope.has(state):
             by_state[state] = slope

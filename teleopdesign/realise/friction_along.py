@@ -83,7 +83,7 @@ def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> 
     """The part of the friction that the acting force itself causes."""
     if not level.has(_ACTING):
         return constant(np.zeros_like(friction.value), len(friction.tangent))
-    # by values: as one law, a level of pieces would be a condition of pieces, which numpy refuses
+    # by values: numpy refuses one law in which a piecewise level is part of a condition
     whole, rest = along.evaluate(level), along.evaluate(level.subs(_ACTING, 0))
     is_there = whole.value > 0
     size = np.where(is_there, whole.value, 1.0)

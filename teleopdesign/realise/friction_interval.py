@@ -163,7 +163,8 @@ def lowest_of(
     if all(low == high for low, high in within.values()):
         return Interval(estimate.bound, estimate.bound, estimate.bound), point
     low, worst = _least_either_way(law, signals | exact | within)
-    # with any parameters it is at most this where it is least at the estimates
+    # upper bound of the least level, for any parameters: the level at the point that is least with
+    # the estimates
     there = {s: (x, x) for s, x in point.items() if s in signals}
     turned = -_fix_direction(law, point.get(DIRECTION, 1.0))
     high = -least_value(turned, signals | exact | within | there).bound

@@ -151,7 +151,7 @@ def step(time, h, inputs_0, inputs_1, inputs_2, memory, lane):
 @jitted
 def advance(first, time, h, inputs_0, inputs_1, inputs_2, memory):
     """One step of all lanes;  first: whether it is the first one;  inputs: as in `step`."""
-    # a short loop over a number that the compiler knows would become one lane after the other
+    # the compiler must not know this number: else it would unroll the loop into single lanes
     lanes = LANES if LANES == 1 else memory.size // ROWS
     for lane in range(LANES):
         find_slopes(first, time, h, inputs_0, memory, lane)
@@ -175,7 +175,7 @@ def know_velocity(at, reading, period, smoothing, memory, lane):
         order 2: w^2/(s + w)^2, late by 2/w      order 3: (3 w^2 s + w^3)/(s + w)^3, late by nothing
     for slow motion. OBSERVER 0 is the filtered difference, w/(s + w), late by 1/w.
     """
-    travel = (reading - memory[SEEN + at]) / period
+    travel = (reading - memory[LAST_READING + at]) / period
     known = memory[KNOWN + at]
     left = 1.0 - smoothing
     memory[TRAVEL + at] = travel
@@ -213,7 +213,7 @@ def read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane):
             memory[OBSERVED + at] = reading
         else:
             know_velocity(at, reading, period, smoothing, memory, lane)
-        memory[SEEN + at] = reading
+        memory[LAST_READING + at] = reading
 
 
 @jitted
@@ -256,7 +256,7 @@ def sample(
     first: whether it is the first sample;  n: its number;  place: its number for the ring `past`
     """
     recall(place, late_samples, past, slots, memory, lane)
-    # what sensors see: just before the new command
+    # sensors read just before the new command
     signals(time, STATES, BRISTLES, inputs, LATE, memory, NOW, lane)
     read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane)
     if not first:
@@ -323,7 +323,7 @@ def delay(j, time, inputs, late_steps, before, after, slots, memory, lane):
 
     late_steps: delay of each signal in steps;  before, after: rings, as in `earlier`
     """
-    if j > 0:  # before the start all is zero, so that what is not jumps there
+    if j > 0:  # before the start all signals are zero: another value at the start is a jump
         keep_late(j, time, inputs, before, slots, memory, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
@@ -335,7 +335,7 @@ def delay(j, time, inputs, late_steps, before, after, slots, memory, lane):
         whole = int(np.ceil(late_steps[i]))
         node, part = j - whole, whole - late_steps[i]
         now = memory[LATE + at]
-        middle, end = now, now  # what is held over a step stays
+        middle, end = now, now  # a held signal does not change within a step
         if SMOOTH[i]:
             if part < 0.5:
                 middle = earlier(at, node, part + 0.5, before, after, slots)

@@ -144,7 +144,7 @@ def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Int
     )
     every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
     static = [p for p in every if p.output in parts.computer.signals]
-    # python-control has no system without inputs: what never changes is an output of the mechanics
+    # python-control has no system without inputs: constant sums are outputs of the mechanics
     idle = {signal(p.output): float(sum_inputs(p, signal)) for p in static if not p.inputs}
     numbers.fixed.update(idle)
     systems = [_mechanics(parts, numbers, idle, names)]
@@ -277,7 +277,7 @@ def _nlsys(
         ) -> np.ndarray:
             return np.array(call(t, x, u, [params.get(n, v) for n, v in defaults]), dtype=float)
 
-        # a contact's law is evaluated where nothing touches too
+        # the law of a contact is also evaluated without contact
         one_sided = any(e.has(sp.Piecewise) for e in (*printed, *(e for _, e in steps)))
         return np.errstate(all="ignore")(values) if one_sided else values
 

@@ -147,7 +147,7 @@ def first_memory(
 def grid(made: Program, timing: Timing, lanes: int) -> tuple[Any, ...]:
     """The first arguments of the loop: its grid, and ring buffers for delayed signals."""
     held = timing.lag // timing.inner + 2
-    # three nodes before the one that is looked up, and that of the running step
+    # three nodes before the interpolated one, and the node of the current step
     late = math.ceil(max(timing.late, default=0)) + 4
     past = int(max(timing.late_samples, default=0)) + 2
     nodes, samples = (n * lanes for n in (len(made.layout.late), len(timing.late_samples)))
@@ -194,7 +194,7 @@ def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) ->
     slopes = np.zeros(n * n * lanes)
     memory = first_memory(made, lanes, parameters, {})
     inputs = np.zeros((max(len(layout.inputs), 1), 1))
-    with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
+    with np.errstate(all="ignore"):  # the law of a contact is also evaluated without contact
         loop.differentiate_at_rest(inputs, memory, _SMALL, slopes)
     jacobian = np.moveaxis(slopes.reshape(n, n, lanes), -1, 0)
     exact = [i for i, name in enumerate(layout.states) if name in layout.exponential]
@@ -240,4 +240,4 @@ def long_step_error(step: float, use: float, why: str) -> ModelError:
 
     step, use: s, the refused step, and a step that can be used;  why: reason, in words
     """
-    return ModelError(f"simulate: step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")
+    return ModelError(f"step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")

@@ -45,7 +45,7 @@ def _stiffness(effect: Effect) -> tuple[list[str], Any]:
     Laws with gaps or stops are evaluated where they are stiffest, by the first of their pieces,
     with every state at the signal that it starts at.
     """
-    # a correction is fastest where little is left unexplained, and then linear in it
+    # a correction is fastest where the unexplained force is small, and linear in this force there
     law, corrections = effect.expression(), effect.corrections()
     rates = [
         rate - law * sp.diff(corrections.get(name, sp.S(0)), UNEXPLAINED).subs(UNEXPLAINED, 0)
@@ -123,7 +123,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     drive = np.ascontiguousarray([*drivers, *(r.value for r in corrected)])
     bends = _bends(drive, [_slope_of(n, along) for n in list_drivers(effect)], step)
     n, count = drive.shape[1], len(effect.states)
-    # without corrections nothing but the parameters of the rates moves the states
+    # without corrections only the parameters of the rates change the states
     mine = np.arange(len(columns)) if corrected else np.unique(places[places >= 0])
     places = np.where(places >= 0, np.searchsorted(mine, places), -1)
     moving = np.zeros((len(corrected), n, len(mine) + 1))
@@ -134,7 +134,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     )
     out, tangent = np.empty((count, n)), np.zeros((count, len(columns), n))
     if covered <= STABLE * MOST_STEPS:
-        # a difference of one in position goes with one of the fastest mode's rate in velocity
+        # scale: a difference of 1 in position, and of the rate of the fastest mode in velocity
         rate = max(fastest, 1e-300)
         states = effect.states.values()
         size = np.array([rate if s.quantity == "velocity" else 1.0 for s in states])
@@ -146,7 +146,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
         if by_mine is not tangent:
             tangent[:, mine] = by_mine
     if covered > STABLE * MOST_STEPS or not np.isfinite(out).all():
-        # too fast for the record's rate: no number at all rather than a wrong one
+        # too fast for the sample rate: NaN instead of a wrong number
         out[:], tangent[:] = np.nan, np.nan
     return {
         symbol: Traced(out[i], tangent[i])

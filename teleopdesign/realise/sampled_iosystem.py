@@ -102,7 +102,7 @@ class _Sample:
             "STATES": layout.states,
             "COMPUTER_STATES": layout.computer_states,
             "COMMANDS": tuple(f"{name}_held" for name in layout.commands),
-            "SEEN": tuple(motions),
+            "LAST_READING": tuple(motions),
         }
         self.rows = np.concatenate(
             [at[first] + np.arange(len(names)) for first, names in groups.items()]

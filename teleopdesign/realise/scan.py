@@ -90,7 +90,7 @@ def _stage_source(effect: Effect) -> str:
         "s1 = p1 - p2",
         "s2 = p2 - 2.0 * p3",
     ]
-    # a lag that no signal changes moves on alike in each sample: an exponential for all of them
+    # a lag with a constant rate: one exponential for all samples
     each = any(a.has(SIGNALS[n]) for n in used)
     return f"""{HEAD}
 

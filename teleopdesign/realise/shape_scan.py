@@ -58,8 +58,8 @@ def _shape_module(
     law, used = effect.expression(), _signals_of_shape(effect)
     by = slopes_by(effect, "level")
     arguments = [*(names[s] for s in effect.symbols().values()), *(f"{n}_" for n in used)]
-    # the states move by the readings' travel, the force follows the smoothed velocity: so no travel
-    # of a bristle is lost. 1e-12: a rate may divide by the level, which is far above or absent
+    # states follow the travel of readings, the force the smoothed velocity, so that no travel of
+    # a bristle is lost. 1e-12: a rate may divide by the level, which is far larger or zero
     return f"""{HEAD}
 
 @jitted
@@ -77,7 +77,7 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 {indent(assignments({"force": law, "slope": slope}, names), 8)}
 {indent(weights, 8)}
 {indent(slope_lines("f", law, by, names) + slope_lines("g", slope, by, names), 8)}
-        # where the reading cannot tell a motion, the position is open by half a step
+        # where the reading shows no motion, the position is uncertain by half a step
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
         above = force + free * abs(slope)
@@ -131,7 +131,7 @@ def _stop_lines(count: int) -> list[str]:
             f"stop_{i} = max(s{i}, 0.0)",
             f"z_{i} += h * r{i}",
             f"held_{i} = abs(z_{i}) > stop_{i}",
-            # an element that slides stays at its stop: its force no longer grows with travel
+            # a sliding element stays at its stop: its force does not grow with travel
             f"z_{i} = copysign(stop_{i}, z_{i}) if held_{i} else z_{i}",
         ]
     return lines

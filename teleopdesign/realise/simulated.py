@@ -64,7 +64,7 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
         gone |= {e.name for e in body.effects if e.role == "tip_level"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
     gone -= needed
-    # what needs others goes before them
+    # an effect that needs others is removed before them
     while gone:
         held = {n for e in body.effects for n in e.needs}
         for name in sorted(gone - held):
@@ -175,7 +175,7 @@ def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any
         at = [equation.level.subs(at_rest | now | {SIGNALS["velocity"]: v}) for v in speeds]
         symbols = sorted(set().union(*(x.free_symbols for x in at)), key=str)
         call = sp.lambdify(symbols, [for_numpy(x) for x in at], "numpy")
-        # numpy joins conditions of a law only where all of them are as long
+        # numpy combines conditions of a law only if all arrays have the same length
         levels[way] = np.minimum(*call(*np.broadcast_arrays(*map(value, symbols))))
     return levels
 
@@ -237,7 +237,7 @@ def prepare_for_simulation(
             check_levels(there, f"{diagram.name}: {part.name}")
             bodies[part.name] = with_bristle(there, deflection)
     apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
-    # of a tip that dry friction holds
+    # tips with dry friction need a bristle, too
     tips = {
         b.name: with_bristle(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)
     }

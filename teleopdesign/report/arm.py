@@ -31,7 +31,7 @@ from .write import Figures, figures_of, render_page
 class JointPart:
     """A joint: its errors with all joints estimated together, and its page.
 
-    left: check error in noise floors of the joint;  said: the verdict on the joint in words
+    left: check error in noise floors of the joint;  sentence: the verdict on the joint in words
     """
 
     name: str
@@ -39,7 +39,7 @@ class JointPart:
     after: float
     floor: float
     left: float
-    said: str
+    sentence: str
     page: Page
 
 
@@ -138,7 +138,7 @@ def _joint(
         after=diagnosis.after.check_errors[joint],
         floor=one.floor.value,
         left=one.left,
-        said=sentence(one).removeprefix("verdict: "),
+        sentence=sentence(one).removeprefix("verdict: "),
         page=page_of(one, unexplained=left),
     )
 
@@ -147,7 +147,7 @@ def _ladder(diagnosis: ArmDiagnosis) -> tuple[LadderRow, ...]:
     floor = diagnosis.floor
     return tuple(
         LadderRow(
-            name=r.said or "your model, re-estimated",
+            name=r.title or "your model, re-estimated",
             brief="your model" if r.added is None else r.added.effect.name,
             fit_error=r.fit.fit_error,
             check_error=r.fit.check_error,
@@ -171,9 +171,9 @@ def _verdict(diagnosis: ArmDiagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         return f"Your model of the arm lacks {names}. With all that was added {fell}."
     if len(diagnosis.rungs) > 1:
-        added = join_names([r.said for r in diagnosis.rungs[1:]])
-        return f"Undecided: with {added} {fell}, but these records do not tell what is missing."
-    return f"Undecided: something is missing, but no effect that was tried explains the {after}."
+        added = join_names([r.title for r in diagnosis.rungs[1:]])
+        return f"Undecided: with {added} {fell}, but these records do not show what is missing."
+    return f"Undecided: something is missing, but no candidate effect explains the {after}."
 
 
 def write_arm_report(

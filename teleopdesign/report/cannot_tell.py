@@ -28,7 +28,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     """Effects, parameters and candidates that the records cannot decide; may be empty."""
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
-        *_untold(diagnosis),
+        *_list_undetermined(diagnosis),
         *_set_aside(diagnosis),
         *_findings_at_bound(diagnosis),
         *_clock(diagnosis),
@@ -42,10 +42,11 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     return (*groups, *rest)
 
 
-def _untold(diagnosis: Diagnosis) -> list[Finding]:
+def _list_undetermined(diagnosis: Diagnosis) -> list[Finding]:
     """Parameters without a determined value, of effects that are certain."""
     return [
-        Finding("values that are not determined", "warning", f"{one}.") for one in diagnosis.untold
+        Finding("values that are not determined", "warning", f"{one}.")
+        for one in diagnosis.undetermined
     ]
 
 
@@ -100,8 +101,8 @@ def _group(rung: Rung) -> Finding:
         sentence=(
             f"{join_names(names)} explain these records equally well: added at the same step they "
             f"leave {errors}, at most {number(apart, 2)} standard deviations of chance apart (from "
-            f"{CRITERIA.close:g} on they would be told apart). Along this motion they change the "
-            f"model's force in the same way: the correlation is {number(likeness, 4)}."
+            f"{CRITERIA.close:g} on, the records would distinguish them). Along this motion they "
+            f"change the model's force in the same way: the correlation is {number(likeness, 4)}."
         ),
         numbers=numbers | {"standard_deviations_apart": apart, "correlation": likeness},
     )
@@ -204,8 +205,8 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
             concern="note",
             sentence=(
                 f"These records do not determine {join_names(names, 'or')}: with such an effect "
-                "added, its parameters could take many values, or others of the model would make "
-                "up for it."
+                "added, its parameters could take many values, or other parameters of the model "
+                "would compensate for its force."
             ),
         )
     ]
@@ -231,12 +232,13 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
         return []
     return [
         Finding(
-            topic="effects that were not tried",
+            topic="effects that were no candidates",
             concern="note",
             sentence=(
-                f"Not tried on the last step: {join_names(reasons)}. An effect is left out where "
-                "another stands in its place, where it needs one that the model lacks, or where "
-                "the motion never comes back to a place and so cannot tell place from time."
+                f"No candidates on the last step: {join_names(reasons)}. An effect is no "
+                "candidate if another effect stands in its place, if it needs an effect that the "
+                "model lacks, or if the motion never returns to a position, so that an effect of "
+                "position cannot be distinguished from a drift over time."
             ),
         )
     ]

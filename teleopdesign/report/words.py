@@ -93,7 +93,7 @@ def step_name(rung: Rung) -> str:
     """The effect that a rung adds, with equally good ones: "stribeck at device"."""
     if rung.added is None:
         return "your model, re-estimated"
-    return " or ".join((rung.said, *map(str, rung.alternatives)))
+    return " or ".join((rung.title, *map(str, rung.alternatives)))
 
 
 def describe_judgement(experiment: Experiment) -> str:
@@ -124,7 +124,7 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.may_be_noise:
         rest = (
             f"The remaining error is {left} times the noise floor of {floor}. With this model "
-            f"sensor errors leave {percent(diagnosis.floor.drawn)}: these records do not tell "
+            f"sensor errors leave {percent(diagnosis.floor.drawn)}: these records do not show "
             "whether more is missing."
         )
     if (moment := diagnosis.moment) is not None:
@@ -141,12 +141,13 @@ def verdict(diagnosis: Diagnosis) -> str:
         named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
         less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
         others = f" {join_names(less)} helps, but is less likely than not." if less else ""
-        pronoun = "it" if len(added) == 1 else "them"
-        return f"Your model lacks {join_names(named)}. With {pronoun}, {fell}.{others} {rest}"
+        added_words = "this effect" if len(added) == 1 else "all added effects"
+        return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
     if not added:
         return (
-            f"Undecided: something is missing, but no effect that was tried explains it. The force "
-            f"error is {percent(after)}, {left} times what sensor noise alone would leave."
+            "Undecided: something is missing, but no candidate effect explains the remaining "
+            f"force. The force error is {percent(after)}, {left} times what sensor noise alone "
+            "would leave."
         )
     if diagnosis.unlikely:
         each = "it is" if len(added) == 1 else "each is"
@@ -155,7 +156,7 @@ def verdict(diagnosis: Diagnosis) -> str:
         )
     if all(r.alternatives for r in diagnosis.rungs[1:]):
         names = join_names(added)
-        return f"Undecided between {names}: these records cannot tell. Either way {fell}. {rest}"
+        return f"Undecided between {names}: these records do not decide. Either way {fell}. {rest}"
     helps = "helps, but explains" if len(added) == 1 else "help, but explain"
     return (
         f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"

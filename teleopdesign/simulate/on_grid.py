@@ -27,7 +27,7 @@ def delay_in_steps(delay: float, step: float, *, can_be_between: bool) -> float:
     if not can_be_between or is_whole(count):
         count = float(whole_steps(delay, step, "a delay of an actuator or of a held command"))
     if count < 1:
-        raise ModelError(f"simulate: a delay of {delay:g} s is below the step, {step:g} s")
+        raise ModelError(f"a delay of {delay:g} s is below the step, {step:g} s")
     return count
 
 
@@ -36,7 +36,7 @@ def whole_steps(delay: float, step: float, what: str) -> int:
     count = round(delay / step)
     if abs(count * step - delay) > 0.02 * delay + 1e-12:
         raise ModelError(
-            f"simulate: {what} of {delay * 1e3:g} ms is no whole number of steps of "
+            f"{what} of {delay * 1e3:g} ms is no whole number of steps of "
             f"{step * 1e3:g} ms: use a step that divides it"
         )
     return count
@@ -51,9 +51,7 @@ def input_table(
         value = signals.get(name, 0.0)
         row = _evaluate_at(value, time) if callable(value) else np.asarray(value, dtype=float)
         if row.ndim and row.shape != time.shape:
-            raise ModelError(
-                f'simulate: input "{name}" has {len(row)} samples, expected {len(time)}'
-            )
+            raise ModelError(f'input "{name}" has {len(row)} samples, expected {len(time)}')
         table[i] = row
     return table
 

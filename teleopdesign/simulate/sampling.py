@@ -34,24 +34,24 @@ class Sampling:
         names = ("difference", "filtered", "observer")
         if self.velocity not in names:
             raise ModelError(
-                f'sampling: no velocity "{self.velocity}", has {", ".join(names)}'
+                f'Sampling: no velocity "{self.velocity}", has {", ".join(names)}'
                 f"{did_you_mean(self.velocity, names)}"
             )
         if not 0 < self.period < float("inf") or min(self.delay, self.encoder_step) < 0:
             raise ModelError(
-                "sampling: expected a period > 0 s, delay and encoder_step >= 0, found "
+                "Sampling: expected a period > 0 s, delay and encoder_step >= 0, found "
                 f"{self.period:g}, {self.delay:g}, {self.encoder_step:g}"
             )
         bounded = self.velocity_bandwidth < float("inf")
         if self.velocity == "difference" and bounded:
             raise ModelError(
-                'sampling: a velocity by "difference" has no bandwidth: leave velocity_bandwidth '
+                'Sampling: a velocity by "difference" has no bandwidth: leave velocity_bandwidth '
                 'away, or take "filtered"'
             )
         if self.velocity == "observer" and not bounded:
-            raise ModelError("sampling: an observer needs a velocity_bandwidth, Hz")
+            raise ModelError("Sampling: an observer needs a velocity_bandwidth, Hz")
         if self.observer_order not in (2, 3):
-            raise ModelError(f"sampling: observer_order is 2 or 3, found {self.observer_order}")
+            raise ModelError(f"Sampling: observer_order is 2 or 3, found {self.observer_order}")
 
     @property
     def observer(self) -> int:

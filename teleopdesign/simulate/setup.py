@@ -56,7 +56,7 @@ def prepare(
     positive = {"duration": duration, "step": step, "give": give}
     for name, value in positive.items():
         if not 0 < value < float("inf"):
-            raise ModelError(f"simulate: {name}: found {value:g}, expected more than 0")
+            raise ModelError(f"{name}: found {value:g}, expected more than 0")
     setting = Sampling() if isinstance(computer, str) else computer
     body, made = _form_and_program(_Same(diagram), tuple(motion), computer, give, jit)
     states = (*made.layout.states, *made.layout.computer_states)
@@ -273,7 +273,7 @@ class Setup:
         numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)
         if numbers > MOST_NUMBERS:
             raise ModelError(
-                f"simulate: {timing.steps:.2g} steps of {timing.step:.2g} s need "
+                f"{timing.steps:.2g} steps of {timing.step:.2g} s need "
                 f"{8e-9 * numbers:.2g} GB: use a longer step, a shorter time or more give"
             )
 

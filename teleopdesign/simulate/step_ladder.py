@@ -35,7 +35,7 @@ class StepLadder:
 
         if rate > JUMP:
             raise ModelError(
-                f"simulate: a force on {state} jumps with the sign of a velocity: no step resolves "
+                f"a force on {state} jumps with the sign of a velocity: no step resolves "
                 "that in continuous time; sample the controller, or take a law that is rounded off"
             )
         step = self.period / self.least
@@ -59,7 +59,7 @@ class StepLadder:
 
         if not is_finite:
             raise GrowsWithoutBound(
-                f"simulate: signals grow beyond all bounds at a step of {timing.step:g} s: the "
+                f"signals grow beyond all bounds at a step of {timing.step:g} s: the "
                 "loop is unstable or a parameter makes no sense"
             )
         if worst <= RELOAD:
@@ -71,7 +71,7 @@ class StepLadder:
         if (inner := round_up_steps(timing.inner * factor, self.least)) is None:
             # a run that ended at its limit does not know by how much: none is named that would do
             raise ModelError(
-                f"simulate: step {self.step * 1e3:.4g} ms is far too long: even one of "
+                f"step {self.step * 1e3:.4g} ms is far too long: even one of "
                 f"{self.period / (self.least * FINER[-1]) * 1e3:.3g} ms does not resolve the "
                 "bristle's reload after a reversal"
             )

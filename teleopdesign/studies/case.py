@@ -53,7 +53,7 @@ class SimulatedCase(ByValue):
     def simulate(self) -> Simulation:
         """Run the simulation; raises ModelError: no duration, or the errors of `simulate`."""
         if not self.duration:
-            raise ModelError("study: found no duration, expected the time to simulate, s")
+            raise ModelError("duration: found none, expected the time to simulate, s")
         return simulate(self.diagram, **self.settings())
 
     def setup(self) -> Setup:
@@ -79,11 +79,11 @@ class SimulatedCase(ByValue):
             stem, _, rest = name.partition(".")
             if stem == "motion" and (motion := rest.rpartition(".")[0]) in self.motion:
                 if not _is_sine(self.motion[motion]):
-                    raise ModelError(f'study: "{name}": the motion of {motion} is none of `sine`')
+                    raise ModelError(f'"{name}": the motion of {motion} is none of `sine`')
             if stem == "computer" and isinstance(self.computer, str):
-                raise ModelError(f'study: "{name}": the computer is "continuous"')
+                raise ModelError(f'"{name}": the computer is "continuous"')
             raise ModelError(
-                f'study: no parameter "{name}", has {_join_names(known)}{did_you_mean(name, known)}'
+                f'no parameter "{name}", has {_join_names(known)}{did_you_mean(name, known)}'
             )
 
     def with_values(self, values: Mapping[str, Any]) -> SimulatedCase:

@@ -85,10 +85,10 @@ def measures_of(content: Any) -> tuple[Measure, ...]:
     names = [m.name for m in listed]
     if doubled := {n for n in names if names.count(n) > 1}:
         raise ModelError(
-            f'study: measures: "{min(doubled)}" is there twice: name them, {{"name": measure}}'
+            f'measures: "{min(doubled)}" is there twice: name them, {{"name": measure}}'
         )
     if not listed:
-        raise ModelError(f"study: found no measure, expected a function or {', '.join(MEASURES)}")
+        raise ModelError(f"measures: found none, expected a function or {', '.join(MEASURES)}")
     return tuple(listed)
 
 
@@ -99,7 +99,7 @@ def _measure_of(content: Any, name: str = "") -> Measure:
         return replace(content, name=name) if name else content
     if not callable(content):
         raise ModelError(
-            f"study: measures: found {describe_value(content)}, expected a function or a name of "
+            f"found {describe_value(content)}, expected a measure: a function, or a name of "
             f"{', '.join(MEASURES)}"
         )
     label = getattr(content, "__name__", type(content).__name__)

@@ -55,7 +55,7 @@ def check_slopes_exist(case: SimulatedCase, names: Sequence[str], signals: Seque
     for name in signals:
         if name not in known:
             raise ModelError(
-                f'slopes: no signal "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
+                f'no signal "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
             )
     for name in names:
         stem = name.partition(".")[0]
@@ -63,11 +63,11 @@ def check_slopes_exist(case: SimulatedCase, names: Sequence[str], signals: Seque
         of_simulation |= stem == "computer" and name != _SMOOTH_IN_COMPUTER
         if of_simulation or name in setup.whole_step_delays:
             raise ModelError(
-                f'slopes: "{name}" moves a simulation by jumps (whole steps, whole samples): vary '
-                "it in a `study`, or search it by `tune`"
+                f'"{name}" changes a simulation by jumps (whole steps, whole samples), so that no '
+                "derivative exists: vary it in a `study`, or search it by `tune`"
             )
         if case.value(name) is None:
-            raise ModelError(f'slopes: "{name}" is no number here')
+            raise ModelError(f'"{name}" is no number here')
 
 
 def simulated_signals(

@@ -59,7 +59,9 @@ class Point:
     def case(self) -> SimulatedCase:
         """The case; raises ModelError: the model returned something else."""
         if not isinstance(self.content, SimulatedCase):
-            raise ModelError(f"study: found {describe_value(self.content)}, expected a diagram")
+            raise ModelError(
+                f"the model returned {describe_value(self.content)}, expected a diagram"
+            )
         return self.content
 
     @cached_property

@@ -188,9 +188,7 @@ class Problem:
         numbers = {}
         for (name, kind, unit, *_), value in zip(outcome.form, outcome.values, strict=True):
             if kind != "number" or isinstance(value, tuple):
-                raise ModelError(
-                    f"tune: {name}: found {describe_value(value)}, expected one number"
-                )
+                raise ModelError(f"{name}: found {describe_value(value)}, expected one number")
             self.units[name] = unit or self.units.get(name, "")
             numbers[name] = float(value)
         self.reason = outcome.reason or self.reason

@@ -70,10 +70,10 @@ def pack_task(task: StudyTask) -> bytes:
     try:
         return bytes(cloudpickle.dumps(task))
     except TeleopDesignError as error:
-        raise ModelError(f"study: {error}; or take workers=1") from error
+        raise ModelError(f"{error}; or take workers=1") from error
     except (TypeError, AttributeError, pickle.PicklingError) as error:
         raise ModelError(
-            f"study: the model or a measure cannot be sent to another process: {error}; take "
+            f"the model or a measure cannot be sent to another process: {error}; take "
             "workers=1, or define it at the top of a module"
         ) from error
 
@@ -258,9 +258,7 @@ class _Pool:
         lost = worker.batch
         if not lost:
             if not worker.done and not self.each:
-                raise ModelError(
-                    f"study: a process ended before its first point, {_describe_end(status)}"
-                )
+                raise ModelError(f"a process ended before its first point, {_describe_end(status)}")
             return
         first = lost.popleft()
         self.todo.extendleft(reversed(lost))

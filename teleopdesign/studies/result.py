@@ -173,9 +173,7 @@ def check_netcdf() -> None:
     from importlib.util import find_spec
 
     if find_spec("h5netcdf") is None:
-        raise ExperimentError(
-            "study: a netCDF file needs h5netcdf: pip install 'teleopdesign[studies]'"
-        )
+        raise ExperimentError("a netCDF file needs h5netcdf: pip install 'teleopdesign[studies]'")
 
 
 def label_outcomes(

@@ -135,7 +135,7 @@ def _scale_to_ranges(
                 columns.append(low + (high - low) * column)
             words.append(f"{low:g} to {high:g}" + (f" in steps of {step:g}" if step else ""))
         if not np.isfinite(columns[-1]).all():
-            raise ModelError(f"samples: {name}: the distribution gives points that are not finite")
+            raise ModelError(f"ranges: {name}: the distribution gives points that are not finite")
     return Samples(tuple(ranges), np.column_stack(columns), tuple(words), method, seed, base)
 
 
@@ -149,7 +149,7 @@ def distribution_text(extent: Any) -> str:
 
 def _require_ranges(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
     if not ranges:
-        raise ModelError("samples: found no range, expected at least one, by parameter")
+        raise ModelError("ranges: found no range, expected at least one, by parameter")
     return ranges
 
 
@@ -160,13 +160,13 @@ def _ends(name: str, extent: Any) -> tuple[float, float, float]:
         (step,) = more or [0.0]
     except (TypeError, ValueError):
         raise ModelError(
-            f"samples: {name}: found {describe_value(extent)}, expected (low, high), (low, high, "
+            f"ranges: {name}: found {describe_value(extent)}, expected (low, high), (low, high, "
             "step) or a distribution of scipy.stats"
         ) from None
     if not (np.isfinite([low, high]).all() and low < high):
-        raise ModelError(f"samples: {name}: found {low:g} to {high:g}, expected low < high")
+        raise ModelError(f"ranges: {name}: found {low:g} to {high:g}, expected low < high")
     if step < 0 or step > high - low:
-        raise ModelError(f"samples: {name}: found a step of {step:g}, expected 0 to high - low")
+        raise ModelError(f"ranges: {name}: found a step of {step:g}, expected 0 to high - low")
     return low, high, step
 
 

@@ -71,12 +71,12 @@ def scales_of(names: Sequence[str], at: np.ndarray, scales: Mapping[str, float])
     """
     for name in scales:
         if name not in names:
-            raise ModelError(f'slopes: scales: "{name}" does not vary{did_you_mean(name, names)}')
+            raise ModelError(f'scales: "{name}" does not vary{did_you_mean(name, names)}')
     out = np.array([abs(scales.get(n, x)) for n, x in zip(names, at, strict=True)])
     for name, scale in zip(names, out, strict=True):
         if not 0 < scale < np.inf:
             raise ModelError(
-                f'slopes: "{name}" is {scale:g}: say by `scales` which change of it matters'
+                f'"{name}" is {scale:g}: state in `scales` which change of this parameter matters'
             )
     return out
 

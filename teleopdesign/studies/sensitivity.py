@@ -39,22 +39,24 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
         from SALib.analyze import sobol
     except ImportError:
         raise ExperimentError(
-            "study: Sobol indices need SALib: pip install 'teleopdesign[studies]'"
+            "sensitivity: Sobol indices need SALib: pip install 'teleopdesign[studies]'"
         ) from None
     name = measure or _require_one(study)
     values, attrs = study[name], study.data.attrs
     if attrs.get("sampling") != "sensitivity" or values.dims != (SAMPLE,):
         raise ModelError(
-            "study: Sobol indices need points of sensitivity_samples alone, and a number at each; "
-            f"found {attrs.get('sampling') or 'a grid'} over {', '.join(map(str, values.dims))}"
+            "sensitivity: Sobol indices need points of sensitivity_samples alone, and a number at "
+            f"each; found {attrs.get('sampling') or 'a grid'} over "
+            f"{', '.join(map(str, values.dims))}"
         )
     numbers = values.values.astype(float)
     if bad := int((~np.isfinite(numbers)).sum()):
         raise ModelError(
-            f"study: {name}: {bad} of {len(numbers)} points are no numbers; Sobol indices need all"
+            f"sensitivity: {name}: {bad} of {len(numbers)} points are no numbers; Sobol "
+            "indices need all"
         )
     if np.ptp(numbers) == 0:
-        raise ModelError(f"study: {name}: is {numbers[0]:g} at every point: nothing depends")
+        raise ModelError(f"sensitivity: {name}: is {numbers[0]:g} at every point: nothing depends")
     names = json.loads(attrs["axes"])
     problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
     with warnings.catch_warnings():
@@ -81,5 +83,5 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
 
 def _require_one(study: Study) -> str:
     if len(study.measures) != 1:
-        raise ModelError(f"study: which measure? It has {', '.join(study.measures)}")
+        raise ModelError(f"sensitivity: which measure? It has {', '.join(study.measures)}")
     return study.measures[0]

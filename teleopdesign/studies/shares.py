@@ -16,17 +16,17 @@ _WIDE = 9.9
 AT_END = 0.01
 
 
-def box_of_parameters(parameters: Mapping[str, tuple[float, float]], caller: str) -> ValueBox:
-    """The intervals of the searched parameters;  caller: name of the function in messages.
+def box_of_parameters(parameters: Mapping[str, tuple[float, float]]) -> ValueBox:
+    """The intervals of the searched parameters.
 
     raises ModelError: no parameter, or no interval (low, high)
     """
     if not parameters:
-        raise ModelError(f"{caller}: found no parameter, expected a name with (low, high)")
+        raise ModelError("parameters: found none, expected a name with (low, high)")
     for name, ends in parameters.items():
         if len(ends) != 2 or not all(map(np.isfinite, ends)) or not ends[0] < ends[1]:
             raise ModelError(
-                f"{caller}: {name}: found {describe_value(ends)}, expected (low, high)"
+                f"parameters: {name}: found {describe_value(ends)}, expected (low, high)"
             )
     low, high = (tuple(float(ends[k]) for ends in parameters.values()) for k in (0, 1))
     return ValueBox(tuple(parameters), low, high)

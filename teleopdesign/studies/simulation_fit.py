@@ -163,7 +163,7 @@ def fit_simulation(
     measured = measured_signals(data)
     settings = {"initial": initial, "computer": computer, "step": step}
     case = _case(diagram, measured, inputs or {}, motion or {}, settings)
-    box = box_of_parameters(parameters, "fit_simulation")
+    box = box_of_parameters(parameters)
     names = dict(signals) if signals is not None else _namesakes(case, measured)
     check_slopes_exist(case, box.names, tuple(names))
     for end in (box.low, box.high):

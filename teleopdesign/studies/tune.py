@@ -159,12 +159,15 @@ def problem_of(
 ) -> Problem:
     """The search for the given arguments; raises ModelError: arguments that do not fit the case."""
     case.check_names(parameters)
-    box = box_of_parameters(parameters, "tune")
+    box = box_of_parameters(parameters)
     measures = tuple(measures_of([one])[0] for one in objectives)
     limits = tuple(map(limit_of, subject_to))
     for one in limits:
         if both := set(one.over) & set(parameters):
-            raise ModelError(f"tune: {min(both)}: is tuned, and an interval of {one.name}")
+            raise ModelError(
+                f"{min(both)}: is a parameter of the search, and also in the intervals of "
+                f"{one.name}"
+            )
         case.check_names(one.over)
     return Problem(case, box, measures, limits, seed, workers)
 

@@ -143,8 +143,8 @@ def _splits(
     if check.any():
         return ((~check, check),)
     splits = []
-    for _, unseen in folds(stretches):
-        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, unseen, strict=True)]
+    for _, held_out in folds(stretches):
+        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, held_out, strict=True)]
         out = np.concatenate(held)
         splits.append((~out, out))
     return tuple(splits)

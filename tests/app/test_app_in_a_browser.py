@@ -60,7 +60,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
     np.savetxt(log, rows, delimiter=",", header="tick,joint,drive", comments="", fmt="%.9g")
     with opened(address) as page:
         page.locator("input[type=file]").set_input_files(log)
-        page.get_by_text("No name says the unit of").wait_for()
+        page.get_by_text("No column name states the unit of").wait_for()
         fill_in(page, "position unit", "furlong")
         page.get_by_text("unit of 'joint': found 'furlong', expected a unit such as").wait_for()
         fill_in(page, "position unit", "deg")
@@ -74,11 +74,11 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
         fill_in(page, "time unit", "ms")
         fill_in(page, "torque constant", "0.05 N*m/A")
         page.get_by_text("placeholder for the motor's constant").wait_for(state="detached")
-        page.get_by_text("No name says the unit of").wait_for(state="detached")
+        page.get_by_text("No column name states the unit of").wait_for(state="detached")
         page.wait_for_timeout(3000)  # the log is drawn anew
         picture(page, folder, "units", full_page=True)
         press(page, "Make the experiment")
-        page.get_by_text("bare_experiment is made").wait_for()
+        page.get_by_text("bare_experiment is created").wait_for()
     channels = load_experiment(folder / "bare_experiment").channels.values()
     assert {c.quantity: c.unit for c in channels} == {
         "time": "ms",
@@ -107,7 +107,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         page.wait_for_timeout(3000)  # the shaded spans are drawn anew
         picture(page, folder, "log", full_page=True)
         press(page, "Make the experiment")
-        page.get_by_text("swing_experiment is made").wait_for()
+        page.get_by_text("swing_experiment is created").wait_for()
         press(page, "Open")
         press(page, "Cancel")
         page.get_by_text("cancelled").wait_for()

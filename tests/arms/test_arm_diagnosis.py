@@ -109,9 +109,9 @@ def test_what_helps_on_at_a_joint_is_said_with_the_answer_and_not_searched_anew(
     }
     assert _suggest_for_joints(SimpleNamespace(joints=joints), "answer.json") == [
         "",
-        "where it fails: teleopdesign describe answer.json --body joint2",
-        "which of them is it: teleopdesign next answer.json --body joint3",
-        "where it fails: teleopdesign describe answer.json --body joint3",
+        "where the model fails: teleopdesign describe answer.json --body joint2",
+        "to distinguish them: teleopdesign next answer.json --body joint3",
+        "where the model fails: teleopdesign describe answer.json --body joint3",
     ]
     adequate = SimpleNamespace(joints={"joint1": joints["joint1"]})
     assert _suggest_for_joints(adequate, "answer.json") == []

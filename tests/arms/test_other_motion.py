@@ -75,7 +75,7 @@ def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupl
     assert content["other_motion"][named.at] == other
     again = restore_arm_diagnosis(load_answer(path), experiment)
     assert again.after.check_error == pytest.approx(diagnosis.after.check_error, rel=1e-6)
-    assert repr(again.rungs[-1].said) == repr(diagnosis.rungs[-1].said)
+    assert repr(again.rungs[-1].title) == repr(diagnosis.rungs[-1].title)
     content["other_motion"] = {"joint1": "joint7"}
     path.write_text(json.dumps(content))
     with pytest.raises(ExperimentError, match='other_motion: no joint "joint7", has joint1'):

@@ -12,7 +12,7 @@ from teleopdesign.blocks import Body, Value, solve_carried_force
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.seen_at_command import seen_at_command
+from teleopdesign.realise.residual_at_command import residual_at_command
 from teleopdesign.simulate import simulate
 
 INERTIA, LEVEL, DAMPING, GRAVITY = 0.05, 0.3, 0.4, 2.0
@@ -146,9 +146,10 @@ def test_friction_of_the_load_takes_nothing_of_the_command():
     x, u, f = signals()
     motion = motion_along(encoded(x), u, f, resolution=1e-6)
     r = residual_along(geared(0.4), motion).residual.value
-    np.testing.assert_allclose(seen_at_command(geared(0.4), motion).residual, r, rtol=1e-9)
+    np.testing.assert_allclose(residual_at_command(geared(0.4), motion).residual, r, rtol=1e-9)
     hidden = geared(0.4, share=0.0)
     other = residual_along(hidden, motion).residual.value
     assert (
-        np.abs(seen_at_command(hidden, motion).residual - other).max() > 0.1 * np.abs(other).max()
+        np.abs(residual_at_command(hidden, motion).residual - other).max()
+        > 0.1 * np.abs(other).max()
     )

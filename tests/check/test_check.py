@@ -270,9 +270,9 @@ def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
     summary = found["what the record can show"]
     assert math.isinf(summary.numbers["coulomb_asymmetry"])
     assert math.isinf(summary.numbers["bias"]), "one way, friction is a constant force"
-    assert "the same as coulomb.level" in summary.sentence
-    assert "it only ever moves one way" in summary.sentence
-    assert "spring (it never returns to a place)" in summary.sentence
+    assert "same force as coulomb.level" in summary.sentence
+    assert "it moves in one direction only" in summary.sentence
+    assert "spring (it never returns to an earlier position)" in summary.sentence
     motion = found["motion"]
     assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
     assert "no interaction force is measured" in motion.sentence

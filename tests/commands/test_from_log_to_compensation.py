@@ -153,6 +153,6 @@ def test_derive_takes_the_device_of_an_answer_and_refuses_options_of_one_beside_
     capsys.readouterr()
     assert main(["derive", "answer.json"]) == 0
     said = capsys.readouterr().out
-    assert "Left out, for they have no linear form: Z_M.coulomb, Z_M.stribeck" in said
+    assert "Left out, because they have no linear form: Z_M.coulomb, Z_M.stribeck" in said
     assert re.search(r"With values.*frozen at a speed of \S+ m/s:", said)
     assert "--body: found beside a diagram" in refused("derive", "haptic-interface", "--body", "x")

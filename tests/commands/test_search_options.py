@@ -29,7 +29,7 @@ def test_only_the_named_effects_are_tried_and_the_answer_says_so(rod, few, tmp_p
     command = ["diagnose", str(rod), "--only", "stribeck", "bias", "--json", str(answer)]
     assert main(command) == 0
     assert tried(answer) == {"stribeck", "bias"}
-    said = "only these effects were tried: bias, stribeck"
+    said = "only these effects were candidates: bias, stribeck"
     assert json.loads(answer.read_text())["left_out"] == [said]
     assert f"left out: {said}" in capsys.readouterr().out
 

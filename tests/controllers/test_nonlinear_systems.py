@@ -161,7 +161,7 @@ def test_no_claim_and_no_margin_leaves_it_out_unsaid():
     with pytest.raises(ModelError, match=r"C \(state_space\) has no linear form"):
         loop_gain(diagram, controller="C")
     assert loop_gain(diagram, controller="H").left_out == ("C",)
-    with pytest.raises(ModelError, match="delay margin: C has no linear form"):
+    with pytest.raises(ModelError, match="loop: C has no linear form"):
         delay_margin(loop_gain(diagram, controller="H"))
     found = diagram_claims(diagram, rng=np.random.default_rng(1))
     assert "C" in found.nonlinear

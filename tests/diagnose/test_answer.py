@@ -60,7 +60,7 @@ def test_the_error_seen_at_the_command_is_told_where_it_differs(diagnosis):
     after = diagnosis.after
     assert command_error_text(after) is None  # nothing stands between command and force
     less = replace(after.at_command, error=2 * after.check_error, blind=0.1)
-    said = f"{200 * after.check_error:.2f} %, blind in 10 % of the motion"
+    said = f"{200 * after.check_error:.2f} %, undefined in 10 % of the motion"
     assert command_error_text(replace(after, at_command=less)).endswith(said)
     last = diagnosis.last
     first = replace(

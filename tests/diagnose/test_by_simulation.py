@@ -109,7 +109,7 @@ def test_what_is_asked_for_wrongly_is_said_in_one_line(experiment):
         td.compare(model, experiment, loop=RecordedLoop(1.0))
     with pytest.raises(td.ModelError, match="zero or more"):
         RecordedLoop(-1.0)
-    with pytest.raises(td.ModelError, match="no horizon 7 s"):
+    with pytest.raises(td.ModelError, match="no error for a horizon of 7 s"):
         td.compare(model, experiment, by="simulation").error(7.0)
 
 

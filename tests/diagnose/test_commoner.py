@@ -12,7 +12,7 @@ from teleopdesign.diagnose import rungs as rungs_module
 from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.answers.restored import _is_named_nonetheless
 from teleopdesign.diagnose.commoner import compare_look_alikes
-from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside, Untold
+from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside, Undetermined
 from teleopdesign.diagnose.order import is_simpler
 from teleopdesign.diagnose.probability import list_rarer, shares
 from teleopdesign.diagnose.ranking import Ranking
@@ -29,7 +29,7 @@ def rule(names, *, gravity=0.3001, spring=0.3):
 
 @pytest.fixture
 def use(monkeypatch):
-    def with_rule(rule=rule, *, untold="over a travel of 1 rad it is hardly told", **more):
+    def with_rule(rule=rule, *, undetermined="over a travel of 1 rad it is hardly told", **more):
         table = Table(rule, **more)
         known = {n: EFFECTS[n] for n in ("spring", "gravity")}
         fit = table.estimate
@@ -43,7 +43,9 @@ def use(monkeypatch):
         monkeypatch.setattr(rungs_module, "estimate", estimate)
         alone = lambda base, c, fit, *, prepared, instead_of: table.rank(base, among=[c]).best  # noqa: E731
         monkeypatch.setattr(rungs_module, "make_ranked", alone)
-        monkeypatch.setattr(module, "untold_of", lambda effect, at, model, prepared: untold)
+        monkeypatch.setattr(
+            module, "undetermined_of", lambda effect, at, model, prepared: undetermined
+        )
         return table
 
     return with_rule
@@ -89,7 +91,7 @@ def test_gravity_stays_where_only_noise_is_left_and_the_records_tell_it_from_a_s
 def test_a_spring_stays_where_the_records_tell_it_from_gravity(use):
     surely = use(lambda names: rule(names, gravity=0.6))
     assert compare_look_alikes(surely.search(), surely.state(surely.rungs("spring"))) is None
-    by_travel = use(untold=None)
+    by_travel = use(undetermined=None)
     assert (
         compare_look_alikes(by_travel.search(), by_travel.state(by_travel.rungs("spring"))) is None
     )
@@ -129,7 +131,7 @@ def test_no_exchange_takes_gravity_back_for_being_less_simple(use):
 @pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.commoner))
 def test_an_effect_that_has_a_commoner_one_says_where_the_two_are_hardly_told_apart(name):
     effect = EFFECTS[name]
-    assert effect.commoner in EFFECTS and effect.untold is not None
+    assert effect.commoner in EFFECTS and effect.undetermined is not None
     assert EFFECTS[effect.commoner].role == effect.role
     assert EFFECTS[effect.commoner].commoner != name, "one of the two is the commoner one"
 
@@ -147,13 +149,15 @@ def test_the_rarer_one_has_its_share_of_the_probability(use):
     assert shares(far, rung)[GRAVITY.key] == pytest.approx(1), "what leaves surely more has none"
 
 
-def look_alikes(untold, *there, arm=False):
-    """The pairs of a diagnosis that accepted these effects, of which it cannot tell `untold`."""
+def look_alikes(undetermined, *there, arm=False):
+    """The pairs of a diagnosis that accepted these effects, of which some are `undetermined`."""
     body = SimpleNamespace(has=there.__contains__, axis="revolute")
     model = SimpleNamespace(known=EFFECTS, body=lambda at: body)
     prepared = SimpleNamespace(is_of_an_arm=arm)
-    said = tuple(Untold(candidate(n), "over a travel of 1 rad") for n in untold)
-    return Diagnosis.look_alikes.fget(SimpleNamespace(model=model, untold=said, prepared=prepared))
+    said = tuple(Undetermined(candidate(n), "over a travel of 1 rad") for n in undetermined)
+    return Diagnosis.look_alikes.fget(
+        SimpleNamespace(model=model, undetermined=said, prepared=prepared)
+    )
 
 
 def test_a_spring_and_gravity_stand_beside_each_other_in_the_answer_whichever_is_named():

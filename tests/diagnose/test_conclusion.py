@@ -61,7 +61,7 @@ def concluded(monkeypatch):
         table = Table(error)
         stubs = {
             "learnable": lambda *_, **__: None,
-            "untold": lambda *_: (),
+            "find_undetermined": lambda *_: (),
             "check_error_on_all": lambda *_: None,
             "error_near_reversals": lambda model, _: model,  # to show of which model it is
             "moment_above_noise": lambda fit, *_, **__: moment if fit is rungs[-1].fit else None,

@@ -164,7 +164,7 @@ def test_a_floor_from_the_readings_says_so_and_is_near_the_stated_one(experiment
     blind = prepare(replace(experiment, channels=channels))
     stated = noise_floor(model, prepared, np.random.default_rng(0))
     seen = noise_floor(model, blind, np.random.default_rng(0))
-    assert seen.source == "step and noise seen in the readings"
+    assert seen.source == "step and noise estimated from the readings"
     # the command of a controller that differentiates an encoder looks noisier than it is read
     assert 0.5 * stated.value < seen.value < 3.0 * stated.value
 
@@ -191,7 +191,7 @@ def test_a_hands_force_of_unstated_noise_raises_the_floor_by_what_its_readings_s
         touched = replace(experiment, records=records, channels={**experiment.channels, name: hand})
         floors.append(noise_floor(model, prepare(touched), np.random.default_rng(0)))
     stated, seen = floors
-    assert seen.source == "stated resolution, noise seen in the readings of forces"
+    assert seen.source == "stated resolution, noise of forces estimated from the readings"
     assert seen.value == pytest.approx(stated.value, rel=0.15)
     untouched = noise_floor(model, prepared, np.random.default_rng(0))
     assert seen.value > 1.5 * untouched.value

@@ -252,7 +252,7 @@ def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, o
     gave_way = restore_replaced(Candidate(EFFECTS[old], "device"), before)
     model = Model({"device": Body(axis, {"inertia": 1.0}, ())}).with_effect(new).with_effect(other)
     rung = Rung(Candidate(EFFECTS[new], "device"), None, replaced=gave_way)
-    back = rung.taken_from(model)
+    back = rung.undo_addition(model)
     assert {n for n, _ in back.effects} == {old, other}
     assert back.parameters[f"device.{old}.{STRENGTH[old]}"].value == 2.0
 
@@ -263,7 +263,7 @@ def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
     before, after = plain.with_effect("presliding"), plain.with_effect("maxwell_slip")
     gave_way = restore_replaced(Candidate(EFFECTS["presliding"], "device"), before)
     rung = Rung(Candidate(EFFECTS["maxwell_slip"], "device"), None, replaced=gave_way)
-    assert {n for n, _ in rung.taken_from(after).effects} == {"coulomb", "presliding"}
+    assert {n for n, _ in rung.undo_addition(after).effects} == {"coulomb", "presliding"}
 
 
 @settings(max_examples=15, deadline=None)
@@ -282,5 +282,5 @@ def test_whatever_gave_way_to_whatever_comes_back(axis, data):
             except ModelError:
                 continue  # another effect needs it
             gave_way = restore_replaced(Candidate(old, "device"), model)
-            back = Rung(new, None, replaced=gave_way).taken_from(instead)
+            back = Rung(new, None, replaced=gave_way).undo_addition(instead)
             assert set(back.effects) == set(model.effects)

@@ -54,7 +54,7 @@ def test_a_law_that_the_model_lacks_could_be_learned(records, diagnosis, prepare
     assert learned.error < 0.6 * learned.left
     # the error that the diagnosis would say, of these records
     assert learned.left == pytest.approx(estimate(model, prepared).check_error, rel=0.02)
-    assert f"{100 * learned.part:.2g} of it could be learned" in str(learned)
+    assert f"{100 * learned.part:.2g} % follows from the motion" in str(learned)
 
 
 def test_of_what_a_right_model_leaves_next_to_nothing_could_be_learned(diagnosis, prepared):
@@ -113,10 +113,10 @@ def test_an_answer_holds_what_could_be_learned_and_gives_it_back(diagnosis, expe
 
 def test_what_is_said_adds_up():
     learned = Learnable(left=0.094, error=0.054, alone=0.2, where="below 0.005 m/s")
-    said = "9.4 % left; 4 of it could be learned, below 0.005 m/s; 5.4 does not repeat"
+    said = "9.4 % left; 4 % follows from the motion, below 0.005 m/s; 5.4 % does not repeat"
     assert str(learned) == said
     nothing = Learnable(left=0.05, error=0.06, alone=0.2)
-    assert nothing.part == 0.0 and "none of it" in str(nothing)
+    assert nothing.part == 0.0 and "no part of it" in str(nothing)
     assert learnable_from(learnable_data(learned, None)) == learned
 
 

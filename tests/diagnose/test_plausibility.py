@@ -159,22 +159,22 @@ def test_a_ringing_tip_beside_the_mains_may_be_a_hum(hertz, ratio, is_said):
     tip = SimpleNamespace(
         tip_inertia=inertia, stiffness=inertia * natural**2, damping=2 * ratio * inertia * natural
     )
-    assert bool(EFFECTS["transmission_compliance"].untold(tip, FACTS)) == is_said
+    assert bool(EFFECTS["transmission_compliance"].undetermined(tip, FACTS)) == is_said
 
 
 @pytest.mark.parametrize("name", sorted(UNTOLD))
-def test_what_records_never_carried_is_said_to_be_untold(name):
+def test_what_records_never_carried_is_said_to_be_undetermined(name):
     told, beyond, known = UNTOLD[name]
     effect, facts = EFFECTS[name], replace(FACTS, duration=60.0)
-    assert effect.untold(SimpleNamespace(**told), facts) is None
-    said = effect.untold(SimpleNamespace(**beyond), facts)
+    assert effect.undetermined(SimpleNamespace(**told), facts) is None
+    said = effect.undetermined(SimpleNamespace(**beyond), facts)
     assert known in said and "\n" not in said
     assert effect.plausible is None or effect.plausible(SimpleNamespace(**beyond), facts) is None
 
 
-def test_every_effect_that_can_be_untold_is_tried_on_both_sides():
+def test_every_effect_that_has_a_rule_on_undetermined_values_is_checked_on_both_sides():
     by_travel = {"spring"}  # not by its parameters: tests/effects/test_gravity.py
-    assert {n for n, e in EFFECTS.items() if e.untold} == set(UNTOLD) | by_travel
+    assert {n for n, e in EFFECTS.items() if e.undetermined} == set(UNTOLD) | by_travel
 
 
 def test_every_effect_with_a_check_is_tried_on_both_sides():

@@ -102,7 +102,7 @@ def test_what_has_no_linear_form_is_said(tmp_path, capsys):
     assert main(["derive", str(file)]) == 0  # one block is known by its name only: no numbers
     assert "With values" not in capsys.readouterr().out
     assert main(["derive", "world-haptics-2005", "--speed", "0.02"]) == 0
-    assert "Left out, for they have no linear form: Z_M.coulomb" in capsys.readouterr().out
+    assert "Left out, because they have no linear form: Z_M.coulomb" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

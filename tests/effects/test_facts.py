@@ -7,7 +7,7 @@ import pytest
 
 from teleopdesign.effects import EFFECTS, RecordFacts
 from teleopdesign.effects._elements import softest_first
-from teleopdesign.effects._facts import follows_gravity, slip_is_seen, speeds_vary_by_place
+from teleopdesign.effects._facts import follows_gravity, slip_is_observable, speeds_vary_by_place
 
 TIME = np.linspace(0.0, 3.0, 3000)
 
@@ -50,8 +50,8 @@ def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
 
 def test_what_slips_within_no_stretch_of_a_record_is_a_spring_though_two_records_lie_apart():
     """Of a pendulum that swung to each side in a record of its own, a hysteresis was named."""
-    assert slip_is_seen("the bristle", [0.8], facts(travel=2.0)) is None
-    said = slip_is_seen("the bristle", [0.8], facts(travel=2.0, sweep=0.7))
+    assert slip_is_observable("the bristle", [0.8], facts(travel=2.0)) is None
+    said = slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=0.7))
     assert said is not None and "never slips within the travel of 0.7 rad" in said
     soft = {"stiffness_1": 0.5, "stiffness_2": 5.0, "stiffness_3": 50.0, "stiffness_4": 500.0}
     values = SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0)  # element 1: 0.8 rad

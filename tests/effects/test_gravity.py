@@ -24,27 +24,27 @@ def facts(low, high):
     )
 
 
-def untold(phase, low, high):
+def undetermined(phase, low, high):
     p = SimpleNamespace(amplitude=2.0, phase=phase)
-    return EFFECTS["gravity"].untold(p, facts(low, high))
+    return EFFECTS["gravity"].undetermined(p, facts(low, high))
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.3, np.pi])
 def test_near_the_hanging_place_a_spring_and_a_constant_force_would_do_as_well(phase):
-    said = untold(phase, -0.5 - phase, 0.5 - phase)
+    said = undetermined(phase, -0.5 - phase, 0.5 - phase)
     # sin x less its best line over half a radian either way: x^3 / 6 leaves 0.0032 (rms) of 0.28
     assert "spring and a constant force" in said and "within 1.1 %" in said and "1 rad" in said
 
 
 @pytest.mark.parametrize(("phase", "low", "high"), [(0.0, -2.0, 2.0), (0.0, 1.0, 2.2)])
 def test_over_a_wide_travel_or_near_the_level_gravity_is_told_by_its_curvature(phase, low, high):
-    assert untold(phase, low, high) is None
+    assert undetermined(phase, low, high) is None
 
 
 def test_without_samples_or_travel_nothing_is_said():
     p = SimpleNamespace(amplitude=2.0, phase=0.0)
     still = facts(0.3, 0.3)
-    assert EFFECTS["gravity"].untold(p, still) is None
+    assert EFFECTS["gravity"].undetermined(p, still) is None
 
 
 def test_a_link_that_swings_freely_is_pulled_by_more_than_any_sensor_measures():
@@ -57,7 +57,7 @@ def test_a_link_that_swings_freely_is_pulled_by_more_than_any_sensor_measures():
 
 
 def test_a_spring_says_where_a_hanging_link_would_do_as_well():
-    spring, p = EFFECTS["spring"].untold, SimpleNamespace(stiffness=2.0)
+    spring, p = EFFECTS["spring"].undetermined, SimpleNamespace(stiffness=2.0)
     assert "`gravity`" in spring(p, facts(-1.2, 1.2)) and "2.4 rad" in spring(p, facts(-1.2, 1.2))
     assert spring(p, facts(-2.0, 2.0)) is None, "there a link's torque falls again"
     linear = facts(-0.5, 0.5)

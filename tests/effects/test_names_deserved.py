@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.effects import EFFECTS, Parameter, RecordFacts, make_structure
-from teleopdesign.effects._facts import follows_gravity, repeats_within_travel, slip_is_seen
+from teleopdesign.effects._facts import follows_gravity, repeats_within_travel, slip_is_observable
 
 #: beside a tip on a spring of 100 N m/rad
 BODY = {"inertia": 0.5, "coulomb.level": 1.0, "transmission_compliance.stiffness": 100.0}
@@ -88,7 +88,7 @@ TOLD = [
 
 @pytest.mark.parametrize(
     ("name", "parameter", "keeps", "loses", "others", "words", "what"),
-    [(*row, "plausible") for row in DESERVED] + [(*row, "untold") for row in TOLD],
+    [(*row, "plausible") for row in DESERVED] + [(*row, "undetermined") for row in TOLD],
 )
 def test_an_effect_keeps_its_name_up_to_the_limit_and_loses_it_beyond(
     name, parameter, keeps, loses, others, words, what
@@ -114,10 +114,10 @@ def test_nothing_is_said_where_nothing_can_be_held_against_the_records():
 
 
 def test_one_deflection_within_the_travel_is_enough():
-    assert slip_is_seen("it", [0.001, 1.0], facts()) is None
-    assert "spring" in slip_is_seen("it", [0.001, 2.0], facts())
-    assert "sgn friction" in slip_is_seen("it", [0.001, 0.005], facts())
-    assert "sgn friction" in slip_is_seen("it", [], facts())
+    assert slip_is_observable("it", [0.001, 1.0], facts()) is None
+    assert "spring" in slip_is_observable("it", [0.001, 2.0], facts())
+    assert "sgn friction" in slip_is_observable("it", [0.001, 0.005], facts())
+    assert "sgn friction" in slip_is_observable("it", [], facts())
     assert repeats_within_travel(SimpleNamespace(period=1.0), facts()) is None
 
 

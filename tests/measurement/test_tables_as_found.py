@@ -14,7 +14,7 @@ from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.content import SURE_NAME
 from teleopdesign.measurement.survey.derivative import wrap_of
-from teleopdesign.measurement.survey.position import _seen_step
+from teleopdesign.measurement.survey.position import _step_of_readings
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = np.arange(400) / 200.0
@@ -91,7 +91,7 @@ def test_an_encoder_is_seen_through_the_digits_that_were_printed(step, digits, s
     places = np.round(1000 * swing)
     last = 10.0 ** np.floor(np.log10(step * 10.0 ** (1 - digits) * 10))
     readings = np.round(places * step / last) * last
-    assert _seen_step(readings) == pytest.approx(step, rel=1e-3)
+    assert _step_of_readings(readings) == pytest.approx(step, rel=1e-3)
 
 
 @pytest.mark.parametrize("period", [360.0, 180.0, 2 * np.pi, np.pi, 1.0, 4096.0])

@@ -93,7 +93,7 @@ def test_a_sampled_compensator_within_the_level_is_passive_too():
 
 
 def test_a_stroke_that_makes_no_sense_is_refused():
-    with pytest.raises(ModelError, match="stroke and speed > 0"):
+    with pytest.raises(ModelError, match="expected stroke and speed > 0"):
         searched(joint(0.5, None), stroke=0.0)
 
 

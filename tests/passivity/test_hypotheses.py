@@ -139,7 +139,7 @@ def test_a_delay_of_no_whole_number_of_samples_is_proved_nothing(delay):
 
 def test_a_law_of_velocity_is_asked_about_devices_and_spends_their_damping():
     """sqrt(f_D) <= sqrt(f_0) + sqrt(a B): f_D = 0.4 N, a = 0.01 m/s, B = 1 N s/m."""
-    topic = "law of velocity, damping counted"
+    topic = "law of velocity, with damping"
     for device, status in ((IDEAL, "proved"), (GIVING, "refuted")):
         claims = {one.topic: one for one in settle(Question(device, SMOOTHED), simulated=False)}
         assert claims[topic].claim.status == status and claims[topic].spends_damping

@@ -178,7 +178,7 @@ def test_damping_covers_what_the_lowest_level_does_not():
     )
     by_topic = {c.topic: c.claim for c in claims}
     assert by_topic["any law within the level"].status == "refuted"
-    counted = by_topic["the same, damping counted"]
+    counted = by_topic["the same, with damping"]
     assert (counted.status, counted.holds) == ("evidence", True)
     assert by_topic["search by simulation"].holds
 

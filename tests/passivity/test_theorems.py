@@ -65,11 +65,11 @@ def test_the_question_alone_decides_which_theorems_speak():
     def topics(question):
         return [one.topic for one in settle(question, simulated=False)]
 
-    ideal = ["any law within the level", "the same, damping counted"]
+    ideal = ["any law within the level", "the same, with damping"]
     assert topics(Question(IDEAL)) == []
-    assert topics(Question(IDEAL, SMOOTHED)) == [*ideal, "law of velocity, damping counted"]
+    assert topics(Question(IDEAL, SMOOTHED)) == [*ideal, "law of velocity, with damping"]
     assert topics(Question(IDEAL, DAHL)) == [*ideal, "estimate", "95 % interval"]
-    assert topics(Question(GIVING, SMOOTHED)) == ["law of velocity, damping counted"]
+    assert topics(Question(GIVING, SMOOTHED)) == ["law of velocity, with damping"]
     assert topics(Question(GIVING, DAHL, computer=COMPUTER)) == [
         "estimate, continuous time",
         "95 % interval, continuous time",

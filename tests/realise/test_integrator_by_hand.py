@@ -18,12 +18,12 @@ def velocities(order, position, monkeypatch, *, start):
     """What the computer knows of the velocity of these readings, from a wrong start."""
     monkeypatch.setattr(integrator, "OBSERVER", order)
     memory = np.zeros(mass.ROWS)
-    memory[mass.SEEN] = memory[mass.OBSERVED] = position[0]
+    memory[mass.LAST_READING] = memory[mass.OBSERVED] = position[0]
     memory[mass.KNOWN] = start
     known, travels = [], []
     for reading in position[1:]:
         integrator.know_velocity(0, reading, PERIOD, POLE, memory, 0)
-        memory[mass.SEEN] = reading
+        memory[mass.LAST_READING] = reading
         known.append(memory[mass.KNOWN])
         travels.append(memory[mass.TRAVEL])
     return np.array(known), np.array(travels)

@@ -80,9 +80,7 @@ def test_a_step_too_long_for_the_bristle_is_refined(hybrid, radau, step):
 
 
 def test_or_it_is_refused_with_the_step_to_use(hybrid):
-    with pytest.raises(
-        ModelError, match=r"simulate: step 1 ms is .* steps .*: use .* ms or less"
-    ) as e:
+    with pytest.raises(ModelError, match=r"step 1 ms is .* steps .*: use .* ms or less") as e:
         simulate(
             hybrid,
             duration=0.25,

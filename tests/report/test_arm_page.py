@@ -37,8 +37,8 @@ def two_joints(diagnosis):
 
     added = diagnosis.rungs[1].added
     rungs = (
-        SimpleNamespace(added=None, said="", fit=fit(0.08, 0.07, 0.09)),
-        SimpleNamespace(added=added, said=str(added), fit=fit(0.02, 0.01, 0.03)),
+        SimpleNamespace(added=None, title="", fit=fit(0.08, 0.07, 0.09)),
+        SimpleNamespace(added=added, title=str(added), fit=fit(0.02, 0.01, 0.03)),
     )
     return MadeArm(
         experiment=diagnosis.experiment,
@@ -58,7 +58,7 @@ def test_each_joint_has_its_own_errors_and_page(two_joints, diagnosis):
     assert second.left == pytest.approx(0.5 * first.left) and first.left == diagnosis.left
     own = page_of(diagnosis)
     assert first.page.parameters == own.parameters and first.page.ladder == own.ladder
-    assert first.said == "effects_missing: stribeck at device."
+    assert first.sentence == "effects_missing: stribeck at device."
     assert (page.before, page.after, page.left) == (0.08, 0.02, first.left)
     # root of the mean square of one floor and of twice it
     assert page.floor == pytest.approx(first.floor * (5.0 / 2.0) ** 0.5)
@@ -97,7 +97,7 @@ def test_the_verdict_on_an_arm_names_what_is_missing_or_that_nothing_is(two_join
     undecided = arm._verdict(two_joints.but(verdict="undecided"))
     assert undecided.startswith("Undecided: with stribeck at device the force error")
     nothing = arm._verdict(two_joints.but(verdict="undecided", rungs=two_joints.rungs[:1]))
-    assert "no effect that was tried explains the 8.00\u202f%" in nothing
+    assert "no candidate effect explains the 8.00\u202f%" in nothing
 
 
 def test_a_written_page_holds_the_answer_and_every_joint(two_joints, monkeypatch, tmp_path):

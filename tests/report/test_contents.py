@@ -7,7 +7,7 @@ import pytest
 
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.comparison import residual_data
-from teleopdesign.diagnose.diagnosis import SetAside, Untold
+from teleopdesign.diagnose.diagnosis import SetAside, Undetermined
 from teleopdesign.report.candidate_table import candidate_rows
 from teleopdesign.report.cannot_tell import cannot_tell
 from teleopdesign.report.page import page_of
@@ -115,7 +115,7 @@ def test_values_that_are_not_told_and_effects_set_aside_stand_on_the_page(diagno
     other = diagnosis.rungs[1].ranking.ranked[-1].candidate
     both = replace(
         diagnosis,
-        untold=(Untold(added, "the level at rest is not told"),),
+        undetermined=(Undetermined(added, "the level at rest is not told"),),
         set_aside=(SetAside(other, 0.034, "it is not told from absence"),),
     )
     found = {f.topic: f for f in cannot_tell(both)}
@@ -159,7 +159,7 @@ def test_look_alikes_come_with_the_reason(diagnosis):
 
 def test_what_was_not_tried_says_what_it_needs(diagnosis):
     only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=diagnosis.rungs[1].ranking)
-    found = next(f for f in cannot_tell(only) if f.topic == "effects that were not tried")
+    found = next(f for f in cannot_tell(only) if f.topic == "effects that were no candidates")
     assert "friction_memory at device (needs stribeck beside it)" in found.sentence
 
 

@@ -74,7 +74,7 @@ def test_numbers_are_printed_as_a_person_would(printed, expected):
 def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
     text = verdict(diagnosis)
     assert text.startswith(
-        "Your model lacks stribeck at device. With it, the force error on records"
+        "Your model lacks stribeck at device. With this effect, the force error on records"
     )
     before, after = diagnosis.before.check_error, diagnosis.after.check_error
     assert f"from {100 * before:.2f}\u202f% to {100 * after:.2f}\u202f%" in text
@@ -87,14 +87,14 @@ def test_look_alikes_are_named_together(diagnosis):
         diagnosis, verdict="undecided", rungs=(first, replace(second, alternatives=(other,)))
     )
     text = verdict(alike)
-    assert text.startswith(f"Undecided between stribeck at device or {other}: these records cannot")
+    assert text.startswith(f"Undecided between stribeck at device or {other}: these records do not")
 
 
 def test_an_adequate_model_and_an_unexplained_rest_are_said_as_such(diagnosis):
     only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=Ranking(diagnosis.before, ()))
     assert "Your model is adequate" in verdict(replace(only, verdict="model_adequate"))
     undecided = verdict(replace(only, verdict="undecided"))
-    assert "no effect that was tried explains it" in undecided
+    assert "no candidate effect explains the remaining force" in undecided
     assert only.left > 5.0
     assert f"{only.left:.1f} times what sensor noise" in undecided
 
@@ -124,7 +124,9 @@ def two_added(diagnosis):
 def test_an_effect_that_helps_and_is_not_named_is_said_to_beside_those_that_are(diagnosis):
     both, other = two_added(diagnosis)
     text = verdict(both)
-    assert text.startswith("Your model lacks stribeck at device. With them, the force error")
+    assert text.startswith(
+        "Your model lacks stribeck at device. With all added effects, the force error"
+    )
     assert f" {other} helps, but is less likely than not." in text
     each = verdict(replace(both, verdict="undecided", named=()))
     assert f"with stribeck at device and {other} the force error" in each

@@ -112,7 +112,7 @@ def test_an_encoder_leaves_no_derivative_and_that_is_told():
         (["Z_M.inertia"], ["R_W"], {}, 'no signal "R_W"'),
         (["Z_M.inertia"], ["R_V"], {"scales": {"Z_M.coulomb.level": 1.0}}, "does not vary"),
         (["inputs.R_V"], ["L"], {"motion": {}, "inputs": {"R_V": np.sin}}, "no number"),
-        (["inputs.R_V"], ["L"], {"motion": {}}, "say by `scales`"),
+        (["inputs.R_V"], ["L"], {"motion": {}}, "state in `scales`"),
     ],
 )
 def test_what_has_no_slope_is_refused_in_one_line(parameters, signals, more, words):

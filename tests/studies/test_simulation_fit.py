@@ -140,7 +140,7 @@ def test_a_record_is_data_too():
         ({"signals": {"Q": "L"}}, 'no signal "Q"'),
         ({"noise": {"L": 0.0}}, "more than 0"),
         ({"inputs": {"R_V": "F"}}, 'no "F"'),
-        ({"parameters": {}}, "no parameter"),
+        ({"parameters": {}}, "parameters: found none"),
         ({"parameters": {"Z_M.inertia": (0.5, 0.1)}}, "expected \\(low, high\\)"),
         ({"parameters": {"Z_M.inertia": (-0.5, 0.1)}}, "inertia"),
         ({"parameters": {"duration": (0.5, 0.7)}}, "by jumps"),

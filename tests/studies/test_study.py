@@ -181,7 +181,7 @@ def test_nothing_is_simulated_for_a_measure_that_needs_no_motion():
 
 def test_a_measure_that_needs_a_motion_says_that_none_is_simulated():
     found = td.study(models.interface(), {"C.dahl.level": [0.1]}, measures="force_error")
-    assert "found no duration" in next(iter(found.failures))
+    assert "duration: found none" in next(iter(found.failures))
 
 
 @pytest.mark.parametrize(
@@ -191,8 +191,8 @@ def test_a_measure_that_needs_a_motion_says_that_none_is_simulated():
         ({"computer.dely": [1]}, "force_error", 'did you mean "computer.delay"'),
         ({"inputs.R_X": [1]}, "force_error", "no parameter"),
         ({"C.dahl.level": [1]}, "force_eror", 'did you mean "force_error"'),
-        ({"C.dahl.level": [1]}, [], "found no measure"),
-        ({"C.dahl.level": [1]}, [3.0], "expected a function or a name"),
+        ({"C.dahl.level": [1]}, [], "measures: found none"),
+        ({"C.dahl.level": [1]}, [3.0], "expected a measure: a function, or a name"),
         ({"C.dahl.level": [1]}, ["force_error", "force_error"], "is there twice"),
     ],
 )

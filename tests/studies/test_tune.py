@@ -163,7 +163,10 @@ def test_a_simulated_error_falls_while_all_limits_are_kept():
         ({"parameters": {"H.gain.gain": (1.0, 1.0)}}, "expected \\(low, high\\)"),
         ({"objective": ["force_error", gain]}, "see `trade_off`"),
         ({"subject_to": ["force_error"]}, "expected least or most"),
-        ({"subject_to": [td.limit("passive", over={"H.gain.gain": (0, 1)})]}, "is tuned"),
+        (
+            {"subject_to": [td.limit("passive", over={"H.gain.gain": (0, 1)})]},
+            "also in the intervals of passive",
+        ),
     ],
 )
 def test_what_cannot_be_tuned_is_refused_in_one_line(arguments, words):

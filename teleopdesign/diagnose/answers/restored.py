@@ -12,7 +12,7 @@ from ...errors import ExperimentError, ModelError
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..candidates import Candidate
-from ..diagnosis import Diagnosis, OpenQuestion, SetAside, Untold
+from ..diagnosis import Diagnosis, OpenQuestion, SetAside, Undetermined
 from ..effort import EFFORTS
 from ..excerpt import cut_to_windows
 from ..fit import Fit, estimate
@@ -98,8 +98,8 @@ def restore_diagnosis(
             for added, others in steps.open
         ),
         left_out=tuple(content.get("left_out", ())),
-        untold=tuple(
-            Untold(_restore_candidate(saved, row, known, "cannot_tell"), row["sentence"])
+        undetermined=tuple(
+            Undetermined(_restore_candidate(saved, row, known, "cannot_tell"), row["sentence"])
             for row in content.get("cannot_tell", ())
         ),
         set_aside=_set_aside(saved, known),

@@ -186,7 +186,7 @@ def _older_bodies(
             continue
         effect, _, key = local_name.rpartition(".")
         if place == CONTACT.name:
-            effect = effect or place  # environment.stiffness: the contact itself
+            effect = effect or place  # environment.stiffness belongs to the contact
         if not effect:
             raise ExperimentError(f"{saved.file}: model_parameters: no body has a {quote(name)}")
         holder = bodies[-1] if place == CONTACT.name else place

@@ -20,7 +20,7 @@ from ..answer import (
     parameter_rows,
     place_data,
     set_aside_rows,
-    untold_rows,
+    undetermined_rows,
     with_folder,
 )
 from ..answers.bodies import model_data
@@ -56,7 +56,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
             for group in d.groups
             if group[0].key in added
         ],
-        "cannot_tell": [row for d in joints for row in untold_rows(d)],
+        "cannot_tell": [row for d in joints for row in undetermined_rows(d)],
         "set_aside": [row for d in joints for row in set_aside_rows(d)],
         "record_shift": shifts,
         "other_motion": dict(diagnosis.prepared.others),
@@ -104,7 +104,7 @@ def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         rows |= {
             n: row
             for n, row in parameter_rows(fit, added).items()
-            if n != f"{j}.inertia"  # its body stands for the links too while it is searched
+            if n != f"{j}.inertia"  # in the search this inertia includes the links
         }
     rows |= {
         f"arm.{n}": {"value": make_plain(value), "stderr": make_plain(error), "unit": unit}

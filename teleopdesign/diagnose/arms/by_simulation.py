@@ -87,8 +87,7 @@ def _answers(
     for name in loop:
         if name not in joints:
             raise ModelError(
-                f"recorded loop: no joint {quote(name)}, has {', '.join(joints)}"
-                f"{did_you_mean(name, joints)}"
+                f"loop: no joint {quote(name)}, has {', '.join(joints)}{did_you_mean(name, joints)}"
             )
     each = [loop.get(j, RecordedLoop(0.0)) for j in joints]
     return np.array([[one.stiffness, one.damping] for one in each])
@@ -203,7 +202,7 @@ def _deviations(one: _Along, horizons: Sequence[float]) -> list[tuple[Array, Arr
         each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
         starts = list(range(one.first, one.end - 1, each))
         begins += starts
-        # one row more than counts: the last row of a course has no command after it
+        # one extra row, which is not counted: no command follows the last row of a course
         ends += [min(begin + each + 1, one.end) for begin in starts]
         owner += [h] * len(starts)
     at = np.array(begins), np.array(ends)

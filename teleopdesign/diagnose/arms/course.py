@@ -135,7 +135,7 @@ def _wire_led_arm(bodies: Sequence[Body], answers: Array) -> Diagram:
             Control(f"led{j}", holds, f"X{j}", f"F_X{j}", f"X{j}", analog=True),
         ]
     names = [f"X{j + 1}" for j in range(k)]
-    # each entry is there, whatever a pose makes of it: its value is another one at each row
+    # all entries, also those that are zero at one pose: the values change from row to row
     links = matrix_impedance(mass=np.ones((k, k)))
     blocks.append(Linked("Z_L", links, tuple(names), tuple(f"F_L{j + 1}" for j in range(k))))
     sums = [Junction(f"U{j + 1}", {f"F_led{j + 1}": 1, f"F_X{j + 1}": -1}) for j in range(k)]
@@ -185,7 +185,7 @@ def courses(
     here, last = np.arange(m), np.zeros((k, m))
     before = state[:, loop.ends[1]].T.copy()
     row = led.motions[0].sample_time
-    # a speed so far beyond the recorded ones is that of a course that has left all bounds
+    # a course with a speed so far beyond the recorded speeds grows without bound
     most = led.beyond * np.array([np.abs(m.velocity).max() for m in led.motions])
     for r in range(rows + 1):
         here = here[(np.abs(state[here][:, loop.ends[1]]) <= most).all(axis=1)]
@@ -214,7 +214,7 @@ def _loop_of(led: LedArm, first: int) -> _Loop:
         [f"Z_L.mass_{i}_{j}" for j in range(1, led.count + 1)] for i in range(1, led.count + 1)
     ]
     values |= dict(zip(np.ravel(names).tolist(), np.ravel(inertia).tolist(), strict=True))
-    # at the first pose, what oscillates fastest says into how many steps a row is divided
+    # the fastest oscillation at the first pose determines the number of steps in a row
     rate, _ = fastest_rate(made, values)
     steps = int(np.ceil(rate * led.motions[0].sample_time / FASTEST))
     layout = made.layout
@@ -279,7 +279,7 @@ def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) 
     memory = first_memory(made, 1, parameters, {})
     memory[: len(state)] = state
     nowhere, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
-    with np.errstate(all="ignore"):  # a course that leaves all bounds ends in what is no number
+    with np.errstate(all="ignore"):  # a course that grows without bound ends in inf or NaN
         made.loop.run(
             *grid(made, timing, 1),
             False,

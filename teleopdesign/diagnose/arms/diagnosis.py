@@ -44,7 +44,7 @@ class ArmRung(ByValue):
         return self.other
 
     @property
-    def said(self) -> str:
+    def title(self) -> str:
         """The added effect in words."""
         if self.added is None:
             return ""
@@ -145,7 +145,7 @@ class ArmDiagnosis(ByValue):
         head = f"{'added':<42}{'fit error':>10}{'check error':>13}"
         lines = [head]
         for rung in self.rungs:
-            name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.said}"
+            name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.title}"
             errors = f"{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
             lines.append(f"{name:<42}{errors}")
             if rung.added is not None:
@@ -159,13 +159,13 @@ class ArmDiagnosis(ByValue):
             shown = "".join(f"{100 * e:>9.2f}%" for e in (before, after, diagnosis.floor.value))
             lines.append(f"{j:<20}{shown}")
         for j, diagnosis in self.joints.items():
-            lines += ["", *self._said_of(j, diagnosis)]
+            lines += ["", *self._describe_joint(j, diagnosis)]
         lines += [""] * bool(self.left_out) + [f"left out: {words}" for words in self.left_out]
         names = ", ".join(map(str, self.missing))
         lines += ["", f"verdict: {self.verdict}{': ' + names if names else ''}"]
         return "\n".join(lines)
 
-    def _said_of(self, joint: str, diagnosis: Diagnosis) -> list[str]:
+    def _describe_joint(self, joint: str, diagnosis: Diagnosis) -> list[str]:
         """Lines on one joint: its verdict, and its remaining error."""
         lines = [f"{joint}: {sentence(diagnosis)}"]
         shifts = shifts_of(diagnosis.model, diagnosis.prepared.stretches)

@@ -26,7 +26,7 @@ from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, link_errors
 from .joint import Joint, begin_joint, others_of, with_known
 from .other_motion import with_other_motions
-from .other_way import untold_way
+from .other_way import undetermined_coupling
 from .prepared import PreparedArm, isolate_joint, prepare_arm
 from .refusal import hold_against_arm
 
@@ -212,10 +212,10 @@ def _conclude(
             continue
         at = rung.added.at
         relevant = joints[at].search.criteria.relevant
-        said = untold_way(rung, last, prepared, relevant=relevant)
+        said = undetermined_coupling(rung, last, prepared, relevant=relevant)
         if said is not None:
-            more = (*diagnoses[at].untold, said)
-            diagnoses[at] = replace(diagnoses[at], untold=more)
+            more = (*diagnoses[at].undetermined, said)
+            diagnoses[at] = replace(diagnoses[at], undetermined=more)
     verdicts = {d.verdict for d in diagnoses.values()}
     whole = "undecided"
     if "effects_missing" in verdicts:

@@ -8,16 +8,16 @@ base parameters of the links describe the rest.
 from __future__ import annotations
 
 from ..candidates import Candidate
-from ..diagnosis import Untold
+from ..diagnosis import Undetermined
 from .diagnosis import ArmRung
 from .fit import ArmFit, estimate_arm
 from .other_motion import follows_another, with_other_motions
 from .prepared import PreparedArm
 
 
-def untold_way(
+def undetermined_coupling(
     rung: ArmRung, last: ArmFit, prepared: PreparedArm, *, relevant: float
-) -> Untold | None:
+) -> Undetermined | None:
     """A statement where the records do not determine the direction of an added coupling; else None.
 
     last: the fit with all added effects;  relevant: part of the squares that counts as a difference
@@ -34,7 +34,7 @@ def untold_way(
     if turned.check_error**2 > (1.0 + relevant) * last.check_error**2:
         return None
     there = Candidate(added.effect, other)
-    return Untold(
+    return Undetermined(
         added,
         f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm's "
         f"forces instead of {100 * last.check_error:.3g} %: parameters of the links can imitate a "

@@ -132,7 +132,7 @@ def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
 
     This is the bodies' inertia less the inertia of their motors, which the experiment states.
     """
-    # a search among few effects knows no others, not those of the experiment either
+    # a search among few effects does not know the other effects of the experiment
     there = {e.name: e for body in model.bodies.values() for e in body.effects}
     stated = Model.from_experiment(prepared.experiment, {**EFFECTS, **model.known, **there})
     return with_inertias(

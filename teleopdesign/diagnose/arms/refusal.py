@@ -48,7 +48,7 @@ def hold_against_arm(
         why = refusal(joint, last.fit, fit)
         if why:
             break
-        # of two that mask each other only the second helps: both are there then
+        # of two effects that mask each other only the second helps, when both are in the model
         before, after = longer[-1].fit.fits[joint.name], fit.fits[joint.name]
         if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
             longer, waiting, kept = [*longer, *waiting], [], i + 1

@@ -84,7 +84,7 @@ def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:
                 }
         except ValueError:
             continue
-        # "11/12/2026" may be either: a log spans few days
+        # "11/12/2026" is ambiguous: the reading with the fewest days is taken
         reach = int((max(dates.values()) - min(dates.values())) / np.timedelta64(1, "D"))
         if best is None or reach < best[0]:
             best = reach, dates

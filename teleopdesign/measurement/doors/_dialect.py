@@ -138,7 +138,7 @@ def _separator(lines: Sequence[str]) -> tuple[str, bool]:
             good = sum(is_value(c, comma) for c in cells) / max(len(cells), 1)
             even = widths.count(width) / max(len(widths), 1)
             score = (round(good * even, 3), width)
-            # one column of numbers is no better than several texts: a table has two
+            # a table has two columns or more
             if width > 1 and score > best:
                 best, chosen = score, (separator, comma)
     return chosen
@@ -184,7 +184,7 @@ def _header(
         if len(cells) == width and not _is_data(cells, comma):
             rows.append(tuple(cells))
     if len(cells) > width > 1 and not any(is_number(c, True) or not c for c in cells):
-        rows.append(tuple(cells[:width]))  # names of columns that are never filled: "Comment"
+        rows.append(tuple(cells[:width]))  # without names of empty columns, such as "Comment"
     if not rows:
         last = plain[-1] if plain and not plain[-1].lstrip().startswith(COMMENTS) else ""
         names = cells_of(last, separator) if last else []

@@ -39,7 +39,7 @@ def names_in_lines(lines: Sequence[str]) -> dict[str, str]:
     rows = [row for line in filled if (row := pairs_of(line))]
     if len(rows) < 3 or len(rows) < MOST_OF_THEM * len(filled):
         return {}
-    # the first line of a dump may be cut off: the names are those of the next one
+    # names from the second line: the first line of a dump may be incomplete
     units = {name: bare_unit(unit) if is_unit_cell(unit) else "" for name, _, unit in rows[1]}
     return units if len(units) == len(rows[1]) else {}
 

@@ -118,7 +118,7 @@ def _check_field(name: str, kind: Any, file: str) -> None:
             parts += part
         elif isinstance(part, str):
             _check_type_name(part, file)
-        elif not isinstance(part, int):  # the kind of node is one as well
+        elif not isinstance(part, int):  # a number is the kind of node
             raise ExperimentError(f"{file}: field {name}: found {type(part).__name__} as its type")
 
 

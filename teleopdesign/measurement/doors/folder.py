@@ -98,7 +98,7 @@ def _seconds(log: Log, column: str, file: str) -> Array:
         return np.asarray((values - np.datetime64(0, "s")) / np.timedelta64(1, "ns") * 1e-9)
     stamps = (
         values.reshape(-1).astype(np.float64)
-        if values.dtype.kind in "iu"  # nanoseconds since 1970 to 256 ns
+        if values.dtype.kind in "iu"  # as floats, nanoseconds since 1970 are exact to 256 ns
         else numbers_of(values, column, file)
     )
     unit = log.units.get(column) or unit_in_name(column, "time")

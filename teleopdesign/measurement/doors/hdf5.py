@@ -56,7 +56,7 @@ def open_hdf5(path: Path, file: str) -> Log:
             elif item.dtype.names:
                 columns |= {f"{name}.{field}": (name, field) for field in item.dtype.names}
             else:
-                # MATLAB writes a matrix column by column, so that it lies here on its side
+                # MATLAB writes a matrix column by column: here it is transposed
                 shape = item.shape[::-1] if turned else item.shape
                 parts = parts_of(name, shape) or {name: (name, None)}
                 columns |= parts

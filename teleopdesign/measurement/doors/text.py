@@ -98,7 +98,7 @@ def _read(
                 lines = _with_points(lines, dialect.separator, places)
             parts = [*_parts(lines, dialect.separator, places)]
         columns: dict[str, Array] = {}
-        for name in wanted:  # a column at a time: its parts go when it is whole
+        for name in wanted:  # one column at a time, to free its parts
             columns[name] = np.concatenate([part.pop(0) for part in parts])
         return columns
     except UnicodeDecodeError as problem:
@@ -112,7 +112,7 @@ def _read(
 
 def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
     """Columns of some rows at a time: a whole table beside its columns would double the memory."""
-    yield [np.empty(0) for _ in places]  # of a header without rows
+    yield [np.empty(0) for _ in places]  # for a table without rows
     while rows := list(islice(lines, _ROWS)):
         table = np.loadtxt(
             rows,
@@ -142,7 +142,7 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
     """
     width, separator = len(dialect.header), dialect.separator
     count = bytes_read = 0
-    cut = False  # the line before was left out: the last one of a file may just be cut off
+    cut = False  # whether the last line was left out: the last line of a file may be incomplete
     for k, line in enumerate(stream):
         if k < dialect.first or not line.strip():
             continue
@@ -168,7 +168,7 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
             line = line.rstrip("\r\n")[:-1] + "\n"
         yield line
     if cut:
-        strays.pop()  # said as a row that was cut off
+        strays.pop()  # reported as an incomplete row
 
 
 def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[str]:

@@ -42,7 +42,7 @@ def fetch(name: str, folder: str | Path | None = None, *, source: str | Path = _
     """
     if name not in RECORDINGS:
         raise ExperimentError(
-            f"recordings: no recording {quote(name)}, found {', '.join(RECORDINGS)}"
+            f"fetch: no recording {quote(name)}, found {', '.join(RECORDINGS)}"
             f"{did_you_mean(name, RECORDINGS)}"
         )
     target = (_cache() if folder is None else Path(folder)) / name
@@ -65,7 +65,7 @@ def _obtain(file: RawFile, source: str) -> Path:
         return _download(file, f"{source}/{file.repository}/{file.commit}/{file.path}")
     path = Path(source) / file.repository / file.path
     if not path.is_file():
-        raise ExperimentError(f"recordings: no file {file.repository}/{file.path} in the source")
+        raise ExperimentError(f"fetch: no file {file.repository}/{file.path} in the source")
     if hashlib.sha256(path.read_bytes()).hexdigest() != file.sha256:
         raise _changed_content_error(f"{file.repository}/{file.path}")
     return path
@@ -85,14 +85,14 @@ def _download(file: RawFile, address: str) -> Path:
         )
     except OSError as problem:
         raise ExperimentError(
-            f"recordings: {address} cannot be downloaded: {type(problem).__name__}"
+            f"fetch: {address} cannot be downloaded: {type(problem).__name__}"
         ) from None
     except ValueError:
         raise _changed_content_error(address) from None
 
 
 def _changed_content_error(file: str) -> ExperimentError:
-    return ExperimentError(f"recordings: {file}: found other content, expected the known sha256")
+    return ExperimentError(f"fetch: {file}: found other content, expected the known sha256")
 
 
 def _convert(recording: Recording, raw: list[Path], target: Path) -> None:

@@ -56,7 +56,7 @@ def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
 def _check_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
     constant = check_constant(signal)
     if constant or signal.channel.quantity == "velocity":
-        return constant  # a velocity is held against the position, and used for nothing else
+        return constant  # a velocity is only compared with the position
     findings = [*check_stuck(signal), *check_clipped(signal), *check_outliers(signal)]
     findings += [*check_jumps(signal), *check_repeats(signal), *check_update(signal)]
     findings += check_force_steps(signal) + check_hum(signal, others)

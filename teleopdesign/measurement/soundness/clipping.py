@@ -33,7 +33,7 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> tuple[int, in
         return int(lasting.sum()), int((past - first)[lasting].sum())
     count = spent = 0
     for a, b in zip(first[lasting].tolist(), past[lasting].tolist(), strict=True):
-        coming = np.diff(x[a - 4 : a])  # the last change is cut short, and does not count
+        coming = np.diff(x[a - 4 : a])  # without the last change, which the limit cuts
         arrived = abs(float(coming[-1]))
         slowing = abs(float(coming[-1] - coming[0])) / 2
         towards = np.all(np.sign(coming) == np.sign(limit - x[a - 1]))

@@ -47,7 +47,7 @@ def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> l
     """
     h = record.sample_time
     findings = []
-    # what was done about stamps that are not even is said by the steps of reading
+    # the reading steps describe the treatment of uneven stamps
     stamps = None if record.reading else stamps_of(experiment, record)
     off = np.zeros(1) if stamps is None else stamps - record.time
     rms = float(np.sqrt(np.mean(off**2)))

@@ -62,7 +62,7 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
         done.interpolates for done in signal.record.reading
     )
     if step is None and read_step < stated and is_between:
-        return []  # the readings moved in steps; interpolated between them, they do not
+        return []  # the readings have steps; the interpolated samples have none
     concern: Literal["note", "warning"] = "warning"
     if step is not None:
         text = (

@@ -68,7 +68,7 @@ def check_update(signal: Signal) -> list[Finding]:
     if len(apart) < 50:
         return []
     every = int(np.median(apart))
-    # changes lie a whole number of periods apart, all but a few
+    # nearly all changes lie a whole number of periods apart
     if every < 2 or np.mean(apart % every == 0) < 0.9:
         return []
     period = every * signal.record.sample_time

@@ -36,7 +36,7 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     others: channels of the same record; one of the same unit may be the noisy one instead
     """
     stated, scatter = signal.channel.noise, measured_noise(signal)
-    # rounding scatters by 0.29 steps at most
+    # rounding has an rms of at most 0.29 steps
     rounding = 0.29 * (signal.channel.resolution or signal.step)
     numbers = {"stated": stated or float("nan"), "seen": scatter}
     if stated is None:

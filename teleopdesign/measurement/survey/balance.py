@@ -62,7 +62,7 @@ def hand_by_balance(
         if not is_free and not 1 / FACTOR_OF_ONE < abs(factor) < FACTOR_OF_ONE:
             continue
         whole = explain_force(u + (factor if is_free else math.copysign(1.0, factor)) * other, x, h)
-        # the command logged twice takes itself away, and no more of what remains is explained
+        # a command that was logged twice cancels itself: the motion explains no more of the rest
         if (
             whole.left**2 > BALANCES * alone.left**2
             or 1 - whole.explained > BALANCES * (1 - alone.explained)

@@ -47,7 +47,7 @@ def wrap_of(x: Array) -> float | None:
     jump = float(np.median(jumps))
     if np.any(np.abs(jumps - jump) > 0.1 * jump):
         return None
-    # over a wrap the motion goes on as in the rows beside it
+    # across a wrap the motion is as in the neighbouring rows
     beside = np.pad(np.where(is_jump, 0.0, steps), 1)
     number = np.maximum(np.convolve(~is_jump, (1, 0, 1), "same"), 1)
     turn = float(np.median(np.abs(steps - (beside[:-2] + beside[2:]) / number)[is_jump]))

@@ -77,7 +77,10 @@ def describe_forces(
         survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
-    motion = x, h  # in its own unit: no balance of forces asks for the scale of a motion
+    motion = (
+        x,
+        h,
+    )  # in the unit of the log: the balance of forces does not depend on the scale of the motion
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
     hand = _find_hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
@@ -87,7 +90,7 @@ def describe_forces(
             survey, hand, "interaction_force", choices
         )
     scale_by_balance(survey, motion, choices)
-    # in SI, and behind a gear that was guessed now
+    # now in SI, and behind the guessed gear
     _choose_signs(survey, (x * _position_to_si(survey), h), force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
@@ -141,7 +144,7 @@ def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
     score -= 0.7 * (likeness(column.name, "velocity") >= SURE_NAME)  # "commanded_velocity"
-    # the command is wanted, not what a drive says that it reached
+    # the command is preferred to the value that a drive reports as reached
     score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
 

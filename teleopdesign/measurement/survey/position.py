@@ -73,7 +73,7 @@ def find_position(
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
-            # friction, and the pressure that it asks for, are much like a velocity
+            # friction, and the pressure against it, resemble a velocity
             if other == name or _is_force(column_2) or is_another_quantity(other):
                 continue
             _, agree = derivative_factor(flat[name], column_2.values, h)
@@ -83,8 +83,8 @@ def find_position(
             if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
                 derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
-    # what says that it is something else is no position, whatever is left
-    known = choices.units  # a unit that was chosen is refused by its name, if it is wrong
+    # a column whose name or unit is of something else is never a position
+    known = choices.units  # except with a chosen unit: a wrong choice is refused with its name
     scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
     if choices.position is not None:
         best = choices.position
@@ -212,7 +212,7 @@ def describe_position(
         entry["counts_per_turn"] = per_turn
     else:
         factor = si_factor(unit, quantity="position", axis=axis)
-        step = _seen_step(column.readings)
+        step = _step_of_readings(column.readings)
         if step > 0:
             entry["resolution"] = float(f"{step:.5g}")
             survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
@@ -275,7 +275,7 @@ def _counts(column: SurveyedColumn) -> bool:
     return float(np.ptp(values)) > most
 
 
-def _seen_step(values: Array) -> float:
+def _step_of_readings(values: Array) -> float:
     """Step of the encoder, estimated from the readings; 0 if they show none."""
     raw = values[:ENOUGH]
     changes = int(np.count_nonzero(np.diff(raw)))

@@ -36,7 +36,7 @@ def name_trials(survey: Survey, raw: Mapping[str, Array]) -> None:
     survey.channels["segment"] = {"column": name}
     changes = int(np.count_nonzero(np.diff(raw[name])))
     survey.notes.append(f"{name!r} numbers {changes + 1} trials: each is a segment")
-    # a pause between two trials is interpolated, label and all: no two rows there are alike
+    # the pause between two trials is interpolated, its label too: no two rows there are alike
     starts = [rows.start for rows in _trials(survey) if rows.stop - rows.start > 1]
     survey.trials = tuple(float(survey.time[k]) for k in starts[1:])
 

@@ -104,9 +104,9 @@ class Evidence(ByValue):
     status = "evidence"
 
     def __str__(self) -> str:
-        side = "for" if self.holds else "against"
+        side = "in favour" if self.holds else "against"
         margin = "" if math.isnan(self.margin) else f"; margin {self.margin:.4g} {self.unit}"
-        return f"{side} it: {self.searched}{margin}".rstrip()
+        return f"{side}: {self.searched}{margin}".rstrip()
 
 
 def prove_by_certificate(

@@ -89,7 +89,7 @@ def _make_counterexample(c: dict[str, Any]) -> Counterexample:
         return Jumps(**fields)
     if kind == "flip":
         return Flip(**fields)
-    raise ModelError(f'record: no kind "{kind}"')
+    raise ModelError(f'no kind of motion "{kind}"')
 
 
 def _fraction(text: str) -> Fraction:
@@ -110,7 +110,7 @@ def _read(text: str, *names: sp.Symbol) -> sp.Expr:
         raise ValueError(str(error)) from None
     e = e.subs({position_symbol(n.name): n for n in names})
     if e.free_symbols - {*names}:
-        raise ValueError(f"record: unknown names in {text[:60]}")
+        raise ValueError(f"unknown names in {text[:60]}")
     return e
 
 

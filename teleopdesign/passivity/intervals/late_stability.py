@@ -68,7 +68,10 @@ def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int)
         if radius is not None and root.real > radius:
             how = f"a pole at {root:.4g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
             return parts_of(_STATEMENT, "refuted", worst, box, "1/s", how)
-        how = "at the worst point found a pole is beyond the axis, or too near to it, and not shown"
+        how = (
+            "at the worst point of the search a pole is beyond the axis, or too near to it, and "
+            "not shown"
+        )
         return parts_of(_STATEMENT, "unknown", worst, box, "1/s", how)
     cells = is_zero_free(terms) if is_hurwitz(start) else None
     status: Status = "evidence" if cells is None else "proved"

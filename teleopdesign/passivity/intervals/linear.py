@@ -141,7 +141,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         else "with a dead time nothing is proved over a box"
     )
     if status == "unknown":
-        how = f"at the worst point found: {exact.verdict}"
+        how = f"at the worst point of the search: {exact.verdict}"
     return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
 
 

@@ -50,8 +50,10 @@ from .in_full import (
 )
 from .polynomials import fraction, is_hurwitz
 
-#: the reason of an unknown claim about a system for which `grows_unseen` holds
-UNSEEN = "from rest its impedance is that of a passive port, but a mode that no port shows grows"
+#: the reason of an unknown claim about a system for which `has_hidden_growth` holds
+HIDDEN_GROWTH = (
+    "from rest its impedance is that of a passive port, but a mode that no port shows grows"
+)
 _ONE = sp.Poly(1, S, domain="QQ")
 
 
@@ -98,7 +100,7 @@ def body_hides_growth(part: Moving, linear: LinearBlocks) -> bool:
     return hidden.degree() > 0 and not is_hurwitz(hidden)
 
 
-def grows_unseen(system: Any) -> bool:
+def has_hidden_growth(system: Any) -> bool:
     """Whether a system of python-control has a growing mode that its port does not show.
 
     From rest such a mode stays at rest, so the impedance does not contain it. The smallest

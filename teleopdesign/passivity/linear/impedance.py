@@ -103,7 +103,7 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     raises ModelError: anything else, or a degree above 40
     """
     if motion not in ("velocity", "position"):
-        raise ModelError(f'impedance: motion "velocity" or "position", found "{motion}"')
+        raise ModelError(f'impedance: motion: expected "velocity" or "position", found "{motion}"')
     if isinstance(system, Impedance):
         made = system
     elif hasattr(system, "isdtime"):
@@ -130,9 +130,7 @@ def exact(number: Any) -> sp.Rational:
         value = float(number)
         return sp.Rational(repr(value))
     except (TypeError, ValueError, OverflowError):
-        raise ModelError(
-            f"passivity: expected a finite real number, found {describe_value(number)}"
-        ) from None
+        raise ModelError(f"expected a finite real number, found {describe_value(number)}") from None
 
 
 def _from_sympy(system: Any) -> Impedance:

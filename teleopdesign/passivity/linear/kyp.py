@@ -23,7 +23,7 @@ from ...by_value import ByValue
 from ...errors import ModelError
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from .hidden_modes import UNSEEN, grows_unseen
+from .hidden_modes import HIDDEN_GROWTH, has_hidden_growth
 from .impedance import Impedance, MotionKind, impedance
 from .polynomials import fraction
 from .squares import sum_of_squares
@@ -167,8 +167,8 @@ def storage_function(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     made = realisation(z)
     if made is None:
         return Claim(statement, Unknown("grows faster than s, or as -s: no storage function"))
-    if grows_unseen(system):
-        return Claim(statement, Unknown(UNSEEN))
+    if has_hidden_growth(system):
+        return Claim(statement, Unknown(HIDDEN_GROWTH))
     for p in _candidates(made):
         storage, loss = _matrices(made, p)
         squares = sum_of_squares(storage), sum_of_squares(loss)

@@ -18,7 +18,7 @@ import sympy as sp
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate
 from ..search.growing_wave import GrowingWave, growing_wave
-from .hidden_modes import UNSEEN, grows_unseen
+from .hidden_modes import HIDDEN_GROWTH, has_hidden_growth
 from .impedance import Impedance, MotionKind, exact, gaussian, impedance
 from .polynomials import (
     X,
@@ -74,8 +74,8 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
             f"Re Z = {wave.value[0, 0].real:.4g} N s/m at s = {a:.4g} + {w:.4g} j, a growing wave"
         )
         return Claim(statement, Refutation(method, wave))
-    if grows_unseen(system):
-        return Claim(statement, Unknown(UNSEEN))
+    if has_hidden_growth(system):
+        return Claim(statement, Unknown(HIDDEN_GROWTH))
     margin = damping_excess(z)
     verdict = prove_by_certificate(
         "the positive-real test",

@@ -202,7 +202,9 @@ def search_counterexample(
     raises ModelError: stroke or speed is not > 0, or the motion of the port cannot be prescribed
     """
     if stroke <= 0 or speed <= 0:
-        raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")
+        raise ModelError(
+            f"search_counterexample: expected stroke and speed > 0, found {stroke}, {speed}"
+        )
     length, rate = (unit_of(q, first_axis(diagram)) for q in ("position", "velocity"))
     statement = (
         f"the port {port[0]}, {port[1]} of the {diagram.name} releases no energy over any motion "
@@ -222,7 +224,7 @@ def search_counterexample(
         better = _refine(strokes, score, stroke=stroke, speed=speed)
         confirmed = confirmed_motion(diagram, better, port=port, computer=computer, give=give)
         if confirmed is not None:
-            return Claim(statement, Refutation(f"a motion found by search, {name}", confirmed))
+            return Claim(statement, Refutation(f"a motion of the search, {name}", confirmed))
     best = max(s for s, _, _ in motions)
     if not np.isfinite([best, *(x for pair in on_the_way for x in pair)]).all():
         return Claim(statement, Unknown("the simulated forces are not finite"))

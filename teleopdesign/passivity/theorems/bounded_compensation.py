@@ -100,9 +100,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     acting = device.acting_force(bound)
     claims = [TopicClaim("any law within the level", _compare_level(device, acting), time="any")]
     if question.estimates:
-        claims.append(
-            TopicClaim("the same, damping counted", _compare_at_every_speed(device, acting))
-        )
+        claims.append(TopicClaim("the same, with damping", _compare_at_every_speed(device, acting)))
     return claims
 
 

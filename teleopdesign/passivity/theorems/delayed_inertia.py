@@ -136,9 +136,9 @@ def cancelled_inertia(
 
 def _check(damping: Any, cancelled: Any, delay: Any, time_constant: Any, order: int) -> None:
     if min(damping, cancelled, delay, time_constant) < 0:
-        raise ModelError("cancelled_inertia: no value may be negative")
+        raise ModelError("largest_passive_inertia: no value may be negative")
     if order not in (1, 2):
-        raise ModelError(f"cancelled_inertia: order of the low-pass is 1 or 2, found {order}")
+        raise ModelError(f"largest_passive_inertia: order of the low-pass is 1 or 2, found {order}")
 
 
 def _maximum(delay: float, time_constant: float) -> tuple[float, float]:

@@ -244,7 +244,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     """The claim for all values within the intervals, with the damping present at every speed."""
     device, law, computer = question.device, question.cancellation, question.computer
     assert law is not None and question.late is not None
-    topic = "law of velocity, damping counted"
+    topic = "law of velocity, with damping"
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a law of velocity"
         statement = "the device's friction beside its compensator of velocity is passive"

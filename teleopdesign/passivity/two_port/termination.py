@@ -34,7 +34,7 @@ class Termination:
 
     def __post_init__(self) -> None:
         if min(self.damping, self.inertia, self.stiffness) < 0:
-            raise ValueError(f"termination: a negative part is not passive: {self}")
+            raise ValueError(f"Termination: a negative part is not passive: {self}")
 
     @property
     def ratio(self) -> Ratio:

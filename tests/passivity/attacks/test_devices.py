@@ -22,7 +22,7 @@ from teleopdesign.passivity.identified import identify_device
 WITHIN = 1.959
 #: claims at the estimate are about measured numbers of four digits: half a unit of the last, twice
 DIGITS = 1e-3
-ANY_LAW = ("any law within the level", "the same, damping counted")
+ANY_LAW = ("any law within the level", "the same, with damping")
 
 
 def uncertain(rng, value, share=None):

@@ -2,7 +2,7 @@
 
 An effect may be certain although its parameters are not: a level at rest that no measured force
 reached is an extrapolation, and a record may determine only the product of two parameters. The file
-of an effect states the consequences of physics (`untold`); this file states those of the records.
+of an effect states the consequences of physics (`undetermined`), this file those of the records.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from ..errors import ModelError
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
-from .diagnosis import Untold
+from .diagnosis import Undetermined
 from .evidence import whole_score
 from .fit import Fit, estimate
-from .plausibility import untold_of
+from .plausibility import undetermined_of
 from .prepare import Prepared
 from .products import product_of
 from .rung import Rung
@@ -28,7 +28,7 @@ OPEN = 0.5
 PRODUCT = 0.5
 
 
-def untold(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Untold, ...]:
+def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undetermined, ...]:
     """Parameters of the effects of a ladder that the records do not determine, by the last fit."""
     fit, sentences = rungs[-1].fit, []
     for rung in rungs[1:]:
@@ -36,9 +36,9 @@ def untold(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Untold, ...]:
         assert added is not None
         if not fit.model.body(added.at).has(added.effect.name):
             continue
-        by_effect = untold_of(added.effect, added.at, fit.model, prepared)
+        by_effect = undetermined_of(added.effect, added.at, fit.model, prepared)
         said = [by_effect or alike_on_records(fit, added, prepared), known_together(fit, added)]
-        sentences += [Untold(added, one) for one in said if one]
+        sentences += [Undetermined(added, one) for one in said if one]
     return tuple(sentences)
 
 
@@ -50,7 +50,7 @@ def alike_on_records(
     For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
     turn the two differ, but where more than noise is left the records may not show the difference.
     """
-    if prepared.is_of_an_arm:  # gravity is in its links
+    if prepared.is_of_an_arm:  # the links of an arm include gravity
         return ""
     body = fit.model.body(candidate.at)
     for other in (c.effect for c in list_look_alikes(candidate, fit.model)):

@@ -49,7 +49,7 @@ _CARRIED, _INTERACTION = SIGNALS["carried_force"], SIGNALS["interaction_force"]
 
 
 @dataclass(frozen=True)
-class SeenAtCommand:
+class ResidualAtCommand:
     """Residual of a model along one motion (n samples), as an error of the recorded command.
 
     residual: mapped back, SI; in blind samples divided by the largest gain
@@ -86,7 +86,9 @@ def is_between(body: Body) -> bool:
     )
 
 
-def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -> SeenAtCommand:
+def residual_at_command(
+    body: Body, motion: Motion, along: Residual | None = None
+) -> ResidualAtCommand:
     """The residual along a motion as an error of the recorded command.
 
     along: result of `residual_along` for this body and motion; None: it is computed
@@ -104,7 +106,7 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
     if passed.any():
         passed = _transmit(passed, _net(body, motion, known, _INTERACTION), motion)
     weak = bool(blind.any()) and _is_weak(body, motion, model, known)
-    return SeenAtCommand(residual, blind, passed, weak)
+    return ResidualAtCommand(residual, blind, passed, weak)
 
 
 def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
@@ -137,7 +139,7 @@ def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
     """An expression along the motion (n,); a hidden state without a signal is zero."""
     signals, values = along.signals, along.values
     symbols, call = _function(expression)
-    # arrays all: what is printed for a Max of a number and an array stacks the two
+    # all as arrays: the printed code stacks the arguments of Max, which needs equal shapes
     numbers = [
         signals[s].value if s in signals else np.full(n, values.get(s, 0.0)) for s in symbols
     ]
@@ -245,7 +247,7 @@ def _from_rest(way: _Way) -> NDArray[np.complex128]:
 
 def _transmit(force: Array, way: _Way, motion: Motion) -> Array:
     """The part of a force that passes a transfer; a resonance does not amplify it."""
-    # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
+    # a coupling that opens during the motion has no dynamics at rest: the whole force passes
     gain = np.where(np.isfinite(way.gain), way.gain, 1.0)
     dynamics = np.where(np.isfinite(way.dynamics), way.dynamics, 1.0)
     limited = dynamics / np.maximum(np.abs(dynamics), 1.0)
@@ -280,7 +282,7 @@ def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
     return bool(len(whole)) and float(np.median(whole)) > 0.0
 
 
-def blind_share(stretches: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
+def blind_share(stretches: Sequence[ResidualAtCommand], motions: Sequence[Motion]) -> float:
     """Share of blind samples among those where the body slides; of all, where it never slides."""
     blind = np.concatenate([s.blind for s in stretches])
     slides = np.concatenate([m.direction != 0 for m in motions])

@@ -9,19 +9,19 @@ from diagnose.stub_models import Table
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.diagnose import untold as untold_module
+from teleopdesign.diagnose import undetermined as undetermined_module
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import restore_diagnosis
 from teleopdesign.diagnose.answers.saved import load_answer
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.diagnosis import SetAside, Untold
+from teleopdesign.diagnose.diagnosis import SetAside, Undetermined
 from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.plausibility import implausible_effects
 from teleopdesign.diagnose.products import Product, best_product
-from teleopdesign.diagnose.untold import alike_on_records, known_together, untold
+from teleopdesign.diagnose.undetermined import alike_on_records, find_undetermined, known_together
 from teleopdesign.effects import EFFECTS
 
 
@@ -158,11 +158,13 @@ def test_an_effect_whose_product_is_sure_is_there_though_each_parameter_is_open(
     assert not is_identifiable(wide, little_more_left(diagnosis.rungs[0], wide).fit)
 
 
-def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, experiment, tmp_path):
+def test_what_was_set_aside_or_is_undetermined_stands_in_text_and_answer(
+    diagnosis, experiment, tmp_path
+):
     added, gone = stribeck_of(diagnosis), Candidate(EFFECTS["backlash"], "device")
     whole = replace(
         diagnosis,
-        untold=(Untold(added, "the level at rest is not told"),),
+        undetermined=(Undetermined(added, "the level at rest is not told"),),
         set_aside=(SetAside(gone, 0.03, "gap = 0.1 +- 0.2 m is not told from absence"),),
     )
     text = ladder_text(whole)
@@ -173,7 +175,7 @@ def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, ex
     assert content["set_aside"][0]["reason"].startswith("gap")
     write_answer(whole, tmp_path / "answer.json")
     again = restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment)
-    assert [str(one) for one in again.untold] == [str(one) for one in whole.untold]
+    assert [str(one) for one in again.undetermined] == [str(one) for one in whole.undetermined]
     assert [str(one) for one in again.set_aside] == [str(one) for one in whole.set_aside]
 
 
@@ -227,12 +229,12 @@ def product(*errors, known):
 def test_a_product_is_said_where_one_of_it_is_open_and_it_is_known_twice_as_well(
     monkeypatch, product, said
 ):
-    monkeypatch.setattr(untold_module, "product_of", lambda fit, effect: product)
+    monkeypatch.setattr(undetermined_module, "product_of", lambda fit, effect: product)
     sentence = known_together(None, Candidate(EFFECTS["stribeck"], "device"))
     assert sentence.startswith(said) and bool(sentence) == bool(said)
 
 
-def test_what_is_untold_is_said_of_each_effect_that_the_last_model_has_in_order(monkeypatch):
+def test_what_is_undetermined_is_said_of_each_effect_that_the_last_model_has_in_order(monkeypatch):
     table = Table(lambda names: 1.0)
     rungs = table.rungs("bias", "spring", "viscous")
     by_effect = {"bias": "a level at rest", "viscous": None, "spring": None}
@@ -243,18 +245,23 @@ def test_what_is_untold_is_said_of_each_effect_that_the_last_model_has_in_order(
         asked.append(model)
         return by_effect[effect.name]
 
-    monkeypatch.setattr(untold_module, "untold_of", of_effect)
-    monkeypatch.setattr(untold_module, "alike_on_records", lambda fit, c, prepared: "")
-    monkeypatch.setattr(untold_module, "known_together", lambda fit, c: together[c.effect.name])
-    said = [(one.candidate.effect.name, one.sentence) for one in untold(rungs, None)]
+    monkeypatch.setattr(undetermined_module, "undetermined_of", of_effect)
+    monkeypatch.setattr(undetermined_module, "alike_on_records", lambda fit, c, prepared: "")
+    monkeypatch.setattr(
+        undetermined_module, "known_together", lambda fit, c: together[c.effect.name]
+    )
+    said = [(one.candidate.effect.name, one.sentence) for one in find_undetermined(rungs, None)]
     assert said == [("bias", "a level at rest"), ("spring", "a * b"), ("viscous", "a * c")]
     assert all(model is rungs[-1].fit.model for model in asked)
     together["bias"] = "b * c"
-    assert [one.sentence for one in untold(rungs, None)][:2] == ["a level at rest", "b * c"]
+    assert [one.sentence for one in find_undetermined(rungs, None)][:2] == [
+        "a level at rest",
+        "b * c",
+    ]
     # what others made superfluous has nothing to tell
     last = replace(rungs[-1], fit=table.fit("spring"))
-    assert [one.sentence for one in untold((*rungs[:-1], last), None)] == ["a * b"]
-    assert untold(rungs[:1], None) == ()
+    assert [one.sentence for one in find_undetermined((*rungs[:-1], last), None)] == ["a * b"]
+    assert find_undetermined(rungs[:1], None) == ()
 
 
 def alike(monkeypatch, named, *there, errors, arm=False, axis="revolute"):
@@ -263,7 +270,7 @@ def alike(monkeypatch, named, *there, errors, arm=False, axis="revolute"):
     last = table.fit(named, *there)
     known = {n: EFFECTS[n] for n in ("spring", "gravity", "bias", "cogging")}
     last.model = replace(last.model, known=known, axis=axis)
-    monkeypatch.setattr(untold_module, "estimate", table.estimate)
+    monkeypatch.setattr(undetermined_module, "estimate", table.estimate)
     prepared = SimpleNamespace(is_of_an_arm=arm)
     return alike_on_records(last, Candidate(EFFECTS[named], "device"), prepared)
 

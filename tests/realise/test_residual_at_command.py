@@ -12,12 +12,12 @@ from teleopdesign.blocks import Body, Value
 from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.measurement.motion import motion_of
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.seen_at_command import (
+from teleopdesign.realise.residual_at_command import (
     _transmit,
     _Way,
     blind_share,
     is_between,
-    seen_at_command,
+    residual_at_command,
 )
 from teleopdesign.realise.traced import Traced
 
@@ -78,7 +78,7 @@ def test_an_error_of_the_command_is_seen_as_what_it_was(name):
     after = residual_along(body, replace(motion, command=motion.command + error))
     made = after.residual.value - before.residual.value
     along = replace(before, residual=Traced(made, before.residual.tangent))
-    seen = seen_at_command(body, motion, along)
+    seen = residual_at_command(body, motion, along)
     # a slow memory begins with the record, and is forgotten after some seconds
     inside = slice(4 * int(RATE), -int(RATE))
     told = ~seen.blind[inside]
@@ -107,7 +107,7 @@ def test_actuation_is_led_back_as_the_format_says():
         body = body_with(EFFECTS[name], PASSING[name])
         along = residual_along(body, motion)
         along = replace(along, residual=Traced(wave, along.residual.tangent))
-        found = seen_at_command(body, motion, along)
+        found = residual_at_command(body, motion, along)
         assert not found.blind.any()
         # the lag is simulated on quarters of a sample, exactly: what differs is the ends' echo
         np.testing.assert_allclose(found.residual[inside], known[inside], atol=0.01)
@@ -116,12 +116,14 @@ def test_actuation_is_led_back_as_the_format_says():
 @pytest.mark.parametrize("side", [1, -1])
 def test_samples_beyond_a_limit_are_blind(side):
     motion = one_way(side)
-    seen = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
+    seen = residual_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
     np.testing.assert_array_equal(seen.blind, side * motion.command > 3.0)
     assert not seen.weak
     # beside friction of 1 N
     for limit, is_weak in ((0.5, True), (0.9, True), (1.1, False)):
-        held = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": limit}), motion)
+        held = residual_at_command(
+            body_with(EFFECTS["actuator_saturation"], {"limit": limit}), motion
+        )
         assert held.blind.all() and held.weak == is_weak
 
 
@@ -144,7 +146,7 @@ def test_of_a_hands_force_the_part_that_a_way_transmits_reaches_the_body(gain, v
 
 def led_back(body, motion, residual):
     along = residual_along(body, motion)
-    return seen_at_command(
+    return residual_at_command(
         body, motion, replace(along, residual=Traced(residual, along.residual.tangent))
     )
 
@@ -166,7 +168,7 @@ def test_an_actuator_that_is_strongest_for_a_small_command_is_judged_there(side,
     values |= {"inertia": Value(0.2 * unit), "coulomb.level": Value(level * unit)}
     body = Body("prismatic", values, (EFFECTS["coulomb"], *effects))
     motion = one_way(side)
-    seen = seen_at_command(body, replace(motion, command=unit * motion.command))
+    seen = residual_at_command(body, replace(motion, command=unit * motion.command))
     assert seen.blind.any() and seen.weak == weak
 
 
@@ -191,7 +193,7 @@ def test_what_else_acts_counts_when_it_is_asked_whether_an_actuator_can_slide_th
             },
             (EFFECTS["coulomb"], EFFECTS["bias"], EFFECTS["actuator_saturation"]),
         )
-        seen = seen_at_command(body, motion)
+        seen = residual_at_command(body, motion)
         assert seen.blind.all() and seen.weak == (weak and against > 0)
 
 
@@ -228,8 +230,8 @@ def test_a_delay_behind_a_limit_moves_no_blind_sample():
         },
         (EFFECTS["coulomb"], EFFECTS["actuator_saturation"], EFFECTS["actuation_delay"]),
     )
-    seen = seen_at_command(body, motion)
-    alone = seen_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
+    seen = residual_at_command(body, motion)
+    alone = residual_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
     assert 0.2 < alone.blind.mean() < 0.8
     np.testing.assert_array_equal(seen.blind, alone.blind)
 
@@ -239,7 +241,7 @@ def test_without_a_law_between_nothing_is_changed():
     body = Body("prismatic", {"inertia": Value(0.2), "coulomb.level": Value(1.0)},
                 (EFFECTS["coulomb"],))  # fmt: skip
     before = residual_along(body, motion)
-    seen = seen_at_command(body, motion)
+    seen = residual_at_command(body, motion)
     assert not is_between(body) and not seen.blind.any() and not seen.weak
     np.testing.assert_array_equal(seen.residual, before.residual.value)
     for name in PASSING:
@@ -300,7 +302,7 @@ def test_a_command_within_a_dead_zone_is_blind_and_a_larger_one_is_judged(side, 
     values |= {"inertia": Value(0.2), "coulomb.level": Value(1.0)}
     motion = one_way(side)
     for order in ((zone, CHEATS["soft_limit"]), (CHEATS["soft_limit"], zone)):
-        seen = seen_at_command(Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion)
+        seen = residual_at_command(Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion)
         # a limit in front of the zone never leaves it
         assert seen.blind.all() and seen.weak == (weak or order[0] is not zone)
 
@@ -319,7 +321,7 @@ def test_samples_in_which_friction_takes_up_the_whole_force_are_blind_then_and_n
     motion = one_way(side)
     held = np.abs(motion.position) > 1.5
     assert 0.2 < held.mean() < 0.8
-    seen = seen_at_command(body_with(brake, {"part": 1.0}), motion)
+    seen = residual_at_command(body_with(brake, {"part": 1.0}), motion)
     moves = motion.direction != 0  # all samples but the last
     np.testing.assert_array_equal(seen.blind[moves], held[moves])
-    assert not seen_at_command(body_with(brake, {"part": 0.5}), motion).blind.any()
+    assert not residual_at_command(body_with(brake, {"part": 0.5}), motion).blind.any()
