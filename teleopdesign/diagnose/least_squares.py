@@ -55,8 +55,10 @@ def minimise(
         if expected <= 1e-3 * tolerance * squares:
             break
         # a step after one that failed mostly fails too, and its Jacobian would serve nothing
-        doubted = failed and residual_alone is not None
-        failed = doubted and not _is_less(residual_alone(trial), squares)
+        if failed and residual_alone is not None:
+            failed = not _is_less(residual_alone(trial), squares)
+        else:
+            failed = False
         if not failed:
             new_residual, new_jacobian = function(trial)
             failed = not _is_less(new_residual, squares)
