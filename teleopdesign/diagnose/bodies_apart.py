@@ -142,11 +142,12 @@ class BodyByBody:
                 return followed, known
         names = [self._names[int(k)] for k in self._columns[i]]
         part = self._parts[i]
-        residual, columns = part.relative(model, names if slopes else ())
-        known = _Point(
-            x,
-            residual,
-            lambda: (columns if slopes else part.relative(model, names)[1]) * units,
-        )
+        if slopes:
+            residual, columns = part.relative(model, names)
+            jacobian = columns * units
+            known = _Point(x, residual, lambda: jacobian)
+        else:
+            residual, _ = part.relative(model, ())
+            known = _Point(x, residual, lambda: part.relative(model, names)[1] * units)
         self._last[i] = known
         return residual, known
