@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,54 +64,90 @@ def _select_stretches(stretches: Sequence[Stretch], bodies: Collection[str]) -> 
 
 
 @dataclass(frozen=True, eq=False)
-class _Memory:
-    """The last computed point of a body, in search coordinates, with its residual and Jacobian."""
+class _Point:
+    """A computed point of a body, in search coordinates, with its residual.
+
+    slopes: computes the Jacobian there
+    """
 
     x: Array
     residual: Array
-    jacobian: Array
+    slopes: Callable[[], Array]
+
+    @cached_property
+    def jacobian(self) -> Array:
+        """Derivatives of the residual by the coordinates, computed where they are asked for."""
+        return self.slopes()
+
+    def follow(self, x: Array, tolerance: float) -> Array | None:
+        """The residual at a point near by, along the tangents; None where they may not lead there.
+
+        tolerance: relative change of the squares that a fit resolves
+        """
+        sizes = np.maximum(np.abs(self.x), 1.0)
+        if np.any(np.abs(x - self.x) > EFFORTS.followed_within * sizes):
+            return None
+        change = self.jacobian @ (x - self.x)
+        largest = EFFORTS.followed * tolerance * float(self.residual @ self.residual)
+        return self.residual + change if float(change @ change) <= largest else None
 
 
-def _is_near(x: Array, other: Array) -> bool:
-    """Whether the tangents at one point may be used to extrapolate to the other."""
-    sizes = np.maximum(np.abs(other), 1.0)
-    return bool(np.all(np.abs(x - other) <= EFFORTS.followed_within * sizes))
-
-
-def body_by_body(
-    model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
-) -> Callable[[Model, Array, Array], tuple[Array, Array]]:
-    """A function that returns residual (rows,) and Jacobian (rows, p) of all stretches.
+class BodyByBody:
+    """Residual (rows,) and Jacobian (rows, p) of all stretches, by the last points of each body.
 
     names: the p parameters and shifts
     tolerance: relative change of the squares that a fit resolves
-    The function takes a model, its parameters in search coordinates (p,), and the units of these
+    Its functions take a model, its parameters in search coordinates (p,), and the units of these
     coordinates (p,).
     """
-    parts = separate_bodies(stretches)
-    places = [model.locate(name)[0] for name in names]
-    columns = [np.flatnonzero([p in part.bodies for p in places]) for part in parts]
-    count = sum(len(part.rows) for part in parts)
-    memory: dict[int, _Memory] = {}
 
-    def here(i: int, there: Model, x: Array, units: Array) -> tuple[Array, Array]:
-        known = memory.get(i)
-        # not for a single body, which is the whole fit; nor far away, where the residual bends
-        if known is not None and len(parts) > 1 and _is_near(x, known.x):
-            change = known.jacobian @ (x - known.x)
-            largest = EFFORTS.followed * tolerance * float(known.residual @ known.residual)
-            if float(change @ change) <= largest:
-                return known.residual + change, known.jacobian
-        residual, slopes = parts[i].relative(there, [names[int(k)] for k in columns[i]])
-        memory[i] = _Memory(x, residual, slopes * units)
-        return memory[i].residual, memory[i].jacobian
+    def __init__(
+        self, model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
+    ) -> None:
+        self._parts = separate_bodies(stretches)
+        self._names, self._tolerance = names, tolerance
+        places = [model.locate(name)[0] for name in names]
+        self._columns = [np.flatnonzero([p in b.bodies for p in places]) for b in self._parts]
+        self._rows = sum(len(part.rows) for part in self._parts)
+        self._last: dict[int, _Point] = {}
 
-    def all_bodies(there: Model, x: Array, units: Array) -> tuple[Array, Array]:
-        residual, jacobian = np.empty(count), np.zeros((count, len(names)))
-        for i, part in enumerate(parts):
-            mine = columns[i]
-            residual[part.rows], slopes = here(i, there, x[mine], units[mine])
-            jacobian[np.ix_(part.rows, mine)] = slopes
+    def both(self, model: Model, x: Array, units: Array) -> tuple[Array, Array]:
+        """Residual and Jacobian."""
+        residual, jacobian = np.empty(self._rows), np.zeros((self._rows, len(self._names)))
+        for i, (part, mine) in enumerate(zip(self._parts, self._columns, strict=True)):
+            followed, point = self._at(i, model, x[mine], units[mine], slopes=True)
+            residual[part.rows] = followed
+            jacobian[np.ix_(part.rows, mine)] = point.jacobian
         return residual, jacobian
 
-    return all_bodies
+    def residual(self, model: Model, x: Array, units: Array) -> Array:
+        """The residual alone, the same as that of `both`."""
+        residual = np.empty(self._rows)
+        for i, (part, mine) in enumerate(zip(self._parts, self._columns, strict=True)):
+            residual[part.rows], _ = self._at(i, model, x[mine], units[mine], slopes=False)
+        return residual
+
+    def _at(
+        self, i: int, model: Model, x: Array, units: Array, *, slopes: bool
+    ) -> tuple[Array, _Point]:
+        """Residual of one body, and the point whose tangents hold there.
+
+        slopes: whether they are computed with the residual, at once
+        """
+        known = self._last.get(i)
+        # not for a single body, which is the whole fit
+        if known is not None and len(self._parts) > 1:
+            followed = known.follow(x, self._tolerance)
+            if followed is not None:
+                return followed, known
+        names = [self._names[int(k)] for k in self._columns[i]]
+        part = self._parts[i]
+        if slopes:
+            residual, columns = part.relative(model, names)
+            jacobian = columns * units
+            known = _Point(x, residual, lambda: jacobian)
+        else:
+            residual, _ = part.relative(model, ())
+            known = _Point(x, residual, lambda: part.relative(model, names)[1] * units)
+        self._last[i] = known
+        return residual, known

@@ -17,7 +17,7 @@ from ..blocks import Body
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
-from ..realise.along_motion import residual_along
+from ..realise.along_motion import Residual
 from ..realise.residual_at_command import (
     ResidualAtCommand,
     blind_share,
@@ -25,7 +25,7 @@ from ..realise.residual_at_command import (
     residual_at_command,
 )
 from .prepare import Stretch, measured_force
-from .record_offsets import apply_offset_groups, offset_groups
+from .record_offsets import AlongRecords, along_records
 
 
 @dataclass(frozen=True)
@@ -47,26 +47,30 @@ class AtCommand:
     weak: bool
 
 
-def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
+def refer_to_command(
+    model: Model, stretches: Sequence[Stretch], along: AlongRecords | None = None
+) -> AtCommand:
     """Residual of the model as an error of the recorded forces: see `residual_at_command`.
 
     Equal to `residuals` where no effect lies between the recorded forces and the body. Where the
     model withholds a part of the interaction force from a body, the residual is scaled up
     accordingly.
+
+    along: of this model and these stretches; None: it is computed
     """
-    groups = offset_groups(model, stretches)
-    along = apply_offset_groups(model, stretches, groups)
-    command_errors = [_map_back(body, motion) for body, motion in along]
+    along = along or along_records(model, stretches)
+    motions = [motion for _, motion, _ in along.parts]
+    command_errors = [_map_back(*part) for part in along.parts]
     values = [
         m.lowpassed(one.residual)[s.keep]
-        for s, (_, m), one in zip(stretches, along, command_errors, strict=True)
+        for s, m, one in zip(stretches, motions, command_errors, strict=True)
     ]
     nothing = np.zeros((0, 0))
-    for group, offsets in groups:
+    for group, offsets in along.groups:
         bare = [(values[i], nothing.reshape(0, len(values[i]))) for i in group]
         for i, (residual, _) in zip(group, offsets.cleared(bare), strict=True):
             values[i] = residual
-    values = _scale_to_command(stretches, [m for _, m in along], values, command_errors)
+    values = _scale_to_command(stretches, motions, values, command_errors)
     sighted = [~one.blind[s.keep] for s, one in zip(stretches, command_errors, strict=True)]
     left = whole = 0.0
     for s, r, sighted_rows in zip(stretches, values, sighted, strict=True):
@@ -85,13 +89,11 @@ def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     )
 
 
-def _map_back(body: Body, motion: Motion) -> ResidualAtCommand:
+def _map_back(body: Body, motion: Motion, along: Residual) -> ResidualAtCommand:
     if is_between(body):
-        return residual_at_command(body, motion)
+        return residual_at_command(body, motion, along)
     none = np.zeros(len(motion.time), dtype=bool)
-    return ResidualAtCommand(
-        residual_along(body, motion).residual.value, none, motion.interaction, False
-    )
+    return ResidualAtCommand(along.residual.value, none, motion.interaction, False)
 
 
 def _scale_to_command(

@@ -17,6 +17,7 @@ from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, refer_to_command
 from .prepare import Prepared, Stretch, folds
+from .record_offsets import AlongRecords, along_records
 from .residual import both_residuals, relative_residuals
 from .solve import BLOCK, Solution, solve
 
@@ -119,9 +120,10 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     fitted = with_errors(_with_held_shifts(solution, stretches), free, blocks).canonical()
     check = prepared.of("check")
     if check:
-        absolute, parts = both_residuals(fitted, check)
+        along = along_records(fitted, check)
+        absolute, parts = both_residuals(fitted, check, along)
         check_error = error_of(check, absolute)
-        command_error = command_error_of(fitted, check)
+        command_error = command_error_of(fitted, check, along)
     else:
         check, parts, check_error, command_error = _fit_held_out(fitted, free, prepared)
     return Fit(
@@ -182,9 +184,14 @@ def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.in
     return shifts.beside(model, shifts.start(model), errors[len(free) :])
 
 
-def command_error_of(model: Model, stretches: Sequence[Stretch]) -> CommandError:
-    """Residual of the model on these stretches, as an error at the command."""
-    error = refer_to_command(model, stretches)
+def command_error_of(
+    model: Model, stretches: Sequence[Stretch], along: AlongRecords | None = None
+) -> CommandError:
+    """Residual of the model on these stretches, as an error at the command.
+
+    along: of this model and these stretches; None: it is computed
+    """
+    error = refer_to_command(model, stretches, along)
     return _join_command_errors(stretches, error)
 
 

@@ -33,17 +33,19 @@ def minimise(
     *,
     tolerance: float,
     evaluations: int,
+    residual_alone: Callable[[Array], Array] | None = None,
 ) -> Minimum:
     """Parameters that minimise the sum of squares of the residual, within bounds.
 
     function: x (p,) -> residual (n,), Jacobian (n, p)
+    residual_alone: the same residual where no Jacobian is needed; None: it takes as long
     start, lower, upper: (p,)
     tolerance: relative change of squares at which the search ends
     evaluations: most calls of the function
     """
     x = np.clip(start, lower, upper)
     residual, jacobian = function(x)
-    squares, damping, quiet = float(residual @ residual), 1e-3, 0
+    squares, damping, quiet, failed = float(residual @ residual), 1e-3, 0, False
     for _ in range(evaluations - 1):
         step = _step(jacobian, residual, lower - x, upper - x, damping)
         if not np.isfinite(step).all():
@@ -52,13 +54,20 @@ def minimise(
         expected = squares - float(np.sum((residual + jacobian @ (trial - x)) ** 2))
         if expected <= 1e-3 * tolerance * squares:
             break
-        new_residual, new_jacobian = function(trial)
-        new = float(new_residual @ new_residual)
-        if not np.isfinite(new) or new >= squares:
+        # a step after one that failed mostly fails too, and its Jacobian would serve nothing
+        if failed and residual_alone is not None:
+            failed = not _is_less(residual_alone(trial), squares)
+        else:
+            failed = False
+        if not failed:
+            new_residual, new_jacobian = function(trial)
+            failed = not _is_less(new_residual, squares)
+        if failed:
             damping *= 10.0
             if damping > 1e8:
                 break
             continue
+        new = float(new_residual @ new_residual)
         good = (squares - new) / expected
         damping = damping / 10.0 if good > 0.75 else damping * 3.0 if good < 0.25 else damping
         quiet = quiet + 1 if squares - new < tolerance * squares else 0
@@ -66,6 +75,12 @@ def minimise(
         if quiet >= 2:
             break
     return Minimum(np.asarray(x), residual, jacobian)
+
+
+def _is_less(residual: Array, squares: float) -> bool:
+    """Whether the sum of squares of a residual is finite and less than that of another."""
+    new = float(residual @ residual)
+    return bool(np.isfinite(new)) and new < squares
 
 
 def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:

@@ -20,7 +20,7 @@ from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
-from ..realise.along_motion import residual_along
+from ..realise.along_motion import Residual, residual_along
 from .prepare import Stretch
 
 #: iterations of the estimate: two are exact if the force is linear in the offsets
@@ -127,7 +127,10 @@ def _set_offsets(
 def offset_groups(
     model: Model, stretches: Sequence[Stretch]
 ) -> list[tuple[list[int], RecordOffsets]]:
-    """For each record and body with offsets: indices of its stretches, and the estimates."""
+    """For each record and body with offsets: indices of its stretches, and the estimates.
+
+    A record that cannot determine any of its offsets counts as without.
+    """
     groups: dict[tuple[str, str], list[int]] = {}
     for i, stretch in enumerate(stretches):
         if stretch.offset_names:
@@ -141,8 +144,9 @@ def offset_groups(
             return np.asarray(left[rows[k]])
 
         motions = [as_logged(model, stretches[i].motion) for i in group]
-        names = stretches[group[0]].offset_names
-        offsets.append((group, find_offsets(model.body(place), motions, names, residual)))
+        names, body = stretches[group[0]].offset_names, model.body(place)
+        if _steps(body, motions, names):
+            offsets.append((group, find_offsets(body, motions, names, residual)))
     return offsets
 
 
@@ -157,6 +161,25 @@ def as_logged(model: Model, motion: Motion) -> Motion:
         force = motion.spectrum.multiply(motion.interaction, unfiltered)
         motion = replace(motion, interaction=force, interaction_late=sensed)
     return motion if late == motion.command_late else replace(motion, command_late=late)
+
+
+@dataclass(frozen=True, eq=False)
+class AlongRecords:
+    """A model along some stretches without tangents, for several errors that are taken from it.
+
+    groups: of `offset_groups`
+    parts: of each stretch the body and motion, with the offsets of its record, and the residual
+    """
+
+    groups: Sequence[tuple[list[int], RecordOffsets]]
+    parts: Sequence[tuple[Body, Motion, Residual]]
+
+
+def along_records(model: Model, stretches: Sequence[Stretch]) -> AlongRecords:
+    """The model along each stretch, with the offsets of its record."""
+    groups = offset_groups(model, stretches)
+    located = apply_offset_groups(model, stretches, groups)
+    return AlongRecords(groups, [(b, m, residual_along(b, m)) for b, m in located])
 
 
 def apply_record_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:

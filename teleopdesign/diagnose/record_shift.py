@@ -130,11 +130,20 @@ class RecordShifts:
 
         samples: (k,) shifts;  residual: (n,);  jacobian: (n, p + k), the shifts (in samples) last
         """
-        size = max(float(np.linalg.norm(residual)), 1e-300)
-        part = 1.0 / (self.spread * np.sqrt(self.count))
+        size, part = self._size_and_part(residual)
         slope = np.outer(samples * part, residual @ jacobian / size)
         slope[:, jacobian.shape[1] - len(samples) :] += size * np.diag(part)
-        return size * part * samples, slope
+        return self.prior_alone(samples, residual), slope
+
+    def prior_alone(self, samples: Array, residual: Array) -> Array:
+        """Residual rows of the prior (k,), as in `prior`."""
+        size, part = self._size_and_part(residual)
+        return size * part * samples
+
+    def _size_and_part(self, residual: Array) -> tuple[float, Array]:
+        """Norm of a residual, and the part of it (k,) that a shift of one sample adds."""
+        size = max(float(np.linalg.norm(residual)), 1e-300)
+        return size, 1.0 / (self.spread * np.sqrt(self.count))
 
     def observed(
         self, residual: Array, jacobian: Array, blocks: NDArray[np.intp]

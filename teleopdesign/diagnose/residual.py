@@ -6,18 +6,19 @@ for the model first, and removed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
 from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
+from ..measurement.motion import Motion
 from ..model import Model
-from ..realise.along_motion import residual_along
-from ..realise.traced import Probe, Traced, constant, filter_traced
+from ..realise.along_motion import Residual, residual_along
+from ..realise.traced import Probe, Traced, constant, filter_traced, in_rows
 from .prepare import Stretch
-from .record_offsets import apply_offset_groups, offset_groups
+from .record_offsets import AlongRecords, RecordOffsets, apply_offset_groups, offset_groups
 from .shared_links import clear
 
 
@@ -47,9 +48,19 @@ def relative_residuals(
     return _relative(model, stretches, parts, len(wrt))
 
 
-def both_residuals(model: Model, stretches: Sequence[Stretch]) -> tuple[list[Array], list[Array]]:
-    """`residuals` and `relative_residuals` per stretch, without tangents."""
-    parts = _residual_along(model, stretches, (), _bodies_that_lose_force(model))
+def both_residuals(
+    model: Model, stretches: Sequence[Stretch], along: AlongRecords
+) -> tuple[list[Array], list[Array]]:
+    """`residuals` and `relative_residuals` per stretch, without tangents.
+
+    along: of this model and these stretches
+    """
+    parts = _low_passed(
+        stretches,
+        along.groups,
+        ((residual, []) for _, _, residual in along.parts),
+        _bodies_that_lose_force(model),
+    )
     relative = _relative(model, stretches, parts, 0)
     return [r.value for r, _ in parts], [r for r, _ in relative]
 
@@ -108,23 +119,35 @@ def _residual_along(
     """
     located = [_place_of_probe(model, name) for name in wrt]
     groups = offset_groups(model, stretches)
-    signals: list[tuple[Traced, Traced | None]] = []
-    for stretch, (body, motion) in zip(
-        stretches, apply_offset_groups(model, stretches, groups), strict=True
-    ):
+
+    def along(body: Body, motion: Motion) -> tuple[Residual, list[int]]:
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
-        along = residual_along(body, motion, [located[i][1] for i in mine])
+        return residual_along(body, motion, [located[i][1] for i in mine]), mine
 
-        def shown(traced: Traced, s: Stretch = stretch, places: list[int] = mine) -> Traced:
+    each = (along(*one) for one in apply_offset_groups(model, stretches, groups))
+    return _low_passed(stretches, groups, each, taking, len(wrt))
+
+
+def _low_passed(
+    stretches: Sequence[Stretch],
+    groups: Sequence[tuple[list[int], RecordOffsets]],
+    each: Iterable[tuple[Residual, list[int]]],
+    taking: Collection[str],
+    parameters: int = 0,
+) -> list[tuple[Traced, Traced | None]]:
+    """Residual per stretch, as `_residual_along` returns it.
+
+    each: residual of each stretch, and the places of its tangents among those of all parameters
+    """
+    signals: list[tuple[Traced, Traced | None]] = []
+    for s, (along, places) in zip(stretches, each, strict=True):
+
+        def shown(traced: Traced, s: Stretch = s, places: list[int] = places) -> Traced:
             here = filter_traced(lambda y: s.motion.lowpassed(y, s.keep), traced)
-            if len(places) == len(wrt):
-                return here
-            tangent = np.zeros((len(wrt), len(s.keep)))
-            tangent[places] = here.tangent
-            return Traced(here.value, tangent)
+            return in_rows(here.value, here.tangent, places, parameters)
 
-        acting = along.moving + constant(stretch.motion.interaction, len(mine))
-        signals.append((shown(along.residual), shown(acting) if motion.body in taking else None))
+        acting = along.moving + constant(s.motion.interaction, len(places))
+        signals.append((shown(along.residual), shown(acting) if s.motion.body in taking else None))
     for group, offsets in groups:
         bare = [(signals[i][0].value, signals[i][0].tangent) for i in group]
         for i, (residual, tangent) in zip(group, offsets.cleared(bare), strict=True):

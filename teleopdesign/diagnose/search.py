@@ -7,23 +7,19 @@ the first ones of a ranking are fitted finely.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-import numpy as np
-
 from ..effects import Effect
-from ..measurement.filtering import Array
 from ..model import Model
-from .bodies_apart import select_bodies
 from .candidates import make_starts
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
 from .linear_start import linear_starts
 from .prepare import Prepared
+from .promise import Promises
 from .search_plan import PLAN
 from .solve import Solution, solve
 from .stated import has_moved, is_at_stated, reset_to_stated
@@ -199,7 +195,8 @@ def _select_promising(
     linear = _with_strength(model)
     if linear is not None:
         return _start_by_strength(models, *linear, prepared, base, worth)
-    promised = sorted((_promise(m, prepared, base.coarse), i) for i, m in enumerate(models))
+    promises = Promises(prepared, base.coarse)
+    promised = sorted((promises.squares(m), i) for i, m in enumerate(models))
     if promised[0][0] > base.least(worth):
         return []
     return _vary_starts(model, [models[i] for _, i in promised])[:most]
@@ -248,29 +245,6 @@ def _start_by_strength(
     if starts[0].promised > base.least(worth):
         return []
     return [s.model for s in starts[: PLAN.predicted]]
-
-
-def _promise(model: Model, prepared: Prepared, base: Fit) -> float:
-    """Sum of squares after one linear step from this start, by all free parameters."""
-    stretches, unit = prepared.of("fit"), prepared.scales
-    values, before = model.parameters, base.model.parameters
-    same = all(values[n].value == before[n].value for n in base.free)
-    wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
-    moved = select_bodies(stretches, {model.locate(n)[0] for n in wanted} or set(model.bodies))
-    residual, columns = base.fit_residual.copy(), np.zeros((len(base.fit_residual), len(wanted)))
-    residual[moved.rows], slopes = moved.relative(model, wanted)
-    columns[moved.rows] = slopes * np.array([unit[model.declared(n).quantity] for n in wanted])
-    whole = np.hstack([base.jacobian, base.by_shift, columns]) if same else columns
-    return _remaining_squares(whole, residual) if np.isfinite(whole).all() else math.inf
-
-
-def _remaining_squares(columns: Array, residual: Array) -> float:
-    """Squares of the residual that no combination of these columns removes, by normal equations."""
-    size = np.linalg.norm(columns, axis=0)
-    columns = columns / np.where(size > 0, size, 1.0)
-    normal = columns.T @ columns + 1e-9 * np.eye(columns.shape[1])
-    gradient = columns.T @ residual
-    return float(residual @ residual - gradient @ np.linalg.solve(normal, gradient))
 
 
 def _best_stepped(

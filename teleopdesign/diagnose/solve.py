@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..measurement.filtering import Array
 from ..model import Model
-from .bodies_apart import body_by_body
+from .bodies_apart import BodyByBody
 from .effort import Effort
 from .least_squares import minimise
 from .prepare import Prepared, Stretch
@@ -88,6 +88,43 @@ def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _S
     return _SearchSpace(scale, decades, lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND, start)
 
 
+@dataclass(frozen=True, eq=False)
+class _Residuals:
+    """Residual and Jacobian at search coordinates x (p + k,): free parameters, then k shifts."""
+
+    model: Model
+    free: tuple[str, ...]
+    space: _SearchSpace
+    shifts: RecordShifts
+    bodies: BodyByBody
+
+    def model_at(self, x: Array) -> Model:
+        """The model with the parameters and shifts at x."""
+        values = self.space.values(x[: len(self.free)]).tolist()
+        moved = self.model.with_values(dict(zip(self.free, values, strict=True)))
+        return self.shifts.beside(moved, x[len(self.free) :])
+
+    def _units(self, x: Array) -> Array:
+        return np.append(self.space.units(x[: len(self.free)]), self.shifts.row)
+
+    def both(self, x: Array) -> tuple[Array, Array]:
+        """Residual (rows,) and Jacobian (rows, p + k)."""
+        return self.bodies.both(self.model_at(x), x, self._units(x))
+
+    def with_prior(self, x: Array) -> tuple[Array, Array]:
+        """The same, with the k rows of the prior of the shifts; none changes by a held shift."""
+        p, shifts = len(self.free), self.shifts
+        r, j = self.both(x)
+        j[:, p:][:, shifts.held] = 0.0
+        known, slope = shifts.prior(x[p:], r, j)
+        return np.append(r, known), np.vstack([j, slope])
+
+    def residual_with_prior(self, x: Array) -> Array:
+        """The residual of `with_prior` alone."""
+        r = self.bodies.residual(self.model_at(x), x, self._units(x))
+        return np.append(r, self.shifts.prior_alone(x[len(self.free) :], r))
+
+
 def solve(
     model: Model,
     free: tuple[str, ...],
@@ -102,41 +139,28 @@ def solve(
     lower = np.append(space.lower, np.full(len(shifts.logs), -CLOCK.early))
     upper = np.append(space.upper, shifts.latest)
     start = np.append(space.start, shifts.start(model))
-    names = (*free, *shifts.names)
-    evaluated = body_by_body(model, names, stretches, tolerance=effort.tolerance)
-
-    def there(x: Array) -> Model:
-        moved = model.with_values(dict(zip(free, space.values(x[:p]).tolist(), strict=True)))
-        return shifts.beside(moved, x[p:])
-
-    def both(x: Array) -> tuple[Array, Array]:
-        return evaluated(there(x), x, np.append(space.units(x[:p]), shifts.row))
-
-    def with_prior(x: Array) -> tuple[Array, Array]:
-        r, j = both(x)
-        j[:, p:][:, shifts.held] = 0.0
-        known, slope = shifts.prior(x[p:], r, j)
-        return np.append(r, known), np.vstack([j, slope])
-
+    bodies = BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance)
+    left = _Residuals(model, free, space, shifts, bodies)
     if len(start):
         minimum = minimise(
-            with_prior,
+            left.with_prior,
             start,
             lower,
             upper,
             tolerance=effort.tolerance,
             evaluations=effort.evaluations,
+            residual_alone=left.residual_with_prior,
         )
         best, rows = minimum.values, len(minimum.residual) - len(shifts.logs)
         residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
     else:
-        best, (residual, jacobian) = start, both(start)
+        best, (residual, jacobian) = start, left.both(start)
     if any(s.shared is not None for s in stretches):
-        model = settle_links(there(best), stretches)
-        residual, jacobian = both(best)
+        left = replace(left, model=settle_links(left.model_at(best), stretches))
+        residual, jacobian = left.both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
     return Solution(
-        model=there(best),
+        model=left.model_at(best),
         values=space.values(best[:p]),
         scale=space.units(best[:p]),
         at_bound=at_bound[:p],

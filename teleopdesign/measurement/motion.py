@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..by_value import ByValue
 from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, spectrum
+from .held_command import held_command
 from .hum import hum_of, without_hum
 from .record import Record
 
@@ -101,12 +102,15 @@ class Motion(ByValue):
 
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
+        if staircase is self.command:
+            held = held_command(self.command, self.spectrum)
+            return held.smooth(self.command_late, self.smoothing)
         parts = staircase.shape[-1] // len(self.time)
         s = self.spectrum
-        held = s.transform(staircase[..., ::parts]) * s.hold(parts, 0)
+        transformed = s.transform(staircase[..., ::parts]) * s.hold(parts, 0)
         for k in range(1, parts):
-            held += s.transform(staircase[..., k::parts]) * s.hold(parts, k)
-        return s.back(held * (self.smoothing * s.ahead(self.command_late)))
+            transformed += s.transform(staircase[..., k::parts]) * s.hold(parts, k)
+        return s.back(transformed * (self.smoothing * s.ahead(self.command_late)))
 
     def lowpassed(self, y: Array, at: NDArray[np.intp] | None = None) -> Array:
         """Signals (..., n) through the low-pass of the comparison; at: only these rows."""

@@ -33,7 +33,7 @@ from .stages_along import (
     RECORD_SHIFT,
     acting_along,
 )
-from .traced import Along, LinkParameter, Probe, Traced, filter_traced
+from .traced import Along, LinkParameter, Probe, Traced, filter_traced, joined_rows
 
 #: signal of a law -> its name in a motion, for signals that are known from the records alone
 _MEASURED = {
@@ -129,7 +129,7 @@ def _force_of_links(motion: Motion, force: Array, along: Along) -> Traced:
     tangent = np.zeros((len(along.columns), len(force)))
     for j, index in places:
         tangent[j] = motion.links.columns[index]
-    return Traced(force, tangent)
+    return Traced(force, tangent, tuple(j for j, _ in places))
 
 
 def measured_along(
@@ -168,8 +168,9 @@ def _with_late_tangent(motion: Motion, columns: Sequence[object]) -> Traced:
     tangent = np.zeros((len(columns), len(motion.time)))
     rate = motion.spectrum.derivative(1)
     logged = rate / (1.0 + motion.interaction_late * rate)
-    tangent[columns.index(INTERACTION_LATE)] = motion.spectrum.multiply(motion.interaction, logged)
-    return Traced(motion.interaction, tangent)
+    place = columns.index(INTERACTION_LATE)
+    tangent[place] = motion.spectrum.multiply(motion.interaction, logged)
+    return Traced(motion.interaction, tangent, (place,))
 
 
 def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
@@ -197,7 +198,7 @@ def _with_late_drive(
         return states
     place, step = along.columns.index(INTERACTION_LATE), DRIVE_STEP * along.step
     signal = along.signals[force]
-    later = Traced(signal.value + step * signal.tangent[place], signal.tangent)
+    later = replace(signal, value=signal.value + step * signal.tangent[place])
     none = np.zeros((0, len(signal.value)))
     bare = replace(along, columns=()).with_signals({force: later})
     moved = ode_scan(effect, bare, [Traced(r.value, none) for r in rest])
@@ -205,7 +206,7 @@ def _with_late_drive(
     for symbol, state in states.items():
         tangent = np.array(state.tangent)
         tangent[place] += (moved[symbol].value - state.value) / step
-        changed[symbol] = Traced(state.value, tangent)
+        changed[symbol] = Traced(state.value, tangent, joined_rows(state, more=[place]))
     return changed
 
 

@@ -15,7 +15,7 @@ from ..measurement.motion import Motion
 from .balance import balance_within_bounds
 from .scan import driven_scan
 from .shape_scan import shape_bounds
-from .traced import Along, Traced, constant
+from .traced import Along, Traced, constant, joined_rows
 
 _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
 
@@ -43,7 +43,7 @@ def bound_friction(
     def towards(way: float) -> Traced:
         this_way = along.with_signals({_DIRECTION: along.constant(np.full(n, way))})
         size = this_way.evaluate(level)
-        if not size.is_constant:
+        if not size.is_constant and (size.value < 0).any():
             size.tangent[:, size.value < 0] = 0.0
         return Traced(np.maximum(size.value, 0.0), size.tangent, size.moving)
 
@@ -60,13 +60,16 @@ def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[T
     ahead, back = motion.direction > 0, motion.direction < 0
     if forward is backward:
         return forward.times(np.where(ahead, 1.0, -1.0)), forward.times(np.where(back, -1.0, 1.0))
+    moving = joined_rows(forward, backward)
     low = Traced(
         np.where(ahead, forward.value, -backward.value),
         np.where(ahead, forward.tangent, -backward.tangent),
+        moving,
     )
     high = Traced(
         np.where(back, -backward.value, forward.value),
         np.where(back, -backward.tangent, forward.tangent),
+        moving,
     )
     return low, high
 
@@ -88,6 +91,10 @@ def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> 
     is_there = whole.value > 0
     size = np.where(is_there, whole.value, 1.0)
     share = np.where(is_there, 1.0 - rest.value / size, 0.0)
-    slope = np.where(is_there, (rest.value / size * whole.tangent - rest.tangent) / size, 0.0)
-    tangent = friction.tangent * share + friction.value * slope
-    return Traced(friction.value * share, tangent)
+    caused = friction.times(share)
+    moving = joined_rows(whole, rest)
+    tangent = np.array(caused.tangent)
+    for j in range(len(tangent)) if moving is None else moving:
+        slope = (rest.value / size * whole.tangent[j] - rest.tangent[j]) / size
+        tangent[j] += friction.value * np.where(is_there, slope, 0.0)
+    return Traced(caused.value, tangent, joined_rows(caused, whole, rest))

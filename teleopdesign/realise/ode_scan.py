@@ -29,7 +29,7 @@ from ..effects import SIGNALS, UNEXPLAINED, Effect
 from ..measurement.filtering import Array
 from ._ode_scan_source import list_drivers, list_parameters, write_scan
 from .compiled import compile_source
-from .traced import Along, Traced
+from .traced import Along, Traced, joined_rows
 
 #: angle of the fastest mode (rad) that one sub-step should cover (at half a radian the mode swings
 #: 0.05 % too slowly, at one radian 0.8 %); most sub-steps; and angle that one may cover at most
@@ -123,12 +123,13 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     drive = np.ascontiguousarray([*drivers, *(r.value for r in corrected)])
     bends = _bends(drive, [_slope_of(n, along) for n in list_drivers(effect)], step)
     n, count = drive.shape[1], len(effect.states)
-    # without corrections only the parameters of the rates change the states
-    mine = np.arange(len(columns)) if corrected else np.unique(places[places >= 0])
+    # without corrections, only the parameters of the rates change the states
+    moved = joined_rows(*corrected, more=places[places >= 0].tolist())
+    mine = np.arange(len(columns)) if moved is None else np.array(moved, dtype=int)
     places = np.where(places >= 0, np.searchsorted(mine, places), -1)
     moving = np.zeros((len(corrected), n, len(mine) + 1))
     for i, r in enumerate(corrected):
-        moving[i, :, :-1] = r.tangent.T
+        moving[i, :, :-1] = r.tangent[mine].T
     start = np.array(
         [signals[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
     )
@@ -147,8 +148,8 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
             tangent[:, mine] = by_mine
     if covered > STABLE * MOST_STEPS or not np.isfinite(out).all():
         # too fast for the sample rate: NaN instead of a wrong number
-        out[:], tangent[:] = np.nan, np.nan
+        out[:], tangent[:], moved = np.nan, np.nan, None
     return {
-        symbol: Traced(out[i], tangent[i])
+        symbol: Traced(out[i], tangent[i], moved)
         for i, symbol in enumerate(effect.state_symbols().values())
     }

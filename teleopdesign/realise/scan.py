@@ -20,7 +20,7 @@ from ..measurement.filtering import Array
 from .compiled import compile_source
 from .exponentials import PHI, head
 from .laws import Names, assignments, indent
-from .traced import Along, Traced
+from .traced import Along, Traced, joined_rows
 
 HEAD = head("Generated from an effect's law; do not edit.") + PHI
 #: private name of the effect's one state
@@ -153,7 +153,7 @@ def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
     end, _ = _advance(effect, along, along.signals[SIGNALS["velocity"]])
     (symbol,) = effect.state_symbols().values()
     later = np.minimum(np.arange(1, len(end.value) + 1), len(end.value) - 1)
-    return {symbol: Traced(end.value[later], end.tangent[:, later])}
+    return {symbol: Traced(end.value[later], end.tangent[:, later], end.moving)}
 
 
 def _advance(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
@@ -162,9 +162,10 @@ def _advance(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Tra
     tangent = contiguous(command.tangent)
     end, dend = np.empty_like(command.value), np.empty_like(tangent)
     mean, dmean = np.empty_like(command.value), np.empty_like(tangent)
+    places = columns_of(effect, along.columns)
     scan(
         along.step,
-        columns_of(effect, along.columns),
+        places,
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in signals_in(effect)],
         tangent,
@@ -173,4 +174,5 @@ def _advance(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Tra
         mean,
         dmean,
     )
-    return Traced(end, dend), Traced(mean, dmean)
+    moving = joined_rows(command, more=places[places >= 0].tolist())
+    return Traced(end, dend, moving), Traced(mean, dmean, moving)

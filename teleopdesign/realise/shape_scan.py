@@ -28,7 +28,7 @@ from .scan import (
     slope_of_column,
     slopes_by,
 )
-from .traced import Along, Traced
+from .traced import Along, Traced, in_rows, joined_rows
 
 
 def _signals_of_shape(effect: Effect) -> list[str]:
@@ -201,24 +201,27 @@ def shape_bounds(
     """
     source, used = _shape_of(effect)
     scan = compile_source(source, "shape")
+    places, parameters = columns_of(effect, along.columns), len(along.columns)
+    moving = joined_rows(forward, backward, more=places[places >= 0].tolist())
+    rows = list(range(parameters) if moving is None else moving)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
-    dlow, dhigh = np.empty(forward.tangent.shape), np.empty(forward.tangent.shape)
+    dlow, dhigh = np.empty((len(rows), len(low))), np.empty((len(rows), len(low)))
     scan(
         along.step,
         0.5 * motion.step,
-        columns_of(effect, along.columns),
+        np.where(places >= 0, np.searchsorted(rows, places), -1),
         motion.position,
         motion.velocity,
         motion.direction,
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in used],
         forward.value,
-        contiguous(forward.tangent),
+        contiguous(forward.tangent[rows]),
         backward.value,
-        contiguous(backward.tangent),
+        contiguous(backward.tangent[rows]),
         low,
         dlow,
         high,
         dhigh,
     )
-    return Traced(low, dlow), Traced(high, dhigh)
+    return in_rows(low, dlow, rows, parameters), in_rows(high, dhigh, rows, parameters)

@@ -17,7 +17,7 @@ from ..effects import SIGNALS, Effect, delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .scan import stage_scan
-from .traced import Along, Traced, filter_traced
+from .traced import Along, Traced, filter_traced, joined_rows
 
 #: signals of the motion that a stage may use
 _MOTION = ("time", "position", "velocity", "acceleration")
@@ -60,9 +60,9 @@ def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
     acting = filter_traced(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
     if COMMAND_LATE in along.columns:
         slope = motion.spectrum.multiply(acting.value, motion.spectrum.derivative(1))
-        tangent = acting.tangent.copy()
-        tangent[along.columns.index(COMMAND_LATE)] += slope
-        acting = replace(acting, tangent=tangent)
+        tangent, place = acting.tangent.copy(), along.columns.index(COMMAND_LATE)
+        tangent[place] += slope
+        acting = Traced(acting.value, tangent, joined_rows(acting, more=[place]))
     return acting
 
 
@@ -118,10 +118,10 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     )
     tangent = shifted.tangent.copy()
     slope = (_delay_samples(signal.value, later) - _delay_samples(signal.value, late)) / step
-    for i, column in enumerate(along.columns):
-        if isinstance(column, sp.Symbol) and delay.has(column):
-            tangent[i] += slope * float(sp.diff(delay, column).subs(along.values))
-    return replace(shifted, tangent=tangent)
+    by_delay = [i for i, c in enumerate(along.columns) if isinstance(c, sp.Symbol) and delay.has(c)]
+    for i in by_delay:
+        tangent[i] += slope * float(sp.diff(delay, along.columns[i]).subs(along.values))
+    return Traced(shifted.value, tangent, joined_rows(shifted, more=by_delay))
 
 
 def _delay_samples(y: Array, steps: int) -> Array:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -44,9 +44,16 @@ class Traced:
             return True
         return self.moving == () or (self.moving is None and not self.tangent.any())
 
+    @property
+    def moving_rows(self) -> Sequence[int]:
+        """Rows of the tangents that may differ from zero: all of them where it is not known."""
+        return range(len(self.tangent)) if self.moving is None else self.moving
+
     def __add__(self, other: Traced) -> Traced:
-        tangent = self.tangent if other.is_constant else self.tangent + other.tangent
-        return Traced(self.value + other.value, tangent)
+        value = self.value + other.value
+        if other.is_constant:
+            return Traced(value, self.tangent, self.moving)
+        return Traced(value, self.tangent + other.tangent, joined_rows(self, other))
 
     def __sub__(self, other: Traced) -> Traced:
         return self.subtract([other])
@@ -61,12 +68,9 @@ class Traced:
             return Traced(value, self.tangent, self.moving)
         tangent = np.array(self.tangent)
         for other in changing:
-            if other.moving is None:
-                tangent -= other.tangent
-            else:
-                for j in other.moving:
-                    tangent[j] -= other.tangent[j]
-        return Traced(value, tangent)
+            for j in other.moving_rows:
+                tangent[j] -= other.tangent[j]
+        return Traced(value, tangent, joined_rows(self, *changing))
 
     def times(self, factor: Array) -> Traced:
         """The signal times a factor at each sample (n,)."""
@@ -77,6 +81,30 @@ class Traced:
         for j in self.moving:
             tangent[j] = self.tangent[j] * factor
         return Traced(self.value * factor, tangent, self.moving)
+
+
+def joined_rows(*signals: Traced, more: Iterable[int] = ()) -> tuple[int, ...] | None:
+    """Rows of tangents that may differ from zero in any of these signals; None: all may.
+
+    more: further such rows
+    """
+    rows = set(more)
+    for signal in signals:
+        if signal.tangent.strides == (0, 0):
+            continue
+        if signal.moving is None:
+            return None
+        rows.update(signal.moving)
+    return tuple(sorted(rows))
+
+
+def in_rows(value: Array, tangent: Array, rows: Collection[int], parameters: int) -> Traced:
+    """A signal (n,) whose tangents are given in some rows, in order; the other rows are zero."""
+    if len(rows) == parameters:
+        return Traced(value, tangent, tuple(rows))
+    whole = np.zeros((parameters, len(value)))
+    whole[list(rows)] = tangent
+    return Traced(value, whole, tuple(rows))
 
 
 def constant(value: Array, parameters: int) -> Traced:
@@ -96,13 +124,10 @@ def filter_traced(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     rows = signal.moving
     if rows is None:
         rows = tuple(np.flatnonzero(signal.tangent.any(axis=1)).tolist())
-    if len(rows) == len(signal.tangent):
-        both = filtered(signal.rows())
-        return Traced(both[0], both[1:])
-    both = filtered(np.vstack([signal.value[None], signal.tangent[list(rows)]]))
-    tangent = np.zeros((len(signal.tangent), both.shape[-1]))
-    tangent[list(rows)] = both[1:]
-    return Traced(both[0], tangent, rows)
+    every = len(rows) == len(signal.tangent)
+    tangent = signal.tangent if every else signal.tangent[list(rows)]
+    both = filtered(np.vstack([signal.value[None], tangent]))
+    return in_rows(both[0], both[1:], rows, len(signal.tangent))
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,18 +210,18 @@ class NumericLaw:
         if not moved and not any(s in self.parameters for s in symbols):
             return constant(value, len(columns))
         by_signal = dict(zip(self.signals, out[1 : 1 + len(arrays)], strict=True))
-        parts = (by_signal[s] * signals[s].tangent for s in moved)
-        tangent = next(parts) if moved else np.zeros((len(columns), n))
-        for part in parts:
-            tangent += part
+        tangent = np.zeros((len(columns), n))
+        for s in moved:
+            for j in signals[s].moving_rows:
+                tangent[j] += by_signal[s] * signals[s].tangent[j]
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
             if p in places:
                 tangent[places[p]] += d
         for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
-        rows = tuple(j for j, s in enumerate(symbols) if s in self.parameters)
-        return Traced(value, tangent, None if moved else rows)
+        mine = (j for j, s in enumerate(symbols) if s in self.parameters)
+        return Traced(value, tangent, joined_rows(*(signals[s] for s in moved), more=mine))
 
     def _numbers(self, values: Mapping[sp.Symbol, float], n: int) -> list[Any]:
         """Values of the parameters, as the function takes them beside n samples."""

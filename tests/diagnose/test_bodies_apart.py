@@ -8,10 +8,11 @@ from cases import make_case, write_case
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import bodies_apart
-from teleopdesign.diagnose.bodies_apart import select_bodies, separate_bodies
+from teleopdesign.diagnose.bodies_apart import BodyByBody, select_bodies, separate_bodies
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.promise import Promises
 from teleopdesign.diagnose.stated import reset_to_stated
 
 
@@ -68,6 +69,47 @@ def test_a_fit_that_follows_tangents_ends_where_one_that_computes_all_again_does
             one, other = (f.model.parameters[name] for f in (followed, again))
             # far below what is said of the estimate; a rough fit ends anywhere within its tolerance
             assert abs(one.value - other.value) < 0.05 * other.stderr, name
+
+
+def test_a_residual_without_derivatives_is_the_same_near_and_far(two_bodies):
+    """A body that hardly moved follows tangents, whichever was computed last."""
+    prepared, model = two_bodies
+    names = ("slave.inertia", "master.inertia")
+    before = np.array([model.parameters[n].value for n in names])
+    courses = []
+    for without in (False, True):
+        bodies = BodyByBody(model, names, prepared.of("fit"), tolerance=1e-4)
+        left = []
+        for by in ((1.0, 1.0), (1.3, 1.0), (1.3, 1.0 + 1e-6), (1.1, 1.0 + 1e-6)):
+            moved = model.with_values(dict(zip(names, before * by, strict=True)))
+            point = np.array(by), before
+            if without and by != (1.0, 1.0):
+                left.append(bodies.residual(moved, *point))
+            else:
+                left.append(bodies.both(moved, *point)[0])
+        courses.append([*left, bodies.both(moved, *point)[1]])
+    for one, other in zip(*courses, strict=True):
+        assert other == pytest.approx(one, rel=1e-9, abs=1e-12)
+
+
+def test_starts_that_differ_at_one_body_compute_the_other_once(two_bodies, monkeypatch):
+    prepared, model = two_bodies
+    base, computed = estimate(model, prepared, effort=EFFORTS.first_steps), []
+    starts = [
+        base.model.with_values({"slave.inertia": f * base.model.parameters["slave.inertia"].value})
+        for f in (1.0, 1.1, 1.2, 1.1)
+    ]
+    relative = bodies_apart.Apart.relative
+
+    def counted(part, *arguments):
+        computed.extend(part.bodies)
+        return relative(part, *arguments)
+
+    monkeypatch.setattr(bodies_apart.Apart, "relative", counted)
+    promises = Promises(prepared, base)
+    squares = [promises.squares(start) for start in starts[1:]]
+    assert (computed.count("master"), computed.count("slave")) == (1, 2)
+    assert squares[0] == squares[2] == Promises(prepared, base).squares(starts[1])
 
 
 def test_the_values_of_a_user_come_back_at_one_body_alone(two_bodies):

@@ -9,11 +9,12 @@ import pytest
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer, write_predictions
 from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.record_offsets import offset_groups
-from teleopdesign.diagnose.residual import residuals
+from teleopdesign.diagnose.record_offsets import along_records, offset_groups
+from teleopdesign.diagnose.residual import both_residuals, residuals
 
 BIAS, LEVEL = 0.15, 0.8  # N, and of the rod's friction
 STRIBECK = {"extra_static_level": 0.2, "stribeck_velocity": 0.0225}
@@ -69,6 +70,28 @@ def test_an_own_friction_level_is_found(rod, model):
     assert found["friction_level"] == pytest.approx(LEVEL, rel=0.03)
     common = changed(rod, (), factor=LEVEL, model=model)
     assert error < 0.5 * force_error(model, prepare(common).of("check"))
+
+
+def test_a_zero_on_which_no_law_depends_changes_nothing(rod, model):
+    prepared, plain = prepare(changed(rod, {"position_zero"})), prepare(changed(rod, ()))
+    assert not offset_groups(model, prepared.stretches)
+    assert force_error(model, prepared.of("check")) == force_error(model, plain.of("check"))
+    sprung = model.with_effect("spring", values={"stiffness": 5.0})
+    ((_, here),) = offset_groups(sprung, prepared.stretches)
+    assert "position_zero" in here.values
+
+
+def test_the_error_at_the_command_is_the_same_from_what_other_errors_computed(rod, model):
+    late = model.with_effect("actuator_lag", values={"time_constant": 5e-3})
+    check = prepare(changed(rod, {"bias"}, bias=BIAS)).of("check")
+    for one in (model, late):
+        along = along_records(one, check)
+        known, anew = refer_to_command(one, check, along), refer_to_command(one, check)
+        assert known.error == anew.error > 0.0
+        np.testing.assert_array_equal(known.residual[0], anew.residual[0])
+        np.testing.assert_allclose(
+            both_residuals(one, check, along)[0][0], residuals(one, check)[0][0], rtol=1e-9
+        )
 
 
 def test_what_is_the_record_s_own_is_no_evidence_for_an_effect(rod, model):

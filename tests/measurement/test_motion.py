@@ -1,10 +1,11 @@
 """Smoothing and directions of a motion, against what their definitions say."""
 
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign.measurement.doors._mat_elements import _elements
@@ -112,3 +113,31 @@ def test_elements_of_a_mat_file_are_read_one_after_another_to_the_last():
 def test_an_element_that_ends_behind_what_holds_it_is_refused(data):
     with pytest.raises(ValueError, match="ends behind what holds it"):
         list(_elements(memoryview(data), "<"))
+
+
+@settings(max_examples=20)
+@given(delays=st.lists(st.sampled_from([0.0, 1e-3, -4e-4]), min_size=1, max_size=5))
+def test_a_command_at_the_rows_depends_on_its_delay_alone_not_on_what_was_asked_before(delays):
+    motion = made_motion()
+    for late in delays:
+        shifted = replace(motion, command_late=late)
+        other = replace(shifted, command=-motion.command)
+        anew = shifted.at_rows(motion.command.copy())
+        np.testing.assert_allclose(shifted.at_rows(shifted.command), anew, atol=1e-12)
+        np.testing.assert_allclose(other.at_rows(other.command), -anew, atol=1e-12)
+
+
+def made_motion():
+    time = np.arange(700) * 1e-3
+    return motion_of(
+        body="device",
+        file="a.csv",
+        time=time,
+        position=0.01 * np.sin(9 * time),
+        command=np.sign(np.sin(30 * time)),
+        interaction=None,
+        sample_time=1e-3,
+        rows=slice(0, 700),
+        bandwidth=40.0,
+        resolution=1e-5,
+    )
