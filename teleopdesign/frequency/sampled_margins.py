@@ -19,6 +19,8 @@ _SLOWEST, _POINTS = 1e-9, 6001
 _STEP = 0.2
 #: parts of a sample as dead times at which crossings are searched, before they are refined
 _PARTS = 8
+#: part of a sample before a dead time at which a direct feedthrough comes a whole sample later
+_HAIR = 1e-7
 #: whole samples of short dead times that are tested one by one
 _LOOKED = 6
 #: parts of a sample as dead times at which the gain at half the sampling rate is evaluated
@@ -94,7 +96,7 @@ def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
     """Dead times (s) with a mode on the unit circle, and the next whole samples after them."""
     period = float(loop.period)
     exact, near = _crossings_at_half_the_rate(loop), set[float]()
-    for part in np.arange(_PARTS) / _PARTS:
+    for part in sorted({*(np.arange(_PARTS) / _PARTS), *_parts_before_bends(loop)}):
         phase, at = unity_crossings(loop.with_delay(part * period))
         for angle, whole in zip(at, np.radians(phase % 360) / at, strict=True):
             if whole > _MOST:
@@ -109,13 +111,23 @@ def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
 def _looked_at(loop: SampledLoop) -> set[float]:
     """Short dead times (s) at which a loop may grow and then decay again at a slightly longer one.
 
-    Parts of a sample, and those that make a dead time of the loop whole samples: the response has a
-    kink there.
+    Parts of a sample, those that make a dead time of the loop whole samples, and those just before:
+    the response has a kink there, and with a direct feedthrough it jumps.
     """
     period = float(loop.period)
     bends = {float(-t % loop.period) for t, _ in loop.above}
-    parts = {*(k * period / _PARTS for k in range(_PARTS)), *bends}
+    before = {part * period for part in _parts_before_bends(loop)}
+    parts = {*(k * period / _PARTS for k in range(_PARTS)), *bends, *before}
     return {n * period + part for n in range(_LOOKED) for part in parts} - {0.0}
+
+
+def _parts_before_bends(loop: SampledLoop) -> set[float]:
+    """Parts of a sample just below those with which a dead time of the loop is whole samples.
+
+    With a direct feedthrough the loop may grow there, and decay from the whole sample on.
+    """
+    bends = {float(-t % loop.period / loop.period) for t, _ in loop.above}
+    return {(part or 1.0) - _HAIR for part in bends}
 
 
 def _crossings_at_half_the_rate(loop: SampledLoop) -> set[float]:

@@ -194,29 +194,38 @@ def test_a_sampled_loop_grows_from_its_gain_and_phase_margins_on_and_not_before(
 
 
 @pytest.mark.parametrize(
-    ("period", "below", "above", "law"),
+    ("until", "period", "below", "above", "law"),
     [
         (  # what passes straight through makes it grow from 5 to 6 eighths of a sample
+            6,
             0.013,
             [1.0, 0.5168, 4.867],
             [(18, [0.3344, 0.5754, -0.299]), (11, [0.2541, 1.93, 0.7546])],
             [[1.0, -0.934], [1.0, 0.3]],
         ),
         (  # it grows from 5.955 to 6 eighths, and each sample later again
+            6,
             0.67,
             [1.0, 16.49, 456.8, 0.0],
             [(18, [0.4214, 4.586, 8.7, 3.336])],
             [[1.0, 0.124], [1.0, 0.3]],
         ),
+        (  # from 1.114 to 2 eighths, and each sample later again for a shorter time
+            2,
+            0.27,
+            [1.0, 4.108, 10.5],
+            [(22, [0.2428, 0.3754]), (22, [0.7581, 1.386, -0.2093])],
+            [[1.0], [1.0]],
+        ),
     ],
 )
 def test_a_loop_that_grows_over_a_part_of_a_sample_alone_has_its_margin_there(
-    period, below, above, law
+    until, period, below, above, law
 ):
     drawn = Sampled.of(period, below, above, law)
     delay = sampled_margins.delay_margin(drawn.loop())
     steps = in_steps(drawn, delay)
-    assert 5 - 1e-9 < steps < 6
+    assert until - 1 - 1e-9 < steps < until
     assert max(drawn.radius(further=x) for x in behind(drawn, delay)) > 1 + NEAR
     assert drawn.radius(further=steps * (1 - Fraction(1, 10**6))) < 1
-    assert drawn.radius(further=6) < 1
+    assert drawn.radius(further=until) < 1
