@@ -25,7 +25,7 @@ from ..realise.residual_at_command import (
     residual_at_command,
 )
 from .prepare import Stretch, measured_force
-from .record_offsets import AlongRecords, along_records
+from .record_offsets import AlongRecords, follow_records
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def refer_to_command(
 
     along: of this model and these stretches; None: it is computed
     """
-    along = along or along_records(model, stretches)
+    along = along or follow_records(model, stretches)
     motions = [motion for _, motion, _ in along.parts]
     command_errors = [_map_back(*part) for part in along.parts]
     values = [

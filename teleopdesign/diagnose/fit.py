@@ -17,7 +17,7 @@ from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, refer_to_command
 from .prepare import Prepared, Stretch, folds
-from .record_offsets import AlongRecords, along_records
+from .record_offsets import AlongRecords, follow_records
 from .residual import both_residuals, relative_residuals
 from .solve import BLOCK, Solution, solve
 
@@ -120,7 +120,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     fitted = with_errors(_with_held_shifts(solution, stretches), free, blocks).canonical()
     check = prepared.of("check")
     if check:
-        along = along_records(fitted, check)
+        along = follow_records(fitted, check)
         absolute, parts = both_residuals(fitted, check, along)
         check_error = error_of(check, absolute)
         command_error = command_error_of(fitted, check, along)

@@ -175,7 +175,7 @@ class AlongRecords:
     parts: Sequence[tuple[Body, Motion, Residual]]
 
 
-def along_records(model: Model, stretches: Sequence[Stretch]) -> AlongRecords:
+def follow_records(model: Model, stretches: Sequence[Stretch]) -> AlongRecords:
     """The model along each stretch, with the offsets of its record."""
     groups = offset_groups(model, stretches)
     located = apply_offset_groups(model, stretches, groups)

@@ -13,7 +13,7 @@ from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.record_offsets import along_records, offset_groups
+from teleopdesign.diagnose.record_offsets import follow_records, offset_groups
 from teleopdesign.diagnose.residual import both_residuals, residuals
 
 BIAS, LEVEL = 0.15, 0.8  # N, and of the rod's friction
@@ -85,7 +85,7 @@ def test_the_error_at_the_command_is_the_same_from_what_other_errors_computed(ro
     late = model.with_effect("actuator_lag", values={"time_constant": 5e-3})
     check = prepare(changed(rod, {"bias"}, bias=BIAS)).of("check")
     for one in (model, late):
-        along = along_records(one, check)
+        along = follow_records(one, check)
         known, anew = refer_to_command(one, check, along), refer_to_command(one, check)
         assert known.error == anew.error > 0.0
         np.testing.assert_array_equal(known.residual[0], anew.residual[0])
