@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ..blocks import Value
 from ..notebook import html_table
@@ -14,6 +16,7 @@ from .adequacy import records_differ
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
+from .prepare import Stretch, measured_force
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
 
@@ -180,9 +183,28 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
         lines.append(_records_line(diagnosis))
+    if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
+        lines.append(constant)
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
+
+
+#: part of its size (rms) by which a force must vary: below, a constant explains more of it than any
+#: model of a real machine
+VARIES = 0.01
+
+
+def constant_force_line(stretches: Sequence[Stretch]) -> str | None:
+    """A sentence where the measured force hardly varies in any stretch; else None."""
+    forces = [measured_force(s) for s in stretches]
+    if any(np.std(f) > VARIES * np.sqrt(np.mean(f**2)) for f in forces):
+        return None
+    return (
+        f"records: the measured force varies by less than {100 * VARIES:g} %: a constant friction "
+        "explains it along any motion, and its error says nothing of the inertia or of friction "
+        "that varies. Record a motion under a force that varies, or one that also coasts"
+    )
 
 
 def _records_line(diagnosis: Diagnosis) -> str:

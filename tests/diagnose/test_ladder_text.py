@@ -1,8 +1,12 @@
 """What a diagnosis says of an error in noise floors."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
-from teleopdesign.diagnose.ladder_text import say_floors
+from teleopdesign.diagnose import ladder_text
+from teleopdesign.diagnose.ladder_text import constant_force_line, say_floors
 from teleopdesign.report.words import _floors
 
 
@@ -15,3 +19,17 @@ def test_an_error_is_a_number_of_noise_floors(left, said):
 def test_a_floor_next_to_zero_is_no_measure(left):
     """Where the force has no stated noise, the floor is that of the position alone."""
     assert say_floors(left) == _floors(left) == "more than 1000"
+
+
+@pytest.mark.parametrize(("varies", "said"), [(0.0, True), (0.009, True), (0.02, False)])
+def test_a_force_that_hardly_varies_is_said_to_be_explained_by_any_friction(
+    monkeypatch, varies, said
+):
+    """A motor that spun up under one torque left 0.00 % with an inertia of zero."""
+    monkeypatch.setattr(ladder_text, "measured_force", lambda s: s.force)
+    sine = np.sqrt(2.0) * varies * np.sin(np.linspace(0.0, 20.0 * np.pi, 2000, endpoint=False))
+    stretches = [SimpleNamespace(force=0.05 * (1.0 + s * sine)) for s in (1.0, 0.0)]
+    line = constant_force_line(stretches)
+    assert (line is not None) == said
+    if said:
+        assert "a constant friction explains it along any motion" in line
