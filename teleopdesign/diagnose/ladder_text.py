@@ -190,20 +190,15 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     return "\n".join(lines)
 
 
-#: part of its size (rms) by which a force must vary: below, a constant explains more of it than any
-#: model of a real machine
-VARIES = 0.01
-
-
 def constant_force_line(stretches: Sequence[Stretch]) -> str | None:
     """A sentence where the measured force hardly varies in any stretch; else None."""
     forces = [measured_force(s) for s in stretches]
-    if any(np.std(f) > VARIES * np.sqrt(np.mean(f**2)) for f in forces):
+    if any(np.std(f) > CRITERIA.varies * np.sqrt(np.mean(f**2)) for f in forces):
         return None
     return (
-        f"records: the measured force varies by less than {100 * VARIES:g} %: a constant friction "
-        "explains it along any motion, and its error says nothing of the inertia or of friction "
-        "that varies. Record a motion under a force that varies, or one that also coasts"
+        f"records: the measured force varies by less than {100 * CRITERIA.varies:g} %: a constant "
+        "friction explains it along any motion, and its error says nothing of the inertia or of "
+        "friction that varies. Record a motion under a force that varies, or one that also coasts"
     )
 
 
