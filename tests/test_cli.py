@@ -286,6 +286,7 @@ def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
     assert page.startswith("<!DOCTYPE html>") and "Rod of a one-axis haptic interface" in page
 
 
+@pytest.mark.slow
 def test_a_users_effect_takes_part_in_a_diagnosis(short_rod, few, tmp_path):
     file = tmp_path / "own_drag.py"
     file.write_text(OWN)

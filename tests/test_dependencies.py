@@ -60,11 +60,13 @@ CORE = names(PROJECT["dependencies"])
 EXTRAS = {extra: names(wanted) for extra, wanted in PROJECT["optional-dependencies"].items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(CORE))
 def test_a_core_dependency_is_imported_by_the_package(name):
     assert MODULES.get(name, name) in imported_by_the_package()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(set().union(*EXTRAS.values()) - TOOLS - NAMED))
 def test_a_dependency_of_an_extra_is_imported_somewhere(name):
     assert MODULES.get(name, name) in imported_anywhere()

@@ -72,6 +72,7 @@ def methods():
                     yield path.relative_to(PACKAGE).as_posix(), one.name
 
 
+@pytest.mark.slow
 def test_no_method_is_named_by_a_participle_alone():
     """A place may stand alone: what it leads to follows, as in `two_port.over(frequency)`."""
     names = {name for _, name in methods()}

@@ -22,6 +22,7 @@ EVERY = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", EVERY)
 def test_what_was_pickled_is_the_same_again(make):
     thing = make()
@@ -271,6 +272,7 @@ def public_classes():
                 yield getattr(module, name)
 
 
+@pytest.mark.slow
 def test_every_public_class_pickles_copies_and_prints():
     """Those of the examples, and what they hold; a new class needs an example, or a reason."""
     classes = reached(make() for make in QUICK.values())

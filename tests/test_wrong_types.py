@@ -171,6 +171,7 @@ def refusal(call, parameter, wrong):
     return check is not None and check(wrong) is not None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("function", [*functions()])
 def test_a_public_function_refuses_what_it_cannot_take(function):
     try_all(function)

@@ -39,6 +39,7 @@ def test_a_candidate_that_is_not_there_is_named_with_the_nearest(bench):
         bench.add("stribek", "device")
 
 
+@pytest.mark.slow
 def test_after_the_missing_effect_no_candidate_is_supported_and_the_diagnosis_names_it(bench):
     ranked = bench.add("stribeck", "device").rank()
     assert ranked.is_ranked and ranked.state.supported == ()

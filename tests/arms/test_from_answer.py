@@ -144,6 +144,7 @@ def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
     plt.close(figure)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "said"),
     [

@@ -95,6 +95,7 @@ def lagrangian(spatial: bool):
     return sp.lambdify(names, values, "numpy", cse=True), Chain(tuple(links))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spatial", [False, True])
 def test_forces_are_those_of_lagranges_equations(spatial):
     call, arm = lagrangian(spatial)

@@ -46,6 +46,7 @@ def test_its_load_is_inertia_and_forces_of_the_place_without_the_hands():
     assert not carried.has(v), "damping is lost before it"
 
 
+@pytest.mark.slow
 @given(
     force=st.floats(-20, 20),
     speed=st.floats(-3, 3).filter(lambda v: abs(v) > 1e-3),
@@ -92,6 +93,7 @@ def test_a_level_that_is_not_in_proportion_has_no_simulated_form():
         simulate(haptic_interface(body), duration=0.01, jit=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lost", [0.2, 0.6])
 def test_a_load_that_drives_back_brakes_and_does_not_run_away(lost):
     """A pendulum let go at 1 rad: with mu = 0.6 on each side it comes to rest sooner."""

@@ -110,6 +110,7 @@ def test_one_force_in_another_unit_is_named_by_the_inertia(rod, quantity):
 # timing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("quantity", "samples", "concern"),
     [

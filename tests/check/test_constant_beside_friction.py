@@ -38,6 +38,7 @@ def write_strokes(folder, side, pressure):
     return td.load_experiment(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("side", "pressure", "is_said"),
     [(side, pressure, side < 0) for side in (1.0, -1.0) for pressure in (250.0, 15.0, 0.0)],
@@ -68,6 +69,7 @@ def write_swings(folder, side, stiffness):
     return td.load_experiment(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("stiffness", [3.0, 0.3, 0.0])
 def test_a_pendulum_that_the_model_lacks_turns_no_inertia(side, stiffness, tmp_path):

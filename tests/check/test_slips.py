@@ -53,6 +53,7 @@ def test_a_body_that_rests_at_a_reversal_is_not_stuck_but_a_sensor_that_leaps_is
     assert len(stuck_stretches(leaping, 1.0, "position")) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("channel", "factor"), [("interaction", 0.6), ("actuator", 1.7)])
 def test_forces_of_two_scales_are_a_note_that_says_what_to_type(rod, channel, factor):
     """The scale that is printed is the one that was put in; a calibration is no note."""

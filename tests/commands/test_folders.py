@@ -32,6 +32,7 @@ def table(output):
         return {Path(row["folder"]).name: row for row in csv.DictReader(file)}
 
 
+@pytest.mark.slow
 def test_a_folder_that_fails_is_recorded_and_does_not_stop_the_rest(runs, few, tmp_path, capsys):
     output = tmp_path / "answers"
     assert diagnose(reversed(runs), output) == 2

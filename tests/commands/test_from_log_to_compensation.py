@@ -144,6 +144,7 @@ def test_each_command_prints_the_next_one_up_to_claims_and_a_figure(tmp_path, mo
     assert min(p.stat().st_size for p in Path("design").iterdir()) > 500
 
 
+@pytest.mark.slow
 def test_derive_takes_the_device_of_an_answer_and_refuses_options_of_one_beside_a_diagram(
     rod, tmp_path, monkeypatch, capsys, refused
 ):

@@ -49,6 +49,7 @@ def test_the_page_of_an_answer_tells_what_the_answer_tells(answer, capsys):
     assert all(len(r["steps"]) == len(shown["report"]["candidate_steps"]) == 1 for r in rows)
 
 
+@pytest.mark.slow
 def test_a_folder_that_holds_an_answer_stands_for_it(answer, tmp_path):
     page = tmp_path / "page.html"
     assert main(["report", str(answer.parent), "--output", str(page)]) == 0

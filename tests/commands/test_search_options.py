@@ -24,6 +24,7 @@ def tried(path):
     return {c["effect"] for c in json.loads(path.read_text())["candidates"]}
 
 
+@pytest.mark.slow
 def test_only_the_named_effects_are_tried_and_the_answer_says_so(rod, few, tmp_path, capsys):
     answer = tmp_path / "answer.json"
     command = ["diagnose", str(rod), "--only", "stribeck", "bias", "--json", str(answer)]
@@ -34,6 +35,7 @@ def test_only_the_named_effects_are_tried_and_the_answer_says_so(rod, few, tmp_p
     assert f"left out: {said}" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_an_excluded_effect_is_not_tried(rod, few, tmp_path):
     answer = tmp_path / "answer.json"
     command = ["diagnose", str(rod), "--exclude", "presliding", "--exclude", "spring"]

@@ -88,6 +88,7 @@ def force(diagram, *, duration=0.25, motion=SINE, computer="continuous", **argum
     return found["R_MBC"].values
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RATIONAL)
 def test_kernel_and_python_control_give_one_force(name):
     """In continuous time along a prescribed motion, desired force beside it.
@@ -128,6 +129,7 @@ def test_the_linear_form_is_the_law_at_that_speed(name):
     np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_sampled_force_comes_to_the_continuous_one_as_the_period_falls(name):
     """Mean error of the held force at periods of 4, 1 and 0.25 ms: of first order, a factor of 4.

@@ -80,6 +80,7 @@ def with_code(analog):
     return two_rods(law, analog)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("analog", [True, False])
 @pytest.mark.parametrize("made", [held, linked, with_code])
 def test_the_kernel_and_python_control_agree(made, analog):

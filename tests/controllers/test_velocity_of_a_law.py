@@ -97,6 +97,7 @@ BEHIND = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "front"), BEHIND)
 def test_the_derived_response_is_that_of_a_simulated_sine(name, front):
     """1e-5: order four at 1 ms and 3 Hz. The rod is led, so little that abs(v) freezes no gain.
@@ -122,6 +123,7 @@ def test_the_derived_response_is_that_of_a_simulated_sine(name, front):
 RATIONAL = [n for n in LAWS if not CONTROLLERS.get(n, FORCE_AND_DAMPER).dead_time]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RATIONAL)
 def test_the_closed_loop_is_that_which_python_control_linearises(name):
     """Bode, matrix response and loop gain; 1e-5: differences of python-control's linearisation."""

@@ -46,6 +46,7 @@ ADMITTANCE = {"F_H/F_u", "F_u/X", "X/F_u"}
 TWO_PORT = {"Z_mm", "Z_ms", "Z_sm", "Z_ss", "h_11", "h_12", "h_21", "h_22", "Z_t", "X_m/F_u"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_diagram_has_every_transfer_within_two_seconds_each(name):
     start = time.process_time()

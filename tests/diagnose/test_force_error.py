@@ -47,6 +47,7 @@ def test_the_error_is_that_of_the_plain_formula(prepared, model):
     assert force_error(model, prepared.of("check")) == pytest.approx(by_hand, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scorer", ["own", "shared"])
 def test_the_error_can_be_recomputed_from_the_predictions(scorer, diagnosis, tmp_path):
     file = tmp_path / "predictions.csv.gz"

@@ -202,6 +202,7 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     assert replace_by_pair(search, before) is None
 
 
+@pytest.mark.slow
 def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
     search, state = ladder
     stand_in = with_stand_in(search, state)

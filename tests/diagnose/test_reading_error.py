@@ -282,6 +282,7 @@ def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     assert np.std(left[told & ~far]) < 2.0 * np.std(left[told & far])
 
 
+@pytest.mark.slow
 def test_a_body_that_sticks_where_the_record_moved_says_nothing_of_its_readings(rod):
     """Friction at rest above all forces, as a Stribeck fall far below the slowest motion has."""
     found, prepared = rod

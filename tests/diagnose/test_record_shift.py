@@ -212,6 +212,7 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     assert back.record_shift[place] == held.model.record_shift[place]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [-1.36, -1.8])
 def test_a_shift_at_its_bound_that_a_dead_time_explains_better_is_no_clock(adequate, rows):
     """Part of it would leave little more than noise, and nothing would be looked for."""
@@ -266,6 +267,7 @@ def logged_late(experiment, rows):
     return experiment
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [3, 9])
 def test_a_log_that_is_many_rows_late_is_no_physics(adequate, plain, rows):
     """Nothing moves before its command: from a log in time the search ends in a poor fit."""
@@ -330,6 +332,7 @@ def test_a_model_with_a_shift_is_written_and_read(plain):
         assert back.record_shift[place] == late
 
 
+@pytest.mark.slow
 def test_the_answer_tells_the_shift_and_its_error(adequate):
     late = shifted(adequate, 1.0)
     diagnosis = td.find_missing(late, td.Model.from_experiment(late, FEW))

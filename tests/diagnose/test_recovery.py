@@ -133,6 +133,7 @@ def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(factor, experiment,
         assert off.parameters[name].value == pytest.approx(value.value, abs=0.1 * value.stderr)
 
 
+@pytest.mark.slow
 def test_an_effect_of_the_users_model_left_to_defaults_is_found_its_values(experiment, diagnosis):
     """`stribeck = {}` in a model: the fit finds what a diagnosis finds that adds it."""
     from teleopdesign import compare, fit

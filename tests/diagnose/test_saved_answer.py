@@ -321,6 +321,7 @@ def test_every_command_refuses_the_answer_to_another_experiment(command, path, c
     assert error.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_an_answer_in_the_place_of_a_folder_leads_to_its_experiment(path, stribeck_case, capsys):
     assert main(["check", str(stribeck_case)]) == 0
     said = capsys.readouterr().out

@@ -25,6 +25,7 @@ def lacking(tmp_path_factory):
     return prepare(experiment), td.Model.from_experiment(experiment)
 
 
+@pytest.mark.slow
 def test_effects_without_values_explain_what_they_do_where_they_are_added_one_by_one(lacking):
     prepared, model = lacking
     without = anew(model, "coulomb", "viscous")
@@ -48,6 +49,7 @@ def test_values_and_what_is_held_stay_as_they_are_stated(lacking):
     assert fit.model.parameters[name].value == 0.013 and name not in fit.free
 
 
+@pytest.mark.slow
 def test_what_an_effect_with_values_needs_stays_while_others_are_taken_out(lacking):
     prepared, model = lacking
     model = model.with_effect("presliding").with_effect("transmission_compliance")

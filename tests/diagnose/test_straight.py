@@ -46,6 +46,7 @@ def test_a_spring_about_its_own_place_is_a_spring_and_a_constant(tmp_path, stiff
     assert value == pytest.approx(stiffness, rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_pendulum_whose_bend_is_seen_stays_one(tmp_path):
     diagnosis = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4))
     assert [c.effect.name for c in diagnosis.missing] == ["gravity"]

@@ -33,6 +33,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
     return int(said.stdout)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="it is glibc's rule")
 def test_arrays_are_not_cleared_by_the_system_again_and_again():
     assert faults_of_arrays("map_in_threads(abs, [1])") < faults_of_arrays("") / 5

@@ -61,6 +61,7 @@ def test_the_claim_agrees_with_the_real_part_of_what_is_felt(inertia, damping, s
         assert lowest < 1e-3
 
 
+@pytest.mark.slow
 def test_a_virtual_mass_far_below_that_of_the_device_is_not_passive():
     status = [
         diagram_claims(made(m), rng=np.random.default_rng(0)).claims[0].claim.status

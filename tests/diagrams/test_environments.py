@@ -100,6 +100,7 @@ def wandering(seed):
     return sampled_motion(time, walk)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["spring and damper", "hunt crossley", "soft rubber"])
 @pytest.mark.parametrize("seed", range(2))
 def test_no_motion_gets_energy_out_of_a_wall(name, seed):

@@ -95,6 +95,7 @@ def test_a_loop_with_a_controller_that_grows_by_itself_decays_as_its_matrices_sa
     np.testing.assert_allclose(*rates, rtol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("discrete", [True, False])
 @pytest.mark.parametrize("pole", [0.0, 3.0])
 def test_a_computer_steps_the_states_together(pole, discrete):
@@ -173,6 +174,7 @@ def test_entries_that_do_not_belong_together_are_one_line(change, words):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_loop_of_static_laws_has_no_pivot_that_is_zero():
     """Systems without a straight way, each in a sum of all: D = 0 was divided by."""
     system = stabilising(0.0)

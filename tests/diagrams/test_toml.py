@@ -136,6 +136,7 @@ def reading(tmp_path):
 
 
 # 25 wirings: every part and most forms of weights occur
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(diagram=diagrams(geometry=True))
 def test_what_is_written_is_read_as_the_same_diagram(tmp_path_factory, diagram):

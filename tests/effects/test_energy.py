@@ -187,6 +187,7 @@ def test_a_structure_takes_energy_around_a_closed_path(name, data, seed):
     assert work >= -1e-3 * size  # edges of a gap between samples
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CONTACTS)
 @settings(max_examples=25)
 @given(data=st.data(), seed=st.integers(0, 2**31))

@@ -22,6 +22,7 @@ def test_the_dahl_loop_solves_its_differential_equation():
     assert np.abs(m.motion(TIMES)["friction"] - solved.y[0]).max() < 1e-6  # kinks of abs(v)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", [Bristle(bristle_damping=20.0, extra=0.3), Belt()])
 def test_a_mass_on_a_bristle_moves_as_another_solver_says(machine):
     b = machine if isinstance(machine, Bristle) else machine.body

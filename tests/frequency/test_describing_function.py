@@ -87,6 +87,7 @@ def test_a_linear_controller_is_its_transfer_function():
     assert found == pytest.approx(2e4 * (s + 6.0) / (s + 300.0), rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT])
 def test_every_dissipating_effect_takes_energy_from_a_sinusoid(name):
     """What opposes motion in phase with velocity is not negative where an effect claims that."""
@@ -133,6 +134,7 @@ def test_a_scheduled_gain_depends_on_the_phase_of_what_drives_it():
 CASES = ["none", *(pytest.param(c, marks=pytest.mark.slow) for c in ("MBC", "FF")), "hybrid"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_quasi_linear_and_simulated_impedance_agree(case):
     """Within 1 dB and 3 degrees; without a driven controller 0.1 dB and 1 degree, for the simulated

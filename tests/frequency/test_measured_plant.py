@@ -44,6 +44,7 @@ def test_responses_and_margins_are_those_of_the_system_that_was_measured(plant, 
         assert delay_margin(loops[0]) == pytest.approx(expected, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_a_measured_loop_is_stable_where_its_poles_say_so(seed):
     """60 random loops: stiff, loose, of the wrong sign, with a law that grows by itself."""

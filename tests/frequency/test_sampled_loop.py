@@ -97,6 +97,7 @@ def test_slow_poles_sampled_fast_are_told_from_each_other():
         assert np.allclose(loop(w * 1e-5), plain, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_a_fast_sampled_loop_has_the_margins_of_one_in_continuous_time():
     law, late = ct.tf([5.0], [1 / (2 * np.pi * 20.0), 1.0]), 2e-3
     device = body(0.15, viscous__damping=2.0)
@@ -127,6 +128,7 @@ def test_where_others_sample_too_margins_are_called_approximate():
     assert loop_gain(mixed).sampled is None
 
 
+@pytest.mark.slow
 def test_a_window_of_dead_times_about_a_whole_sample_is_seen():
     """Late by 3/8 of a sample; it grows from 0.623 to 0.65 of a sample more, then at 0.875 again.
 

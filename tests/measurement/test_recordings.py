@@ -18,6 +18,7 @@ def copies(shared):
     return shared / "data" / "raw"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RECORDINGS)
 def test_a_recording_is_converted_to_the_known_numbers(name, copies, shared, tmp_path):
     folder = fetch(name, tmp_path, source=copies)
@@ -32,6 +33,7 @@ def test_a_recording_is_converted_to_the_known_numbers(name, copies, shared, tmp
             )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RECORDINGS)
 def test_a_recording_is_the_experiment_known_beside_it(name, copies, shared, tmp_path):
     ours = load_experiment(fetch(name, tmp_path, source=copies))

@@ -396,6 +396,7 @@ def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
         check_signals(replace(rod, records=(record,)))
 
 
+@pytest.mark.slow
 def test_the_known_oddities_of_real_recordings_are_found_and_no_others():
     """What their READMEs say: jitter of psm and mtm, rows twice in mtm, a finer emps file."""
     data = shared_folder("data")

@@ -77,6 +77,7 @@ def test_the_picture_names_some_and_counts_the_rest():
     assert unused_lines({f"c{k}": "b" for k in range(20)})[-1].startswith("... and 8 more")
 
 
+@pytest.mark.slow
 @given(st.lists(st.text(min_size=1, max_size=8), min_size=1, max_size=6, unique=True))
 def test_every_column_of_any_name_is_in_a_channel_or_has_a_reason(tmp_path_factory, names):
     from teleopdesign.measurement.new_folder import experiment_text

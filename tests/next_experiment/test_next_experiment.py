@@ -163,6 +163,7 @@ def test_rivals_are_what_the_records_leave_open(one_speed):
     assert "if quadratic_drag at device is right, viscous at device" in proposal.sentence.lower()
 
 
+@pytest.mark.slow
 def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed):
     rod, _, proposal = one_speed
     new = rod.records(proposal.reference.position["device"])

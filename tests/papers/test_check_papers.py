@@ -62,6 +62,7 @@ def outcome_is_as_stated(name):
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in STATEMENTS if n not in SLOW])
 def test_a_statement_is_known_as_far_as_it_says(name):
     outcome_is_as_stated(name)

@@ -64,6 +64,7 @@ PORTS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PORTS)
 def test_nothing_false_is_said_of_a_port_with_modes_inside(name):
     diagram, truth = PORTS[name]
@@ -95,6 +96,7 @@ BOXES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BOXES)
 def test_nothing_false_is_said_of_a_box_that_touches_a_border(name):
     diagram, box, truths = BOXES[name]
@@ -144,6 +146,7 @@ LATE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LATE)
 def test_nothing_false_is_said_of_a_late_loop_on_a_border(name):
     diagram, box, truth = LATE[name]

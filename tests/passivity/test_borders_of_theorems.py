@@ -197,6 +197,7 @@ def test_nothing_false_is_said_of_a_two_port(entries, dies, bears):
     assert not contradicts(lambda: absolutely_stable(system), bears)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("theorem", "numbers", "truth"), NUMBERS, ids=[f"{t.__name__} {k}" for k, (t, *_) in
                                                    enumerate(NUMBERS)]

@@ -42,6 +42,7 @@ def joined(damping=3.0):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("low", [-1.5, -0.4, 0.5])
 def test_a_damped_mass_is_passive_by_the_least_sum_of_its_dampings(low):
     """Re Z = d + c at every frequency: the margin of a box is its least sum."""
@@ -100,6 +101,7 @@ def test_the_pole_margin_of_a_held_mass_is_that_of_its_quadratic(damping):
         assert math.isnan(claim.proved_margin) and not claim.certificates
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "low", "status"),
     [("passive", -0.45, "proved"), ("absolutely stable", -0.45, "proved"),
@@ -210,6 +212,7 @@ def test_a_negative_spring_leaves_no_margin_though_its_real_part_is_that_of_the_
     assert claim_over_intervals(held(), box, points=4).status == "refuted"
 
 
+@pytest.mark.slow
 def test_what_is_known_of_a_filtered_damper_is_said_of_each_point_by_itself():
     """Its damper reads the velocity, its spring a filtered position: no family of one form."""
     law = controller("spring_damper", {"stiffness": 0.0, "damping": 1.0})

@@ -149,6 +149,7 @@ def test_the_statement_names_rates_supply_storage_and_what_is_assumed(certificat
     assert "[[s + 1 + 10/s, -10/s], [-10/s, s + 2 + 10/s]] is positive real" in said
 
 
+@pytest.mark.slow
 def test_the_checker_runs_alone(certificates, tmp_path):
     """Copied away from the package, in a fresh interpreter without it on the path."""
     shutil.copytree(FOLDER, tmp_path / "check", ignore=shutil.ignore_patterns("__pycache__"))

@@ -209,6 +209,7 @@ def test_wrong_types_and_missing_fields_are_one_line(field):
         check({k: v for k, v in storage().items() if k != field})
 
 
+@pytest.mark.slow
 def test_wrong_types_deeper_inside_are_one_line():
     """Each value of the plain data replaced by each odd one."""
     count = 0

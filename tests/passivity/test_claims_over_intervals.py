@@ -66,6 +66,7 @@ def test_two_polynomials_that_meet_at_zero_inside_are_not_called_apart():
     )
 
 
+@pytest.mark.slow
 def test_no_polynomial_with_a_small_dip_inside_is_called_non_negative():
     rng = np.random.default_rng(1)
     for _ in range(60):
@@ -112,6 +113,7 @@ def attack(seed, *names):
     return answer.status
 
 
+@pytest.mark.slow
 def test_no_random_box_that_is_proved_holds_a_point_where_it_fails():
     assert {attack(seed, "interface") for seed in range(3)} <= {"proved", "refuted"}
 

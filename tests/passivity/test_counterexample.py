@@ -53,6 +53,7 @@ def test_coulomb_friction_takes_its_level_times_the_way():
     assert found.last_round == pytest.approx(-0.5 * 0.02, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "diagram",
     [joint(0.5, None), joint(0.5, 2e4, (0.4, 1.5e4)), joint(0.5, None, (0.45, 1e4))],
@@ -64,6 +65,7 @@ def test_the_search_is_silent_on_passive_systems(diagram):
     assert "no proof" in str(claim.verdict)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "compensation"),
     [((0.5, None), (0.55, 1e4)), ((0.5, 2e4), (0.2, 1.5e4)), ((0.5, 2e4), (0.55, 1.5e4))],
@@ -97,6 +99,7 @@ def test_a_stroke_that_makes_no_sense_is_refused():
         searched(joint(0.5, None), stroke=0.0)
 
 
+@pytest.mark.slow
 def test_evidence_says_what_a_motion_that_does_not_return_would_keep():
     """A spring that pushes away gives 1/2 K x^2, 0.2 J at 2 cm, and takes it back."""
     pushes = controller("spring_damper", {"stiffness": 1000.0, "damping": 0.0})

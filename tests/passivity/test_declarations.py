@@ -204,6 +204,7 @@ BOUNDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("law", "kept"), BOUNDS.values(), ids=BOUNDS)
 def test_a_bound_counts_where_intervals_show_it(tmp_path, law, kept):
     mine = load_controller(law_file(tmp_path, law, 'bound="level"'))

@@ -86,6 +86,7 @@ def test_the_impedances_of_a_teleoperator_are_those_of_its_symbolic_two_port():
             assert abs(difference(2.0 + 7.0j)) < 1e-9
 
 
+@pytest.mark.slow
 @settings(max_examples=4)
 @given(
     stiffness=st.integers(1, 2000),
@@ -192,6 +193,7 @@ def test_the_command_settles_a_diagram_from_a_file(tmp_path, capsys):
     assert read_diagram(file).has("Z_H")
 
 
+@pytest.mark.slow
 def test_a_verdict_does_not_change_the_status_of_the_command(tmp_path, capsys):
     file = tmp_path / "loop.toml"
     lead = controller("lead", {"gain": 300.0, "zero": 10.0, "pole": 1.0})

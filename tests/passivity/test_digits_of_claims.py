@@ -60,6 +60,7 @@ def answer_with(path, parameters):
     return str(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [{}, PRESLIDING | STRIBECK])
 def test_no_number_has_digits_that_nobody_measured(tmp_path, capsys, more):
     answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED | more)
@@ -75,6 +76,7 @@ def test_no_number_has_digits_that_nobody_measured(tmp_path, capsys, more):
         assert "(SI)" not in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [{}, STRIBECK])
 def test_the_limit_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys, more):
     """0.19936 was printed as 0.1994, and what is typed so was refuted."""

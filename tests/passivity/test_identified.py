@@ -160,6 +160,7 @@ def test_a_users_shape_of_friction_is_none_that_a_theorem_is_about():
     assert identify_device(body_of().with_effect(shape, {"size": 0.1})).set_aside == ("own",)
 
 
+@pytest.mark.slow
 def test_design_and_passivity_have_one_interval():
     """Stribeck and a wave along the travel, a period that is not known well."""
     body = body_of(

@@ -50,6 +50,7 @@ def test_a_late_spring_is_stable_up_to_its_exact_limit(share, status):
     assert claim.status == status, claim
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("share", "status"), [(0.99, "proved"), (1.03, "refuted")])
 def test_a_gain_within_an_interval_counts_at_its_worst(share, status):
     box = {TIME: (0.0, float(share * limit(25.0))), "P.spring_damper.stiffness": (10.0, 25.0)}
@@ -138,6 +139,7 @@ def test_a_part_with_a_zero_on_a_corner_is_never_shown_and_one_beside_it_is():
         assert late_cells._is_shown(groups, low, high, False).all()
 
 
+@pytest.mark.slow
 def test_zeros_on_edges_of_parts_and_beyond_the_range_of_floats_are_not_passed_over():
     """s^2 + w^2 for each w that halving meets, and coefficients of 10^200 and 10^-320."""
     for w in (Fraction(1, 2), Fraction(1), Fraction(3, 8), Fraction(12345, 1024)):

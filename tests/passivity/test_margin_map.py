@@ -71,6 +71,7 @@ def test_a_map_says_that_it_is_no_proof_and_what_it_leaves_out():
     assert found.plot().axes
 
 
+@pytest.mark.slow
 def test_a_late_two_port_is_never_proved():
     claims = diagram_claims(lab(), rng=np.random.default_rng(1)).claims
     assert {c.claim.status for c in claims} <= {"evidence", "refuted", "unknown"}

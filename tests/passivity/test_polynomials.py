@@ -52,6 +52,7 @@ def test_positive_roots_are_found_once_each(roots, b):
     assert [float(x) for x in positive_roots(p)] == pytest.approx(expected, rel=1e-15)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(

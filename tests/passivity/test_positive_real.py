@@ -76,6 +76,7 @@ def test_others_are_refuted_by_a_motion_that_gives_out_energy(name, tmp_path):
     assert again.replay() > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
 @pytest.mark.parametrize("time", [1e-6, 1e6])
 def test_the_units_of_force_and_time_change_no_verdict(scale, time):

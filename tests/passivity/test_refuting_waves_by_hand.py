@@ -77,6 +77,7 @@ def test_a_residue_that_the_axis_does_not_show_is_refuted_beside_its_pole():
     assert waves.find_wave_between(two_port_of([[1, 4], [-4, 1]]), [], []) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("narrow", [sp.Rational(1, 10), sp.Rational(1, 10**4)])
 @pytest.mark.parametrize("frequency", [sp.Rational(1, 50), 1, 70])
 def test_three_ports_are_refuted_however_narrow_the_dip_is(narrow, frequency):

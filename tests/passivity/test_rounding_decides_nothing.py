@@ -43,6 +43,7 @@ def claims(diagram):
     return [s.claim for s in diagram_claims(diagram, rng=np.random.default_rng(0)).claims]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bandwidth", BANDWIDTHS)
 def test_a_disturbance_observer_of_a_transfer_function_is_not_refuted_by_rounding(bandwidth):
     (claim,) = claims(observed(bandwidth))
@@ -59,6 +60,7 @@ def test_poles_and_dc_gain_of_what_cancels_on_paper_are_right(bandwidth):
     assert float(system.dcgain()) == pytest.approx(2 * tau / DAMPING, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bandwidth", BANDWIDTHS)
 def test_matrices_rounded_by_python_control_refute_nothing(bandwidth):
     """control.ss of the same law leaves a pole beside zero: proved or unknown, never refuted."""
@@ -113,6 +115,7 @@ def test_a_sampled_law_that_leaves_double_precision_is_refuted_by_a_shorter_moti
     assert claim.status == "refuted" and claim.record.replay() > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("damping", "status"),
     [(-0.31, "refuted"), (-(0.1 + 0.2), "unknown"), (-0.3, "proved"), (-0.29, "proved")],

@@ -52,6 +52,7 @@ def test_three_arms_with_coulomb_friction_are_proved_too():
     assert whole(star(STAR, coulomb__level=0.4)).status == "proved"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("entry", "value"), [((0, 1), -900.0), ((2, 2), -10.0)])
 def test_springs_that_are_no_spring_are_refuted_by_a_wave(entry, value):
     stiffness = STAR.copy()

@@ -129,6 +129,7 @@ def test_a_teleoperator_of_waves_is_proved_passive_whatever_its_delays(delay):
     assert all(c.check() for c in claim.certificates)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.02, {"T_1": 0.05}])
 def test_claims_on_a_diagram_of_late_waves_are_those_of_the_theorem(delay):
     """Near s = 0 rounding refuted them: what two delays leave of 1/s agrees in tens of digits."""

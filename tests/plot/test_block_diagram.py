@@ -141,12 +141,14 @@ def test_a_known_diagram_is_drawn_with_every_text_in_the_clear(name):
 
 
 # 12 wirings in about 3 s, no search for a smaller one
+@pytest.mark.slow
 @settings(max_examples=12, phases=[Phase.generate])
 @given(diagrams(geometry=True))
 def test_in_any_drawing_everything_is_there_once_and_wires_keep_clear(diagram):
     check(diagram)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHOWN)
 def test_the_same_diagram_gives_the_same_bytes(name):
     first = draw_diagram(SHOWN[name]).svg()

@@ -58,6 +58,7 @@ def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_sha
     assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "places",
     [(0, 9_000), (150, 19_850), (5_000, 5_200, 12_000), (0, 200, 19_700, 19_999), (301, 19_698)],

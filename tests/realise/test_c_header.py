@@ -58,6 +58,7 @@ def library(text, folder):
     return ctypes.CDLL(str(target))
 
 
+@pytest.mark.slow
 @compiled
 @pytest.mark.parametrize("name", BLOCKS)
 def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):

@@ -132,6 +132,7 @@ WAVE_ERRORS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reach", [REACH, None])
 def test_a_wave_of_unknown_phase_counts_for_its_amplitude(reach):
     """A slope in the period times ten metres of position would make it -2.7 N."""

@@ -145,6 +145,7 @@ def other_names(draw, diagram):
     return dict(zip(old, new, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DIAGRAMS)
 @pytest.mark.parametrize("continuous", [False, True], ids=["sampled", "continuous"])
 @settings(max_examples=12)

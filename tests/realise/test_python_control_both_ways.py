@@ -472,6 +472,7 @@ def test_a_plant_of_several_axes_in_discrete_time_is_the_one_before_its_hold():
         assert np.abs(found[motion].values[at] - answer[k]).max() < 1e-6 * np.ptp(answer[k])
 
 
+@pytest.mark.slow
 def test_a_plant_of_several_axes_is_judged_at_its_ports():
     """A passive plant under springs is proved passive, one with a negative damper refuted."""
     held = with_axes(TWO_AXES)

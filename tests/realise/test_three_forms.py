@@ -69,6 +69,7 @@ def simulated(made, **arguments):
     return simulate(haptic_interface(made), **arguments)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_kernel_and_python_control_move_alike(name):
     """A hand pushes with 2 N at 4 Hz: two codes, one law."""
@@ -127,6 +128,7 @@ def test_an_effect_at_zero_strength_changes_nothing(name):
     np.testing.assert_array_equal(simulated(with_it, duration=0.02)["L"].values, without)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].energy == "dissipates"])
 def test_friction_takes_energy_out(name):
     """Over whole cycles of a prescribed motion the hand puts work in."""
@@ -144,6 +146,7 @@ def test_friction_takes_energy_out(name):
     assert work > stored
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["none", "MBC", "FF", "hybrid"])
 def test_kernel_and_python_control_agree_on_the_force_error(case):
     """The force error against velocity, motion prescribed, controllers in continuous time.

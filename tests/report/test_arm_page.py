@@ -100,6 +100,7 @@ def test_the_verdict_on_an_arm_names_what_is_missing_or_that_nothing_is(two_join
     assert "no candidate effect explains the 8.00\u202f%" in nothing
 
 
+@pytest.mark.slow
 def test_a_written_page_holds_the_answer_and_every_joint(two_joints, monkeypatch, tmp_path):
     monkeypatch.setattr(arm, "arm_answer", lambda _: {"verdict": "effects_missing"})
     path = tmp_path / "arm.html"

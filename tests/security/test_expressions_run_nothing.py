@@ -110,6 +110,7 @@ def test_an_expression_that_would_fill_time_or_memory_is_refused_at_once(guard, 
     assert len(one_line(caught.value)) < 300
 
 
+@pytest.mark.slow
 def test_what_sympy_would_think_about_for_ever_is_given_up(guard):
     """Found by drawing texts: small, of moderate numbers, and without an end."""
     text = (

@@ -102,6 +102,7 @@ def test_a_start_is_a_parameter_too():
     assert fitted.case.initial["L_velocity"] == pytest.approx(0.05, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_dry_friction_and_its_cancellation_come_back_from_the_force_of_a_measured_motion():
     truth = models.interface()
     simulation = td.simulate_diagram(truth, **models.SIMULATED)

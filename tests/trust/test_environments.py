@@ -239,6 +239,7 @@ def test_processes_share_a_cold_cache(tmp_path):
 # terminals
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "terminal",
     [

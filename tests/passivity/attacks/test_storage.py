@@ -170,6 +170,7 @@ def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
     assert counts["refused"] < 0.1 * number
 
 
+@pytest.mark.slow
 def test_a_storage_is_off_by_no_more_than_half_the_points_say():
     """Three springs of lengths 21 to 1: a motion takes out 5 % more than 25 points give."""
     friction = [Spring(532.34, 8706.7), Dahl(872.29, 978.46)]
@@ -191,6 +192,7 @@ def test_the_attack_beats_a_storage_of_other_friction():
     assert above > compensator.level * claimed.travel
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("travel", [3e-5, -4e-4, 2e-2])
 def test_the_attackers_load_of_a_leg_is_that_of_small_steps(travel):
     for element in (Spring(2.0, 1e4), DahlBehindSpring(2.0, 5e4, 1e4), Dahl(2.0, 1e4)):
@@ -204,6 +206,7 @@ def test_the_attackers_load_of_a_leg_is_that_of_small_steps(travel):
             assert once[0] == pytest.approx(pressed[0], rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("travel", [3e-5, -4e-4, 2e-2])
 def test_the_attackers_legs_keep_the_energy_that_is_put_in(travel):
     """Springs hold f^2/(2 k), what slides loses level times way: against small steps."""
