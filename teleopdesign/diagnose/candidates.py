@@ -136,9 +136,8 @@ def _is_distinguishable(
     if not motions or not depends_on_position(effect):
         return True
     repeats = period(effect)
-    if isinstance(
-        repeats, str
-    ):  # the period is a parameter: the fit decides whether the record shows repeats
+    # a period that is a parameter: the fit decides whether the record shows repeats
+    if isinstance(repeats, str):
         return True
     return tells_place_from_time(motions, separate_zeros=separate_zeros, turn=repeats)
 

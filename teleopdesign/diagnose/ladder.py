@@ -156,9 +156,8 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
             return moved
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
         return None
-    if (
-        state.set_aside
-    ):  # pairs and exchanges were searched before, with the effects that were set aside
+    # pairs and exchanges were searched before, with the effects that were set aside
+    if state.set_aside:
         return None
     moves = (add_pair, add_transmission, exchange, replace_by_pair, add_together)
     attempts = (move(search, state) for move in moves)

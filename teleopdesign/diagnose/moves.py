@@ -54,9 +54,8 @@ def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> La
     )
     for earlier in state.rungs[1:]:
         assert earlier.added is not None
-        if (
-            earlier.instead_of == best.candidate
-        ):  # both effects are in the model now: nothing is replaced
+        # both effects are in the model now: nothing is replaced
+        if earlier.instead_of == best.candidate:
             rungs = [replace(r, replaced=None) if r is earlier else r for r in state.rungs]
             order = reorder_and_refit(rungs, best.fit, prepared)
             if order is None:

@@ -56,10 +56,8 @@ def narrower_band(
     if experiment.bandwidth is not None or 0.25 * chosen < LOWEST:
         return None
     here, best = _error(estimate(model, prepared)), None
-    for part in (
-        0.25,
-        0.5,
-    ):  # a quarter shows whether the error falls; then the widest band is taken
+    # a quarter shows whether the error falls; then the widest band is taken
+    for part in (0.25, 0.5):
         try:
             narrower = prepare(experiment, bandwidth=part * chosen)
         except ExperimentError:

@@ -102,9 +102,8 @@ def _best_pair(
         if r.counts and r.candidate.key not in gone and fit_squares(r.fit) < fit_squares(here)
     ]
     for first in trials[: search.plan.trials]:
-        if (
-            frozenset(first.fit.model.effects) in state.visited
-        ):  # all effects were ranked beside this effect before
+        # all effects were ranked beside this effect before
+        if frozenset(first.fit.model.effects) in state.visited:
             continue
         beside = search.rank(first.fit, step=state.step, among=among)
         supported = (

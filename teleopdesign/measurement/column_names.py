@@ -194,11 +194,8 @@ def unit_of_text(text: str) -> str | None:
         return f"{load.lower()}f*{lever.lower()}"
     if text.lower() in ALIASES and not is_unit(text):
         return ALIASES[text.lower()]
-    if text in (
-        "nm",
-        "1/min",
-        "min^-1",
-    ):  # in a log no nanometre and no 1/60 Hz
+    # in a log no nanometre and no 1/60 Hz
+    if text in ("nm", "1/min", "min^-1"):
         return ALIASES[text]
     if text in COUNTS:
         return "counts"
@@ -250,15 +247,13 @@ def likeness(name: str, quantity: str) -> float:
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
     listed = WORDS[quantity]
-    may_end = (
-        quantity != "interaction_force"
-    )  # a word that ends in "sensor", such as "Stromsensor", names no force
+    # a word that ends in "sensor", such as "Stromsensor", names no force
+    may_end = quantity != "interaction_force"
     best = 0.0
     for word in words:
         for rank, known in enumerate(listed):
-            exact = (
-                word == known or not known.isascii() and known in word
-            )  # without spaces between words
+            # languages without spaces between words have a known word within a longer one
+            exact = word == known or not known.isascii() and known in word
             # the last part of a compound names it: "Drehmoment", "Istwinkel"
             ends = may_end and len(known) > 4 and word.endswith(known)
             if exact or ends or len(known) > 3 and word.startswith(known):

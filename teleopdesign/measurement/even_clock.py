@@ -48,9 +48,8 @@ def _is_even(stamps: Array, segments: Sequence[slice], period: float) -> bool:
     within[[segment.start - 1 for segment in segments[1:]]] = False
     if not within.any():
         return False
-    usual = float(
-        np.quantile(steps[within], 0.5, method="higher")
-    )  # a step that occurs, no mean of two
+    # a step that occurs, no mean of two
+    usual = float(np.quantile(steps[within], 0.5, method="higher"))
     steps = np.where(within, steps, usual)
     if np.all(np.abs(steps - usual) <= _JITTER * usual):
         return True

@@ -93,9 +93,8 @@ def _is_known(text: str, k: int, encoding: str) -> bool:
     name = unicodedata.name(letter, "")
     if encoding in ("cp932", "euc_jp"):
         return name.startswith(("HIRAGANA", "KATAKANA"))
-    if (
-        encoding == "cp1251"
-    ):  # within a Cyrillic word; a single such letter among Latin letters is a misread accent
+    # within a Cyrillic word; a single such letter among Latin letters is a misread accent
+    if encoding == "cp1251":
         beside = text[max(0, k - 1) : k] + text[k + 1 : k + 2]
         return letter == "°" or name.startswith("CYRILLIC SMALL") and not beside.isascii()
     return False

@@ -27,9 +27,8 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
     unread: dict[str, str] = {}
     single = [name for name in log.names if log.names.count(name) == 1]
     try:
-        together = log.read(
-            dict.fromkeys(single, "")
-        )  # together: a text file is then read once, not once for each column
+        # a text file is then read once, not once for each column
+        together = log.read(dict.fromkeys(single, ""))
     except ExperimentError:
         together = {}
     for name in single:

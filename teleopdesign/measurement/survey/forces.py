@@ -77,10 +77,8 @@ def describe_forces(
         survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
-    motion = (
-        x,
-        h,
-    )  # in the unit of the log: the balance of forces does not depend on the scale of the motion
+    # in the unit of the log: the balance of forces does not depend on the scale of the motion
+    motion = x, h
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
     hand = _find_hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
