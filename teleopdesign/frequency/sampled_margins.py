@@ -96,7 +96,7 @@ def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
     """Dead times (s) with a mode on the unit circle, and the next whole samples after them."""
     period = float(loop.period)
     exact, near = _crossings_at_half_the_rate(loop), set[float]()
-    for part in sorted({*(np.arange(_PARTS) / _PARTS), *_parts_before_bends(loop)}):
+    for part in sorted({*(np.arange(_PARTS) / _PARTS), *_just_before_bends(loop)}):
         phase, at = unity_crossings(loop.with_delay(part * period))
         for angle, whole in zip(at, np.radians(phase % 360) / at, strict=True):
             if whole > _MOST:
@@ -115,19 +115,21 @@ def _looked_at(loop: SampledLoop) -> set[float]:
     the response has a kink there, and with a direct feedthrough it jumps.
     """
     period = float(loop.period)
-    bends = {float(-t % loop.period) for t, _ in loop.above}
-    before = {part * period for part in _parts_before_bends(loop)}
-    parts = {*(k * period / _PARTS for k in range(_PARTS)), *bends, *before}
-    return {n * period + part for n in range(_LOOKED) for part in parts} - {0.0}
+    parts = {*(k / _PARTS for k in range(_PARTS)), *_bends(loop), *_just_before_bends(loop)}
+    return {(n + part) * period for n in range(_LOOKED) for part in parts} - {0.0}
 
 
-def _parts_before_bends(loop: SampledLoop) -> set[float]:
-    """Parts of a sample just below those with which a dead time of the loop is whole samples.
+def _bends(loop: SampledLoop) -> set[float]:
+    """Parts of a sample (0 to below 1) with which a dead time of the loop is whole samples."""
+    return {float(-t % loop.period / loop.period) for t, _ in loop.above}
+
+
+def _just_before_bends(loop: SampledLoop) -> set[float]:
+    """Parts of a sample just below those of `_bends`.
 
     With a direct feedthrough the loop may grow there, and decay from the whole sample on.
     """
-    bends = {float(-t % loop.period / loop.period) for t, _ in loop.above}
-    return {(part or 1.0) - _HAIR for part in bends}
+    return {(part or 1.0) - _HAIR for part in _bends(loop)}
 
 
 def _crossings_at_half_the_rate(loop: SampledLoop) -> set[float]:
