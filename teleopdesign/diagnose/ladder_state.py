@@ -129,11 +129,11 @@ class LadderState:
 
     def with_floor_limited(self, criteria: Criteria) -> LadderState:
         """The state with the noise floor that its candidates allow, without `weakening`."""
-        drawn = self.floors.drawn
-        bounded = limit_noise_floor(drawn, self.fit, self.ranking, self.weakening)
-        first = bounded if self.step == 1 else self.first
-        allowed = allowed_floor(bounded, first, self.rungs[0].fit, criteria=criteria)
-        return replace(self, floors=Floors(drawn, allowed), first=first)
+        first = None if self.step == 1 else self.first
+        floors, first = _limit_floors(
+            self.floors.drawn, self.rungs, self.ranking, self.weakening, first, criteria
+        )
+        return replace(self, floors=floors, first=first)
 
     @property
     def fit(self) -> Fit:
@@ -210,9 +210,8 @@ def look(
     worth = worth_pursuing(here, drawn, criteria=criteria)
     ranking = search.rank(here, step=len(rungs), worth=worth)
     weakening = () if before is None else before.weakening
-    bounded = limit_noise_floor(drawn, here, ranking, weakening)
-    first = bounded if before is None else before.first
-    floors = Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria))
+    first = None if before is None else before.first
+    floors, first = _limit_floors(drawn, rungs, ranking, weakening, first, criteria)
     tone = best_tone(here, prepared)
     gone = set() if before is None else before.gone
     supported = tuple(
@@ -232,3 +231,20 @@ def look(
         before, rungs=rungs, floors=floors, ranking=ranking, tone=tone, supported=supported
     )
     return replace(state, visited=before.visited | {state.effects})
+
+
+def _limit_floors(
+    drawn: NoiseFloor,
+    rungs: tuple[Rung, ...],
+    ranking: Ranking,
+    weakening: Collection[tuple[str, str]],
+    first: NoiseFloor | None,
+    criteria: Criteria,
+) -> tuple[Floors, NoiseFloor]:
+    """The floors of the last rung, and the limited floor of the user's model.
+
+    weakening: as in `LadderState`;  first: None: the last rung is the user's model
+    """
+    bounded = limit_noise_floor(drawn, rungs[-1].fit, ranking, weakening)
+    first = bounded if first is None else first
+    return Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria)), first
