@@ -123,6 +123,7 @@ def record_facts(
     return RecordFacts(
         axis=body.axis,
         travel=max(float(np.ptp(x)) for x in _comparable_positions(stretches)),
+        sweep=max(float(np.ptp(m.position)) for m in motions),
         step=min(float(s.motion.step) for s in stretches),
         stroke=_stroke(stretches),
         force=float(max(measured)),
@@ -131,7 +132,6 @@ def record_facts(
         film=_film(body, speed, numbers),
         body=numbers,
         duration=max(float(np.ptp(m.time)) for m in motions),
-        sweep=max(float(np.ptp(m.position)) for m in motions),
         places=np.concatenate([m.position[m.direction != 0] for m in motions]),
         speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )

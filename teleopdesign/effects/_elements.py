@@ -46,13 +46,12 @@ def elements_slip(p: Any, facts: RecordFacts) -> str | None:
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
     softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
-    travel = min(facts.travel, facts.sweep)
-    if softest and 2.0 * ways[softest] > travel:
+    if softest and 2.0 * ways[softest] > facts.sweep:
         stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
-        seldom = "never slips" if ways[softest] > travel else "slips in one direction only"
+        seldom = "never slips" if ways[softest] > facts.sweep else "slips in one direction only"
         return (
             f"the softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, "
-            f"{seldom} within the travel of {facts.text(travel, 'position')}: "
+            f"{seldom} within the travel of {facts.text(facts.sweep, 'position')}: "
             "the record shows no loop, and the effect imitates a spring"
         )
     return slip_is_observable("the softest element", list(ways.values()), facts)

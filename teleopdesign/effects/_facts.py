@@ -48,6 +48,8 @@ class RecordFacts:
     """Facts of the records of an experiment about one body (SI, on its axis).
 
     travel: range of its positions over all records
+    sweep: largest range in one stretch of a record: hidden states, such as the deflection of a
+        bristle, begin anew at each stretch
     step: of the position readings
     stroke: mean time of motion between two reversals (s); inf: the motion never reverses
     force: largest size of the measured force, actuator and interaction together
@@ -57,13 +59,12 @@ class RecordFacts:
         body that depend on the velocity alone, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     duration: of the longest record (s)
-    sweep: largest range of its positions in one stretch of a record: hidden states, such as the
-        deflection of a bristle, begin anew at each stretch
     places, speeds: (n,) of the samples in which the body slides, over all records
     """
 
     axis: str
     travel: float
+    sweep: float
     step: float
     stroke: float
     force: float
@@ -71,7 +72,6 @@ class RecordFacts:
     film: float
     body: Mapping[str, float]
     duration: float = float("inf")
-    sweep: float = float("inf")
     acting: float = float("inf")
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
@@ -121,12 +121,11 @@ def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) 
             f"{subject} deflects once only where the motion never reverses: the record shows no "
             "loop, and the effect imitates the beginning of friction in a record"
         )
-    travel = min(facts.travel, facts.sweep)
     # a deflection of less than half a step is never read
-    if any(0.5 * facts.step < way < travel for way in ways):
+    if any(0.5 * facts.step < way < facts.sweep for way in ways):
         return None
-    if max(ways, default=0.0) >= travel:
-        within = facts.text(travel, "position")
+    if max(ways, default=0.0) >= facts.sweep:
+        within = facts.text(facts.sweep, "position")
         return f"{subject} never slips within the travel of {within}: the effect imitates a spring"
     step = facts.text(facts.step, "position")
     return (

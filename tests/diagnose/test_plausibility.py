@@ -24,6 +24,7 @@ TIME = np.linspace(0.0, 3.0, 3000)
 FACTS = RecordFacts(
     axis="revolute",
     travel=1.0,
+    sweep=1.0,
     step=1e-4,
     stroke=0.5,
     force=3.0,

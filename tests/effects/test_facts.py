@@ -15,7 +15,15 @@ TIME = np.linspace(0.0, 3.0, 3000)
 def facts(**changed):
     """One sine about zero, as a link under gravity makes it."""
     places, speeds = 0.5 * np.sin(2 * np.pi * TIME), np.pi * np.cos(2 * np.pi * TIME)
-    known = {"travel": 1.0, "step": 1e-4, "stroke": 0.5, "force": 3.0, "speed": np.pi, "film": 0.1}
+    known = {
+        "travel": 1.0,
+        "sweep": 1.0,
+        "step": 1e-4,
+        "stroke": 0.5,
+        "force": 3.0,
+        "speed": np.pi,
+        "film": 0.1,
+    }
     body = {"inertia": 0.1, "coulomb.level": 0.5, "gravity.phase": 0.3}
     given = {"axis": "revolute", "body": body, "places": places, "speeds": speeds, **known}
     return RecordFacts(**given | changed)
@@ -50,7 +58,7 @@ def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
 
 def test_what_slips_within_no_stretch_of_a_record_is_a_spring_though_two_records_lie_apart():
     """Of a pendulum that swung to each side in a record of its own, a hysteresis was named."""
-    assert slip_is_observable("the bristle", [0.8], facts(travel=2.0)) is None
+    assert slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=2.0)) is None
     said = slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=0.7))
     assert said is not None and "never slips within the travel of 0.7 rad" in said
     soft = {"stiffness_1": 0.5, "stiffness_2": 5.0, "stiffness_3": 50.0, "stiffness_4": 500.0}

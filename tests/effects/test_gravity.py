@@ -13,6 +13,7 @@ def facts(low, high):
     return RecordFacts(
         axis="revolute",
         travel=high - low,
+        sweep=high - low,
         step=1e-5,
         stroke=1.0,
         force=5.0,

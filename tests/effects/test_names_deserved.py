@@ -15,7 +15,15 @@ BODY = {"inertia": 0.5, "coulomb.level": 1.0, "transmission_compliance.stiffness
 
 def facts(**changed):
     """Records in which a body of 0.5 kg m^2 turned to and fro, between -1 and 1 rad."""
-    known = {"travel": 2.0, "step": 0.01, "stroke": 0.5, "force": 8.0, "speed": 4.0, "film": 2.0}
+    known = {
+        "travel": 2.0,
+        "sweep": 2.0,
+        "step": 0.01,
+        "stroke": 0.5,
+        "force": 8.0,
+        "speed": 4.0,
+        "film": 2.0,
+    }
     places = np.linspace(-1.0, 1.0, 401)
     known |= {"axis": "revolute", "body": BODY, "duration": 10.0, "places": places, "acting": 8.0}
     return RecordFacts(**known | {"speeds": 4.0 * np.cos(np.pi * places / 2)} | changed)
