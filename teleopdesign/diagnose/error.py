@@ -20,7 +20,8 @@ from .residual import residuals
 
 def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:
     """The force error of these stretches, from the low-passed residual of each (N or N m)."""
-    left = sum(s.weight * float(np.sum(r**2)) for s, r in zip(stretches, values, strict=True))
+    with np.errstate(over="ignore"):  # inf where a hidden body grew beyond all numbers
+        left = sum(s.weight * float(np.sum(r**2)) for s, r in zip(stretches, values, strict=True))
     whole = sum(s.measured for s in stretches)
     return float(np.sqrt(left / whole))
 

@@ -16,6 +16,7 @@ from .bodies_apart import select_bodies
 from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, refer_to_command
+from .least_squares import sum_of_squares
 from .prepare import Prepared, Stretch, folds
 from .record_offsets import AlongRecords, follow_records
 from .residual import both_residuals, relative_residuals
@@ -75,8 +76,11 @@ class Fit(ByValue):
 
 
 def fit_squares(fit: Fit) -> float:
-    """Sum of squares on the fit records, relative to the force that acts in the model."""
-    return float(fit.fit_residual @ fit.fit_residual)
+    """Sum of squares on the fit records, relative to the force that acts in the model.
+
+    inf: the motion of the model grows beyond all numbers
+    """
+    return sum_of_squares(fit.fit_residual)
 
 
 def free_parameters(model: Model) -> tuple[str, ...]:

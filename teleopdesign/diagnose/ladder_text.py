@@ -251,9 +251,10 @@ def sentence(diagnosis: Diagnosis) -> str:
             if r.added in diagnosis.missing
         )
         less = [r.title for r in added if r.added not in diagnosis.missing]
+        describe = "this effect describes" if len(less) == 1 else "these effects describe"
         others = (
-            f" {', '.join(less)}: less likely than not; the force that this effect describes "
-            "counts as unexplained."
+            f" {', '.join(less)}: less likely than not; the force that {describe} counts as "
+            "unexplained."
             if less
             else ""
         )
@@ -265,9 +266,10 @@ def sentence(diagnosis: Diagnosis) -> str:
             f"{left} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
-        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
+        titles = [r.title for r in diagnosis.rungs if r.added is not None]
+        helps = "helps, but explains" if len(titles) == 1 else "help, but explain"
         return (
-            f"verdict: undecided. {names} help, but explain less than half of what is missing: "
+            f"verdict: undecided. {', '.join(titles)} {helps} less than half of what is missing: "
             f"{left} noise floors are left."
         )
     if diagnosis.groups:

@@ -7,6 +7,7 @@ unknown per parameter, solved by scipy's `lsq_linear`: a bound is reached at onc
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -45,7 +46,7 @@ def minimise(
     """
     x = np.clip(start, lower, upper)
     residual, jacobian = function(x)
-    squares, damping, quiet, failed = float(residual @ residual), 1e-3, 0, False
+    squares, damping, quiet, failed = sum_of_squares(residual), 1e-3, 0, False
     for _ in range(evaluations - 1):
         step = _step(jacobian, residual, lower - x, upper - x, damping)
         if not np.isfinite(step).all():
@@ -56,18 +57,18 @@ def minimise(
             break
         # a step after one that failed mostly fails too, and its Jacobian would serve nothing
         if failed and residual_alone is not None:
-            failed = not _is_less(residual_alone(trial), squares)
+            failed = not sum_of_squares(residual_alone(trial)) < squares
         else:
             failed = False
         if not failed:
             new_residual, new_jacobian = function(trial)
-            failed = not _is_less(new_residual, squares)
+            failed = not sum_of_squares(new_residual) < squares
         if failed:
             damping *= 10.0
             if damping > 1e8:
                 break
             continue
-        new = float(new_residual @ new_residual)
+        new = sum_of_squares(new_residual)
         good = (squares - new) / expected
         damping = damping / 10.0 if good > 0.75 else damping * 3.0 if good < 0.25 else damping
         quiet = quiet + 1 if squares - new < tolerance * squares else 0
@@ -77,10 +78,11 @@ def minimise(
     return Minimum(np.asarray(x), residual, jacobian)
 
 
-def _is_less(residual: Array, squares: float) -> bool:
-    """Whether the sum of squares of a residual is finite and less than that of another."""
-    new = float(residual @ residual)
-    return bool(np.isfinite(new)) and new < squares
+def sum_of_squares(residual: Array) -> float:
+    """Sum of squares of a residual (n,); inf where a motion grows beyond all numbers."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        squares = float(residual @ residual)
+    return squares if math.isfinite(squares) else math.inf
 
 
 def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:

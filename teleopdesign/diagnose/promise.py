@@ -45,7 +45,8 @@ class Promises:
                 residual[part.rows] = here[0]
                 columns[np.ix_(part.rows, mine)] = here[1] * size[mine]
         whole = np.hstack([base.jacobian, base.by_shift, columns]) if same else columns
-        return _remaining_squares(whole, residual) if np.isfinite(whole).all() else math.inf
+        is_number = np.isfinite(whole).all() and np.isfinite(residual).all()
+        return _remaining_squares(whole, residual) if is_number else math.inf
 
     def _along(self, part: Apart, model: Model, names: Sequence[str]) -> tuple[Array, Array]:
         """Residual and derivatives of some bodies, computed once for equal parameters of theirs."""

@@ -6,7 +6,7 @@ for the model first, and removed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -45,7 +45,7 @@ def relative_residuals(
     returns: per stretch, residual (rows,) and tangents (p, rows) by `wrt`, as in `residuals`
     """
     parts = _residual_along(model, stretches, wrt, _bodies_that_lose_force(model))
-    return _relative(model, stretches, parts, len(wrt))
+    return _relative(model, stretches, parts)
 
 
 def both_residuals(
@@ -61,7 +61,7 @@ def both_residuals(
         ((residual, []) for _, _, residual in along.parts),
         _bodies_that_lose_force(model),
     )
-    relative = _relative(model, stretches, parts, 0)
+    relative = _relative(model, stretches, parts)
     return [r.value for r, _ in parts], [r for r, _ in relative]
 
 
@@ -69,7 +69,6 @@ def _relative(
     model: Model,
     stretches: Sequence[Stretch],
     parts: Sequence[tuple[Traced, Traced | None]],
-    parameters: int,
 ) -> list[tuple[Array, Array]]:
     """Residuals and tangents of `_residual_along`, scaled to the measured force."""
     scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
@@ -79,20 +78,32 @@ def _relative(
             for i, (s, (_, signal)) in enumerate(zip(stretches, parts, strict=True))
             if signal is not None and s.motion.body == place
         }
-        if not moving:
-            continue
-        whole = sum(stretches[i].measured for i in moving)
-        acting = sum(stretches[i].weight * float(m.value @ m.value) for i, m in moving.items())
-        acting = max(acting, 1e-12 * whole)
-        slope = sum(
-            (stretches[i].weight * (m.tangent @ m.value) for i, m in moving.items()),
-            np.zeros(parameters),
-        )
-        factor = float(np.sqrt(whole / acting))
-        for i in moving:
-            r, d = scaled[i]
-            scaled[i] = factor * r, factor * (d - np.outer(slope / acting, r))
+        if moving:
+            whole = sum(stretches[i].measured for i in moving)
+            with np.errstate(over="ignore", invalid="ignore"):
+                _scale(scaled, moving, [s.weight for s in stretches], whole)
     return scaled
+
+
+def _scale(
+    scaled: list[tuple[Array, Array]],
+    moving: Mapping[int, Traced],
+    weights: Sequence[float],
+    whole: float,
+) -> None:
+    """Scale the residuals of one body, in place, from its acting to its measured force.
+
+    moving: stretch -> its acting plus interaction force;  whole: squares of the measured force
+    A hidden body that grew beyond all numbers leaves NaN, which every search rejects; else a model
+    with an infinite acting force would leave nothing.
+    """
+    acting = sum(weights[i] * float(m.value @ m.value) for i, m in moving.items())
+    acting = max(acting, 1e-12 * whole) if np.isfinite(acting) else np.nan
+    slope = sum(weights[i] * (m.tangent @ m.value) for i, m in moving.items())
+    factor = float(np.sqrt(whole / acting))
+    for i in moving:
+        r, d = scaled[i]
+        scaled[i] = factor * r, factor * (d - np.outer(slope / acting, r))
 
 
 def _bodies_that_lose_force(model: Model) -> set[str]:

@@ -17,6 +17,7 @@ from .candidates import make_starts
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
+from .least_squares import sum_of_squares
 from .linear_start import linear_starts
 from .prepare import Prepared
 from .promise import Promises
@@ -166,7 +167,8 @@ def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
 
 
 def _squares(solution: Solution) -> float:
-    return float(solution.residual @ solution.residual)
+    """Sum of squares that a solution leaves; inf where its motion grows beyond all numbers."""
+    return sum_of_squares(solution.residual)
 
 
 def with_parameters_of(model: Model, other: Model) -> Model:

@@ -21,14 +21,18 @@ CHOSEN, PROPOSED = 0.1, 0.3
 #: a position shows a motion if its spectral density is above this multiple of that of reading
 #: noise: 10 dB
 ABOVE = 10.0
+#: the frequency below which this share of the squared velocity lies is that of the motion, and the
+#: bandwidth is at least `FULLY` times that frequency: the low-pass then passes 0.996 of the motion
+SHARE, FULLY = 0.9, 2.0
 
 
 def default_bandwidth(experiment: Experiment) -> float:
     """Default bandwidth in Hz: the positions still show acceleration and motion up to it.
 
     The highest frequency below a tenth of the sample rate at which the spectrum of the acceleration
-    is 10 dB above white reading noise. The steps of an encoder are not white noise: while they hide
-    most of the motion, the bandwidth is halved.
+    is 10 dB above white reading noise: the lowest one of all records, unless another record moves
+    faster than that. The steps of an encoder are not white noise: while they hide most of the
+    motion, the bandwidth is halved.
     """
     chosen = _highest_acceleration(experiment)
     while any(hides_motion(experiment, body, chosen) for body in experiment.bodies):
@@ -85,13 +89,24 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
 
 
 def _highest_acceleration(experiment: Experiment) -> float:
-    limits = []
+    limits, needed = [], [LOWEST]
     for name, record in _moving(experiment):
         rate = 1.0 / record.sample_time
         frequency, density, noise = _spectrum(record, name)
-        above_noise = frequency[(density > ABOVE * noise) & (frequency <= CHOSEN * rate)]
-        limits.append(above_noise.max() if above_noise.size else 0.02 * rate)
-    return float(max(min(limits), 1.0))
+        above = (density > ABOVE * noise) & (frequency <= CHOSEN * rate)
+        limits.append(frequency[above].max() if above.any() else 0.02 * rate)
+        needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
+    return float(max(min(limits), *needed))
+
+
+def _frequency_of_motion(record: Record, name: str) -> float:
+    """The frequency (Hz) below which `SHARE` of the squared velocity lies; 0 without a motion."""
+    frequency, density, noise = _spectrum(record, name, even_out=True)
+    above = (density > ABOVE * noise) & (frequency <= CHOSEN / record.sample_time)
+    velocity = np.where(above, density - noise, 0.0) * frequency**2
+    if not above.any():
+        return 0.0
+    return float(frequency[np.searchsorted(np.cumsum(velocity), SHARE * velocity.sum())])
 
 
 def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:

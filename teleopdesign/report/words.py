@@ -140,7 +140,8 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
         less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
-        others = f" {join_names(less)} helps, but is less likely than not." if less else ""
+        helps = "helps, but is" if len(less) == 1 else "help, but each is"
+        others = f" {join_names(less)} {helps} less likely than not." if less else ""
         added_words = "this effect" if len(added) == 1 else "all added effects"
         return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
     if not added:

@@ -52,6 +52,35 @@ def test_a_coarser_reading_is_compared_below_a_lower_frequency():
     assert share_in_motion(recorded(40.0), "device", coarse) > 0.5
 
 
+def joined(*frequencies):
+    """Records of 20 s, each a sine of one frequency (Hz), 0.2 rad, with noise of a step, 1 mrad."""
+    t = np.arange(8000) / 400.0
+    step, records = 1e-3, []
+    scatter = step * np.random.default_rng(0).standard_normal(len(t))
+    for k, f in enumerate(frequencies):
+        x = step * np.round((0.2 * np.sin(2 * np.pi * f * t) + scatter) / step)
+        columns = {"t": t, "x": x, "F": np.sign(np.cos(2 * np.pi * f * t))}
+        records.append(
+            td.experiment(
+                columns,
+                axis="revolute",
+                time="t",
+                position={"column": "x", "resolution": step},
+                actuator_force="F",
+                inertia=0.1,
+            ).records[0]
+        )
+        records[-1] = replace(records[-1], file=f"{k}.csv", use="fit" if k == 0 else "check")
+    return replace(recorded(1000.0), records=tuple(records))
+
+
+@pytest.mark.parametrize("frequencies", [(2.6, 0.4), (0.4, 2.6)])
+def test_a_slow_record_does_not_cut_off_the_motion_of_a_fast_one(frequencies):
+    slow, fast = (default_bandwidth(joined(f, f)) for f in sorted(frequencies))
+    together = default_bandwidth(joined(*frequencies))
+    assert slow < 2.6 < together == fast
+
+
 def test_a_bandwidth_too_high_for_the_samples_shows_no_motion():
     assert share_in_motion(recorded(1000.0), "device", 0.5 * RATE) == 0.0
 
