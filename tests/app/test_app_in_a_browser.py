@@ -138,6 +138,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         claims = page.get_by_text("proved: Coulomb friction")  # laid out twice, shown once
         claims.locator("visible=true").first.wait_for()
         page.get_by_role("tab", name="Diagram").click()
+        page.wait_for_timeout(500)  # the tab is shown as chosen
         picture(page, folder, "design", full_page=True)
         page.get_by_role("tab", name="Export").click()
         press(page, "Write report, answer, model and script")

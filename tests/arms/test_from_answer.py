@@ -151,7 +151,10 @@ def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
         ("describe", "of the force"),
         ("export --to urdf", "joint2.coulomb.level"),
         ("next", "next experiment"),
-        ("passivity --dahl 0.5 2000 --pose joint1=20deg", "largest f_D that is passive"),
+        (
+            "passivity --dahl 0.5 2000 --pose joint1=20deg",
+            "largest compensator level f_D for passivity",
+        ),
     ],
 )
 def test_one_joint_is_taken_from_the_answer(

@@ -71,7 +71,10 @@ def test_a_compensator_within_all_intervals_is_proved(answer, tmp_path, capsys):
     assert claims["search by simulation"]["status"] == "evidence"
     text = capsys.readouterr().out
     # 0.5 - 1.96 * 0.01 N
-    assert "largest f_D that is passive for every level in the interval: 0.4804 N" in text
+    assert (
+        "largest compensator level f_D for passivity at every level in the interval: 0.4804 N"
+        in text
+    )
     assert main(["passivity", "--check", str(out)]) == 0
     assert "2 certificates of 3 claims verified" in capsys.readouterr().out
 
