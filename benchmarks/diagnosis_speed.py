@@ -81,12 +81,12 @@ def cost_of(experiment: Experiment, model: Model | None, part: float, effects: i
     from teleopdesign import find_missing
 
     begin = time.process_time()
-    found = find_missing(experiment, model)
+    diagnosis = find_missing(experiment, model)
     seconds = time.process_time() - begin
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     samples = sum(len(r.time) for r in experiment.records)
     unit = 1 if sys.platform == "darwin" else 1024
-    return Cost(part, effects, samples, seconds, memory * unit, found.verdict)
+    return Cost(part, effects, samples, seconds, memory * unit, diagnosis.verdict)
 
 
 def measured(part: float, effects: int) -> Cost:

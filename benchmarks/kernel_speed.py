@@ -130,10 +130,10 @@ def engines(folder: Path) -> dict[str, tuple[int, Callable[[], np.ndarray]]]:
 
     def python_control() -> np.ndarray:
         options = {"rtol": 1e-6, "atol": 1e-9}
-        found = control.input_output_response(
+        response = control.input_output_response(
             system, grid, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
         )
-        return found.outputs[system.output_labels.index("L")]
+        return response.outputs[system.output_labels.index("L")]
 
     made: dict[str, tuple[int, Callable[[], np.ndarray]]] = {}
     if (c := compiled_c(folder)) is not None:

@@ -83,8 +83,8 @@ def reference(system: Any, grid: np.ndarray) -> np.ndarray:
         return np.asarray(system.dynamics(t, x, inputs))
 
     for start, end in zip(grid[:-1], grid[1:], strict=True):
-        found = solve_ivp(rate, (start, end), state, method="Radau", rtol=1e-10, atol=1e-13)
-        state = found.y[:, -1]
+        solution = solve_ivp(rate, (start, end), state, method="Radau", rtol=1e-10, atol=1e-13)
+        state = solution.y[:, -1]
         inputs[which] = position(end)
         friction.append(float(np.asarray(system.output(end, state, inputs))[row]))
     return np.array(friction)

@@ -206,10 +206,10 @@ def dask(points: int) -> None:
     options: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with LocalCluster(**options) as cluster, Client(cluster):
         for task in (waits, computes):
-            given = {"measures": {"value": value}, "scheduler": cluster.scheduler_address}
-            td.study(task, {"number": [-1.0, -2.0]}, **given)  # modules are read
+            arguments = {"measures": {"value": value}, "scheduler": cluster.scheduler_address}
+            td.study(task, {"number": [-1.0, -2.0]}, **arguments)  # modules are read
             started = time.perf_counter()
-            result = td.study(task, {"number": list(map(float, range(points)))}, **given)
+            result = td.study(task, {"number": list(map(float, range(points)))}, **arguments)
             wall, tasks = time.perf_counter() - started, float(result["value"].sum())
             print(
                 f"{points} tasks, {task.__name__} 1 s, two processes: {wall:.2f} s, tasks "

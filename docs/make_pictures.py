@@ -84,8 +84,8 @@ def _ladder(ax: Any, diagnosis: td.Diagnosis) -> None:
 
 
 if __name__ == "__main__":
-    found = td.find_missing(td.load_experiment(ROD))
-    print(found)
+    rod_diagnosis = td.find_missing(td.load_experiment(ROD))
+    print(rod_diagnosis)
     OUTPUT.parent.mkdir(exist_ok=True)
-    draw(found).savefig(OUTPUT, dpi=220)
+    draw(rod_diagnosis).savefig(OUTPUT, dpi=220)
     print(f"{OUTPUT.stat().st_size / 1000:.0f} kB")

@@ -42,8 +42,8 @@ def sections(rows: Mapping[str, Mapping[str, Any]]) -> str:
             picture = f"_static/recordings/{name}.png"
             parts.append(f"![Forces, residuals and ladder of {name}]({picture})\n")
         if row.get("left"):
-            said = "\n".join(f"- {sentence}" for sentence in row["left"])
-            parts.append(f"What the last model leaves:\n\n{said}\n")
+            sentences = "\n".join(f"- {sentence}" for sentence in row["left"])
+            parts.append(f"What the last model leaves:\n\n{sentences}\n")
     return "\n".join(parts)
 
 

@@ -74,8 +74,8 @@ def body(name: str | None) -> Body:
     """The plain device, with one effect beside."""
     numbers = dict(PLAIN)
     if name is not None:
-        own = td.EFFECTS[name].parameters
-        numbers |= {f"{name}.{p}": VALUES[name].get(p, 0.0) for p in own}
+        parameters = td.EFFECTS[name].parameters
+        numbers |= {f"{name}.{p}": VALUES[name].get(p, 0.0) for p in parameters}
     names = ("coulomb", "viscous", *((name,) if name else ()))
     parameters = {n: Value(v) for n, v in numbers.items()}
     return Body("prismatic", parameters, tuple(td.EFFECTS[n] for n in names))
@@ -113,8 +113,8 @@ def look_alikes(left: Mapping[str, NDArray[np.float64]]) -> str:
             n: float(r @ o / np.sqrt((r @ r) * (o @ o))) for n, o in left.items() if n != name
         }
         best = sorted(likeness, key=lambda n: -abs(likeness[n]))[:2]
-        said = ", ".join(f"{n} ({likeness[n]:+.2f})" for n in best)
-        lines.append(f"{name:<28} {np.sqrt(np.mean(r**2)):<14.3f} {said}")
+        names_of_best = ", ".join(f"{n} ({likeness[n]:+.2f})" for n in best)
+        lines.append(f"{name:<28} {np.sqrt(np.mean(r**2)):<14.3f} {names_of_best}")
     return "\n".join(lines) + "\n"
 
 

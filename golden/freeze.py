@@ -48,11 +48,11 @@ def derivations() -> dict[str, Any]:
     from teleopdesign.diagrams import SHIPPED, load_shipped
     from teleopdesign.realise.tips import linear_tips
 
-    found = {}
+    texts = {}
     for name in sorted(SHIPPED):
         transfers = all_transfers(linear_tips(load_shipped(name)))
-        found[name] = {"text": repr(transfers).splitlines(), "latex": transfers.latex().split("\n")}
-    return found
+        texts[name] = {"text": repr(transfers).splitlines(), "latex": transfers.latex().split("\n")}
+    return texts
 
 
 def simulations() -> dict[str, Any]:
@@ -98,8 +98,8 @@ def simulations() -> dict[str, Any]:
         whole = haptic_interface(plant, hand=device(), cancellation=cancel, force_feedback=feed)
         for case, diagram in four_cases(whole).items():
             for computer in ("continuous", Sampling(period=1e-3)):
-                said = "continuous" if isinstance(computer, str) else "sampled"
-                runs[f"haptic interface, {name}, {case}, {said}"] = simulate(
+                time_axis = "continuous" if isinstance(computer, str) else "sampled"
+                runs[f"haptic interface, {name}, {case}, {time_axis}"] = simulate(
                     diagram, duration=0.5, inputs={"R_V": push}, computer=computer
                 )
     link = controller("spring_damper", {"stiffness": 200.0, "damping": 3.0})
@@ -181,7 +181,7 @@ def pages() -> dict[str, Any]:
 
     _progress.BETWEEN_LINES = math.inf  # lines of progress tell how fast the machine is
     rod = str(example("rod"))
-    found = {}
+    texts = {}
     for words in (
         ["effects"],
         ["check-papers"],
@@ -191,13 +191,13 @@ def pages() -> dict[str, Any]:
         ["passivity", rod, "--dahl", "0.3", "20000", "--period", "0.001"],
         ["passivity", "haptic-interface"],
     ):
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
             status = main(words)
-        text = TIMED.sub("", said.getvalue().replace(rod, "rod").replace(str(ROOT), ""))
+        text = TIMED.sub("", output.getvalue().replace(rod, "rod").replace(str(ROOT), ""))
         name = " ".join("rod" if word == rod else word for word in words)
-        found[name] = {"status": status, "text": text.splitlines()}
-    return found
+        texts[name] = {"status": status, "text": text.splitlines()}
+    return texts
 
 
 def answers() -> dict[str, Any]:
@@ -231,23 +231,23 @@ def whole_recordings() -> dict[str, Any]:
     return _diagnosed({f.name: f for f in folders})
 
 
-def _diagnosed(folders: dict[str, Path], tried: Sequence[str] = ()) -> dict[str, Any]:
+def _diagnosed(folders: dict[str, Path], only: Sequence[str] = ()) -> dict[str, Any]:
     there = {n: f for n, f in folders.items() if (f / "experiment.toml").is_file()}
     with ProcessPoolExecutor(max_workers=2) as pool:
-        each = pool.map(_answer, there.values(), [tuple(tried)] * len(there))
+        each = pool.map(_answer, there.values(), [tuple(only)] * len(there))
         return dict(zip(there, each, strict=True))
 
 
-def _answer(folder: Path, tried: tuple[str, ...]) -> dict[str, Any]:
+def _answer(folder: Path, effects: tuple[str, ...]) -> dict[str, Any]:
     from teleopdesign.cli import main
 
     with tempfile.TemporaryDirectory() as scratch:
-        path, said = Path(scratch) / "answer.json", io.StringIO()
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
-            only = ["--only", *tried] if tried else []
+        path, errors = Path(scratch) / "answer.json", io.StringIO()
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
+            only = ["--only", *effects] if effects else []
             status = main(["diagnose", str(folder), *only, "--json", str(path)])
         if status != 0:
-            return {"status": status, "said": said.getvalue().strip().replace(str(folder), "")}
+            return {"status": status, "said": errors.getvalue().strip().replace(str(folder), "")}
         answer = json.loads(path.read_text(encoding="utf-8"))
     keep = ("verdict", "missing", "ladder", "noise_floor", "indistinguishable", "model_parameters")
     kept = {name: answer[name] for name in keep if name in answer}

@@ -48,15 +48,15 @@ def bounds() -> dict[str, str]:
 def installed(requirements: Iterable[str]) -> dict[str, Distribution]:
     """The distributions that requirements need, and those that these need, by name."""
     queue = [Requirement(r) for r in requirements]
-    seen: set[tuple[str, str]] = set()
+    pairs: set[tuple[str, str]] = set()
     result: dict[str, Distribution] = {}
     while queue:
         wanted = queue.pop()
         name = canonicalize_name(wanted.name)
         for extra in ("", *wanted.extras):
-            if (name, extra) in seen:
+            if (name, extra) in pairs:
                 continue
-            seen.add((name, extra))
+            pairs.add((name, extra))
             if name == PROJECT["name"]:
                 more = EXTRAS[extra] if extra else PROJECT["dependencies"]
             else:
@@ -105,8 +105,8 @@ def lock() -> str:
         f"# Written by `make lock` with Python {version} on {sys.platform}: versions that passed.",
         '# pip install -e ".[test,docs]" -c release/lock.txt',
     ]
-    found = installed([f"{PROJECT['name']}[docs,test]"])
-    return "\n".join([*head, *(f"{n}=={d.version}" for n, d in found.items())]) + "\n"
+    distributions = installed([f"{PROJECT['name']}[docs,test]"])
+    return "\n".join([*head, *(f"{n}=={d.version}" for n, d in distributions.items())]) + "\n"
 
 
 def licences() -> str:
@@ -127,9 +127,9 @@ def licences() -> str:
         "",
         *_on_copyleft(tables),
     ]
-    for title, found in tables.items():
+    for title, distributions in tables.items():
         lines += ["", f"## {title}", "", "| package | version | licence |", "| --- | --- | --- |"]
-        lines += [f"| {n} | {d.version} | {licence_of(d)} |" for n, d in found.items()]
+        lines += [f"| {n} | {d.version} | {licence_of(d)} |" for n, d in distributions.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -137,8 +137,8 @@ def _on_copyleft(tables: Mapping[str, Mapping[str, Distribution]]) -> list[str]:
     """A line for each package whose licence asks something of who hands code on."""
     named = [
         f"- `{name}` ({title.lower()}): {licence_of(package)}"
-        for title, found in tables.items()
-        for name, package in found.items()
+        for title, distributions in tables.items()
+        for name, package in distributions.items()
         if _COPYLEFT.search(licence_of(package))
     ]
     if not named:

@@ -45,13 +45,15 @@ def pysindy_columns(lib: Library) -> NDArray[np.intp]:
 
     y = lib.fit_target / np.sqrt(np.mean(lib.fit_target**2))
     fold = np.arange(len(y)) * FOLDS // len(y)
-    seen = [_compressed(lib.fit[fold != k], y[fold != k]) for k in range(FOLDS)]
+    training = [_compressed(lib.fit[fold != k], y[fold != k]) for k in range(FOLDS)]
     errors = np.empty((len(THRESHOLDS) + 1, FOLDS))
     for i, threshold in enumerate([*THRESHOLDS, np.inf]):
         for k in range(FOLDS):
-            columns = _stlsq(STLSQ, *seen[k], threshold)
+            columns = _stlsq(STLSQ, *training[k], threshold)
             unseen = fold == k
-            left = y[unseen] - lib.fit[unseen][:, columns] @ _solve(seen[k][0], columns, seen[k][1])
+            left = y[unseen] - lib.fit[unseen][:, columns] @ _solve(
+                training[k][0], columns, training[k][1]
+            )
             errors[i, k] = np.mean(left**2)
     mean = errors.mean(axis=1)
     best = int(np.argmin(mean))
@@ -130,7 +132,7 @@ def name_effects(lib: Library, columns: NDArray[np.intp]) -> list[Named]:
     for effect in effects:
         without = _left(lib, lib.of(*(e for e in effects if e != effect)))
         gain = float(without @ without - with_all @ with_all)
-        effects_named.append(Named(_told_apart(lib, effect, effects), _place(lib, effect), gain))
+        effects_named.append(Named(_delay_or_lag(lib, effect, effects), _place(lib, effect), gain))
     return [n for n in effects_named if n.gain > 0]
 
 
@@ -138,7 +140,7 @@ def _place(lib: Library, effect: str) -> str:
     return "environment" if effect in CONTACT else lib.body
 
 
-def _told_apart(lib: Library, effect: str, effects: list[str]) -> str:
+def _delay_or_lag(lib: Library, effect: str, effects: list[str]) -> str:
     """A delay or a lag, by the ratio of second coefficient to squared first one."""
     if effect != "actuation_delay":
         return effect

@@ -193,10 +193,10 @@ def run_campaign(
         running = {pool.submit(_run_one, folder, c, baselines): c for c in todo}
         try:
             for count, future in enumerate(as_completed(running), start=1):
-                case, said = running[future], future.result()
+                case, status = running[future], future.result()
                 spent = time.perf_counter() - began
                 left = duration(spent / count * (len(todo) - count))
-                text = describe(case) if said == "done" else said
+                text = describe(case) if status == "done" else status
                 print(f"[{count}/{len(todo)}] {case.name} {text}; {left} left", flush=True)
         except KeyboardInterrupt:
             pool.shutdown(wait=False, cancel_futures=True)

@@ -71,12 +71,12 @@ def diagnose(folder: Path, name: str) -> None:
     answers = folder / "answers"
     answers.mkdir(parents=True, exist_ok=True)
     part = answers / f"{name}.part{os.getpid()}.json"
-    began, said = time.process_time(), io.StringIO()
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
+    began, messages = time.process_time(), io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(messages):
         status = teleopdesign(["diagnose", str(folder / "cases" / name), "--json", str(part)])
     if status != 0:
         raise RuntimeError(
-            f"`teleopdesign diagnose` ended with {status}: {said.getvalue().strip()}"
+            f"`teleopdesign diagnose` ended with {status}: {messages.getvalue().strip()}"
         )
     answer = json.loads(part.read_text(encoding="utf-8"))
     part.unlink()

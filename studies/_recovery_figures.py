@@ -18,7 +18,7 @@ STYLE = "teleopdesign.plot.teleopdesign"
 COLOURS = {"best candidate": "#0072B2", "all candidates": "#D55E00"}
 
 
-def said(row: Row) -> str:
+def column_of(row: Row) -> str:
     """Column of the confusion figure: what was named first, or what was said instead."""
     if row.outcome in ("other place", "no answer"):
         return row.outcome
@@ -45,11 +45,11 @@ def plot_confusion(rows: Sequence[Row]) -> Figure:
     effects = {hidden(r) for r in rows}
     lines = [n for n in order if n in effects] + sorted(effects - set(order))
     columns = [n for n in lines if n in EFFECTS]
-    columns += sorted({said(r) for r in rows} - set(columns) - set(OTHER))
-    columns += [n for n in OTHER if any(said(r) == n for r in rows)]
+    columns += sorted({column_of(r) for r in rows} - set(columns) - set(OTHER))
+    columns += [n for n in OTHER if any(column_of(r) == n for r in rows)]
     count = np.zeros((len(lines), len(columns)), dtype=int)
     for r in rows:
-        count[lines.index(hidden(r)), columns.index(said(r))] += 1
+        count[lines.index(hidden(r)), columns.index(column_of(r))] += 1
     return _draw_confusion(count, lines, columns)
 
 
@@ -71,7 +71,7 @@ def _draw_confusion(count: np.ndarray, lines: list[str], columns: list[str]) -> 
 
 
 def plot_calibration(calibrations: Mapping[str, Calibration]) -> Figure:
-    """Share that was true against the probability that was said, with 95 % intervals."""
+    """Share that was true against the stated probability, with 95 % intervals."""
     with plt.style.context(STYLE):
         figure, axes = plt.subplots(figsize=(3.5, 3.0))
         axes.plot([0, 1], [0, 1], color="0.7", lw=0.8)
@@ -80,7 +80,7 @@ def plot_calibration(calibrations: Mapping[str, Calibration]) -> Figure:
             value = np.array([s.value for s in one.true])
             bounds = np.array([s.interval for s in one.true]).reshape(-1, 2)
             axes.errorbar(
-                one.said + shift,
+                one.stated + shift,
                 value,
                 yerr=np.abs(bounds.T - value),
                 fmt="o",
@@ -89,7 +89,7 @@ def plot_calibration(calibrations: Mapping[str, Calibration]) -> Figure:
                 color=COLOURS[name],
                 label=f"{name}: error {one.error:.3f}",
             )
-        axes.set(xlabel="probability that was said", ylabel="share that was true")
+        axes.set(xlabel="stated probability", ylabel="share of true names")
         axes.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
         axes.legend(loc="lower right")
     return figure

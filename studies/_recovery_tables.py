@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from _campaign import Planned
 from _scoring import (
-    FOUND,
+    CORRECT,
     SINGLE,
     Answer,
     Calibration,
@@ -149,9 +149,9 @@ def collect(folder: Path, cases: Sequence[Planned], methods: Sequence[str]) -> C
     return Campaign(tuple(rows), tuple(parameters), tuple(best), tuple(every), missing)
 
 
-def found(rows: Iterable[Row]) -> Share:
+def share_correct(rows: Iterable[Row]) -> Share:
     """Share of cases whose first name is right, or that list the look-alikes."""
-    return share(r.outcome in FOUND for r in rows)
+    return share(r.outcome in CORRECT for r in rows)
 
 
 def _is(*outcomes: str) -> Callable[[list[Row]], Share]:
@@ -160,7 +160,7 @@ def _is(*outcomes: str) -> Callable[[list[Row]], Share]:
 
 def _by_terms(rows: list[Row]) -> Share:
     """Found, of the effects that are a function of the motion and the command."""
-    return found(r for r in rows if r.true.partition("@")[0] not in WITH_MEMORY)
+    return share_correct(r for r in rows if r.true.partition("@")[0] not in WITH_MEMORY)
 
 
 def _names(rows: list[Row]) -> Share:
@@ -169,10 +169,10 @@ def _names(rows: list[Row]) -> Share:
 
 #: question of the main table -> levels of its cases, what is counted
 QUESTIONS: dict[str, tuple[tuple[str, ...], Callable[[list[Row]], Share]]] = {
-    "one clear effect: named first, or its look-alikes listed": (("clear",), found),
+    "one clear effect: named first, or its look-alikes listed": (("clear",), share_correct),
     "one clear effect: named, and nothing else": (("clear",), _is("right", "look-alike")),
     "one clear effect without a state of its own: first, or look-alikes": (("clear",), _by_terms),
-    "one weak effect: named first, or its look-alikes listed": (("weak",), found),
+    "one weak effect: named first, or its look-alikes listed": (("weak",), share_correct),
     "one weak effect: named, and nothing else": (("weak",), _is("right", "look-alike")),
     "two effects: exactly the two": (("double",), _is("right")),
     "nothing missing: false alarm": (("null",), _is("false alarm")),
@@ -205,9 +205,9 @@ def main_table(campaign: Campaign) -> str:
     lines.append(line([f"{over}: 95th percentile", quantile_text(ratios, 0.95), *empty]))
     inside = share(e.inside for e in campaign.estimates)
     lines.append(line(["true parameter inside its 95 % interval", inside, *empty]))
-    for name, found_here in calibrations(campaign).items():
-        low, high = found_here.interval
-        shown = f"{found_here.error:.3f} ({low:.3f} to {high:.3f}), n = {found_here.n}"
+    for name, one in calibrations(campaign).items():
+        low, high = one.interval
+        shown = f"{one.error:.3f} ({low:.3f} to {high:.3f}), n = {one.n}"
         lines.append(line([f"calibration error of `probability`, {name}", shown, *empty]))
     return "\n".join(lines)
 
@@ -229,7 +229,7 @@ def strata_table(campaign: Campaign) -> str:
         values = sorted({getattr(r, name) for r in campaign.of("answers", *SINGLE)})
         for value in values:
             cells = [
-                found(r for r in campaign.of(m, *SINGLE) if getattr(r, name) == value)
+                share_correct(r for r in campaign.of(m, *SINGLE) if getattr(r, name) == value)
                 for m in methods
             ]
             shown = f"{value:g} Hz" if isinstance(value, float) else value
@@ -249,7 +249,9 @@ def effects_table(campaign: Campaign, cannot: dict[str, frozenset[str]]) -> str:
         cells = []
         for m in methods:
             rows = [r for r in campaign.of(m, *SINGLE) if r.true.partition("@")[0] == effect]
-            cells.append("cannot express it" if effect in cannot.get(m, ()) else str(found(rows)))
+            cells.append(
+                "cannot express it" if effect in cannot.get(m, ()) else str(share_correct(rows))
+            )
         inside = share(e.inside for e in campaign.estimates if e.effect == effect)
         lines.append(line([f"`{effect}`", *cells, inside]))
     return "\n".join(lines)

@@ -35,7 +35,7 @@ from teleopdesign import EFFECTS
 
 Key = tuple[str, str]
 SINGLE = ("clear", "weak")
-FOUND = ("right", "right first", "look-alike")
+CORRECT = ("right", "right first", "look-alike")
 #: a name said with at least this probability is one that a user would act on
 CONFIDENT = 0.5
 #: without a measured interaction force nothing tells more inertia from more force per command
@@ -218,7 +218,7 @@ class Calibration:
     cases drawn anew (bootstrap)
     """
 
-    said: np.ndarray
+    stated: np.ndarray
     true: tuple[Share, ...]
     error: float
     interval: tuple[float, float]
@@ -251,7 +251,7 @@ def calibration(
         low, high = (float(q) for q in np.quantile(error(drawn), [0.025, 0.975]))
     filled = [b for b in range(bins) if (place == b).any()]
     return Calibration(
-        said=np.array([pairs[place == b, 0].mean() for b in filled]),
+        stated=np.array([pairs[place == b, 0].mean() for b in filled]),
         true=tuple(share(pairs[place == b, 1] > 0.5) for b in filled),
         error=whole,
         interval=(low, high),
@@ -285,12 +285,12 @@ def estimates(truth: Truth, answer: Answer) -> list[Estimate]:
         if key(effect) not in answer.named:
             continue
         candidate = next((c for c in answer.content["candidates"] if key(c) == key(effect)), {})
-        for name, said in candidate.get("parameters", {}).items():
+        for name, estimate in candidate.get("parameters", {}).items():
             true = effect["parameters"].get(name, {}).get("value")
-            if true is None or said["stderr"] is None or said["value"] is None:
+            if true is None or estimate["stderr"] is None or estimate["value"] is None:
                 continue
-            value = float(said["value"])
+            value = float(estimate["value"])
             if name == "phase":
                 value = true + math.remainder(value - true, 2 * math.pi)
-            rows.append(Estimate(effect["effect"], name, true, value, float(said["stderr"])))
+            rows.append(Estimate(effect["effect"], name, true, value, float(estimate["stderr"])))
     return rows

@@ -22,10 +22,10 @@ def values_over(model: Callable[..., Any], axes: Mapping[str, Any]) -> np.ndarra
 
     raises ModelError: a point failed, and why
     """
-    found = study(model, axes, measures={"value": _itself})
-    if found.failures:
-        raise ModelError(f"{model.__name__}: {next(iter(found.failures))}")
-    return np.asarray(found["value"].values)
+    dataset = study(model, axes, measures={"value": _itself})
+    if dataset.failures:
+        raise ModelError(f"{model.__name__}: {next(iter(dataset.failures))}")
+    return np.asarray(dataset["value"].values)
 
 
 def _itself(value: Any) -> Any:
@@ -38,7 +38,7 @@ def write_study(
     run: Callable[..., Any],
     *,
     quick: str = "fewer points",
-    said: Callable[[Any], str] | None = None,
+    text: Callable[[Any], str] | None = None,
     plot: Callable[[Any], matplotlib.figure.Figure] | None = None,
     figures: Callable[[Any], Mapping[str, matplotlib.figure.Figure]] | None = None,
     numbers: Callable[[Any], Any] | None = None,
@@ -46,7 +46,7 @@ def write_study(
     """Run with the command line's arguments; write figures (PDF, SVG, PNG) and numbers.
 
     path: the study's own file, which names what is written;  quick: what --quick does
-    said: of what `run` returns, the text that is printed (default: its finding, or itself)
+    text: of what `run` returns, the text that is printed (default: its finding, or itself)
     plot: draws it (default: its own plot), or figures: ending of the name -> figure
     numbers: what is written as netCDF (default: itself), and as JSON where it knows how
     """
@@ -56,7 +56,7 @@ def write_study(
     arguments = parser.parse_args()
     arguments.output.mkdir(parents=True, exist_ok=True)
     result = run(quick=arguments.quick)
-    print(said(result) if said else getattr(result, "attrs", {}).get("finding", result))
+    print(text(result) if text else getattr(result, "attrs", {}).get("finding", result))
     target = arguments.output / Path(path).stem
     drawn = figures(result) if figures else {"": plot(result) if plot else result.plot()}
     for ending, figure in drawn.items():

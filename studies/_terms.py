@@ -196,7 +196,7 @@ def _part(experiment: Experiment, body: str, use: str) -> _Part:
     return _Part(motion, signals, rows[motion.direction[rows] != 0])
 
 
-def _own(experiment: Experiment, body: str, now: Signals) -> Columns:
+def _known_terms(experiment: Experiment, body: str, now: Signals) -> Columns:
     """Terms of the user's model, all coefficients free; a fixed inertia's force is no term."""
     described = experiment.bodies[body]
     terms = [] if described.inertia is not None and described.inertia.fixed else [now.acceleration]
@@ -228,26 +228,26 @@ def _absent(experiment: Experiment, body: str, now: Signals) -> list[str]:
 def library(experiment: Experiment, body: str) -> Library:
     """Target and terms of one body of an experiment with one fit and one check record."""
     fit, check = (_part(experiment, body, use) for use in ("fit", "check"))
-    own_fit = fit.low(_own(experiment, body, fit.signals))
-    own_check = check.low(_own(experiment, body, check.signals))
+    known_fit = fit.low(_known_terms(experiment, body, fit.signals))
+    known_check = check.low(_known_terms(experiment, body, check.signals))
     fixed = experiment.bodies[body].inertia
     targets = [fit.target, check.target]
     if fixed is not None and fixed.fixed:
         for i, part in enumerate((fit, check)):
             targets[i] = targets[i] - fixed.value * part.low([part.signals.acceleration])[:, 0]
-    inverse = np.linalg.pinv(own_fit)
-    target = targets[0] - own_fit @ (inverse @ targets[0])
+    inverse = np.linalg.pinv(known_fit)
+    target = targets[0] - known_fit @ (inverse @ targets[0])
     effects: list[str] = []
     columns, on_check, sizes = [], [], []
     for name in _absent(experiment, body, fit.signals):
-        constant, free = _scanned(TERMS[name], fit, own_fit, inverse, target)
+        constant, free = _scanned(TERMS[name], fit, known_fit, inverse, target)
         raw_check = check.low(TERMS[name].columns(check.signals, constant))
         raw = fit.low(TERMS[name].columns(fit.signals, constant))
         size = np.sqrt(np.mean(free**2, axis=0)) + 1e-300
         effects += [name] * free.shape[1]
         sizes.append(size)
         columns.append(free / size)
-        on_check.append((raw_check - own_check @ (inverse @ raw)) / size)
+        on_check.append((raw_check - known_check @ (inverse @ raw)) / size)
     return Library(
         body=body,
         effect=tuple(effects),
@@ -255,12 +255,12 @@ def library(experiment: Experiment, body: str) -> Library:
         fit=np.concatenate(columns, axis=1),
         check=np.concatenate(on_check, axis=1),
         fit_target=target,
-        check_target=targets[1] - own_check @ (inverse @ targets[0]),
+        check_target=targets[1] - known_check @ (inverse @ targets[0]),
     )
 
 
 def _scanned(
-    term: Term, fit: _Part, own_fit: Array, inverse: Array, target: Array
+    term: Term, fit: _Part, known_fit: Array, inverse: Array, target: Array
 ) -> tuple[float, Array]:
     """The constant whose columns leave least of the target, and these without the model's own.
 
@@ -269,7 +269,7 @@ def _scanned(
 
     def free(constant: float) -> Array:
         raw = fit.low(term.columns(fit.signals, constant))
-        return raw - own_fit @ (inverse @ raw)
+        return raw - known_fit @ (inverse @ raw)
 
     def left(constant: float) -> float:
         columns = free(constant)

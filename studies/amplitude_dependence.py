@@ -54,7 +54,7 @@ def main() -> None:
         __doc__,
         run,
         quick="a coarse grid",
-        said=said,
+        text=summary,
         figures=lambda maps: {
             "": plot_spread(maps[0], model=maps[1]),
             "_two_columns": plot_spread(maps[0], model=maps[1], columns=2),
@@ -63,7 +63,7 @@ def main() -> None:
     )
 
 
-def said(maps: tuple[ImpedanceMap, ImpedanceMap]) -> str:
+def summary(maps: tuple[ImpedanceMap, ImpedanceMap]) -> str:
     """What was measured, and its spread."""
     spread = maps[0].spread()["size"].to_pandas().T.round(1)
     return f"{maps[0]!r}\nSpread over amplitude (dB), by frequency (Hz)\n{spread}"

@@ -51,7 +51,7 @@ DELAYS = np.linspace(0.5e-3, 20e-3, 40)  # s
 KNOWN = tuple(product(late.HANDS, (30.0, 100.0)))
 #: trials beside the limit: bandwidth (Hz) and delay (s) with any hand; delays (s) with known ones
 ANY_HAND = ((5.0, DELAY), (30.0, DELAY), (30.0, LONG), (100.0, DELAY))
-TRIED_DELAYS = (2e-3, 8e-3, 16e-3)
+DELAYS_OF_CLAIMS = (2e-3, 8e-3, 16e-3)
 BESIDE = (0.9, 1.1)  # share over its limit; growth and decay are then seen within seconds
 
 
@@ -212,7 +212,7 @@ def trials() -> xarray.Dataset:
         share = over * passive_share(bandwidth, delay=delay)
         rate = late.growth(share, bandwidth=bandwidth, delay=delay, hand=None)
         rows.append(("any", bandwidth, delay, share, over, rate))
-    for (name, bandwidth), delay, over in product(KNOWN, TRIED_DELAYS, BESIDE):
+    for (name, bandwidth), delay, over in product(KNOWN, DELAYS_OF_CLAIMS, BESIDE):
         hand = late.HANDS[name]
         share = over * late.stable_share(hand, bandwidth=bandwidth, delay=delay)
         rate = late.growth(share, bandwidth=bandwidth, delay=delay, hand=hand)
@@ -227,13 +227,13 @@ def trials() -> xarray.Dataset:
 def claims() -> dict[str, str]:
     """Limits of the continuous law at 30 Hz and 1 ms, settled by the package."""
     low = {"delay": DELAY, "time_constant": round(1 / late.pole(SLOW), 6)}
-    asked = [
+    cases = [
         {"cancelled": late.INERTIA, "delay": 0},
         {"cancelled": 0.01 * late.INERTIA, "delay": DELAY},
         *({"cancelled": round(c * 1e-2, 6), **low, "order": 2} for c in (1.0, 1.1)),
     ]
     listed = [
-        cancelled_inertia(inertia=late.INERTIA, damping=late.DAMPING, **values) for values in asked
+        cancelled_inertia(inertia=late.INERTIA, damping=late.DAMPING, **values) for values in cases
     ]
     return {claim.statement: claim.status for claim in listed}
 

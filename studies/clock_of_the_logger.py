@@ -78,7 +78,7 @@ def run(quick: bool = False) -> xr.Dataset:
         (EFFECTS[k % len(EFFECTS)], SEED + count + k, rows[k % len(rows)])
         for k in range(1 if quick else count)
     ]
-    found = []
+    cases = []
     with tempfile.TemporaryDirectory() as folder:
         for k, (effect, seed, shift) in enumerate(plan):
             experiment = drawn(Path(folder) / str(k), effect, seed)
@@ -88,11 +88,11 @@ def run(quick: bool = False) -> xr.Dataset:
             (late,) = diagnosis.model.record_shift.values()
             named = "+".join(c.effect.name for c in diagnosis.missing)
             estimated = late.value / experiment.records[0].sample_time
-            found.append((effect, named, diagnosis.verdict, shift, estimated))
-            print(seed, *found[-1], flush=True)
+            cases.append((effect, named, diagnosis.verdict, shift, estimated))
+            print(seed, *cases[-1], flush=True)
     names = ("missing", "named", "verdict", "written", "estimated")
-    columns = {n: ("case", list(c)) for n, c in zip(names, zip(*found, strict=True), strict=True)}
-    return xr.Dataset(columns).assign_attrs(finding=_finding(found))
+    columns = {n: ("case", list(c)) for n, c in zip(names, zip(*cases, strict=True), strict=True)}
+    return xr.Dataset(columns).assign_attrs(finding=_finding(cases))
 
 
 def _finding(rows: list[tuple[str, str, str, float, float]]) -> str:

@@ -81,13 +81,13 @@ def largest_level(holds: Callable[[float], bool], *, steps: int) -> float:
     return low
 
 
-def cycles_found(stiffness: float, *, steps: int) -> float:
+def limit_by_cycles(stiffness: float, *, steps: int) -> float:
     """Largest f_D at which no cycle was found that gives out energy, N."""
     friction = [Coulomb(MOTOR), Spring(LINK, CABLE)]
     return largest_level(lambda f: not gives_out(Dahl(f, stiffness), friction), steps=steps)
 
 
-def storage_found(
+def limit_by_storage(
     stiffness: float, *, steps: int, points: int, load_coefficient: float = 0.0
 ) -> float:
     """Largest f_D at which the available storage settles on the grid, N."""
@@ -119,11 +119,11 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     across = np.geomspace(0.3, 30.0, 8 if quick else 28)
     levels = np.linspace(0.1, 3.5, 8 if quick else 35)
     steps, points = (5, 25) if quick else (9, 41)
-    limits = np.array([cycles_found(CABLE * s, steps=steps) for s in softness])
-    stored = np.array([storage_found(CABLE * s, steps=steps, points=points) for s in softness])
+    limits = np.array([limit_by_cycles(CABLE * s, steps=steps) for s in softness])
+    stored = np.array([limit_by_storage(CABLE * s, steps=steps, points=points) for s in softness])
     capstan = np.array(
         [
-            storage_found(CABLE * s, steps=steps, points=points, load_coefficient=CAPSTAN)
+            limit_by_storage(CABLE * s, steps=steps, points=points, load_coefficient=CAPSTAN)
             for s in softness
         ]
     )

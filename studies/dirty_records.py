@@ -158,8 +158,8 @@ def _cell(data: Sequence[Any], size: str) -> str:
     reasons = [r for d in data if (r := str(d["failure"].values))]
 
     def values(name: str) -> np.ndarray:
-        found = [float(d[name].values) for d in data if name in d]
-        return np.array([x for x in found if x == x])
+        numbers = [float(d[name].values) for d in data if name in d]
+        return np.array([x for x in numbers if x == x])
 
     warnings, false = values("warnings"), values("false_names")
     named, undecided = values("is_named"), values("undecided")

@@ -50,7 +50,7 @@ DRIVEN = (
     20.0,
 )  # Hz; whole cycles in samples of 1 ms
 QUICK = (1.0, 4.0, 10.0)
-SETTLED = 0.6  # s; the slowest decay of hand and rods, 0.1 s, six times
+TRANSIENT = 0.6  # s; the slowest decay of hand and rods, 0.1 s, six times
 #: compensation -> gain of the force feedback, share of the friction that is cancelled
 COMPENSATIONS = {
     "none": (0.0, 0.0),
@@ -172,7 +172,7 @@ def driven(
     if inverted:
         rods = _inverse_at(frequency, gain) @ rods
     inputs = {f"R_D{n + 1}": partial(_sinusoid, r, frequency) for n, r in enumerate(rods)}
-    cycles = np.ceil(SETTLED * frequency) + np.ceil(0.5 * frequency)
+    cycles = np.ceil(TRANSIENT * frequency) + np.ceil(0.5 * frequency)
     return simulate(
         five.machine(gain=gain, share=share, **machine), duration=cycles / frequency, inputs=inputs
     )
@@ -187,7 +187,9 @@ def _sinusoid(phasor: complex, frequency: float, time: np.ndarray) -> np.ndarray
     return np.imag(phasor * np.exp(2j * np.pi * frequency * time))
 
 
-def settled(simulation: Simulation, signal: str, frequency: float) -> tuple[np.ndarray, np.ndarray]:
+def last_cycles(
+    simulation: Simulation, signal: str, frequency: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Time (n,) and the signals of all rods (n, 5) over the last whole cycles."""
     time = simulation.data["time"].values
     count = round(np.ceil(0.5 * frequency) / frequency / (time[1] - time[0]))
@@ -197,7 +199,7 @@ def settled(simulation: Simulation, signal: str, frequency: float) -> tuple[np.n
 
 def force_error(simulation: Simulation, wanted: np.ndarray, frequency: float) -> float:
     """Rms of G^T R_M - F_want over all coordinates, N."""
-    time, rods = settled(simulation, "R_M{}", frequency)
+    time, rods = last_cycles(simulation, "R_M{}", frequency)
     error = rods @ five.G - np.sin(2 * np.pi * frequency * time)[:, None] * wanted
     return float(np.sqrt((error**2).sum(axis=1).mean()))
 
@@ -234,8 +236,8 @@ def friction_at_hand(share: float) -> np.ndarray:
     rods = (turning[0] + 1j * turning[1]) @ np.linalg.inv(five.G)
     inputs = {f"R_D{n + 1}": partial(_sinusoid, r, 1.0) for n, r in enumerate(rods)}
     simulation = simulate(five.machine(share=share, gain=five.GAIN), duration=2.0, inputs=inputs)
-    _, friction = settled(simulation, "Z_M{}_friction", 1.0)
-    _, cancelled = settled(simulation, "R_MBC{}", 1.0)
+    _, friction = last_cycles(simulation, "Z_M{}_friction", 1.0)
+    _, cancelled = last_cycles(simulation, "R_MBC{}", 1.0)
     return np.asarray((cancelled - friction) @ five.G)
 
 

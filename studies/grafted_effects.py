@@ -44,7 +44,7 @@ NAME = "grafted_effects"
 #: times what the last model leaves
 SIZES = (1.0, 2.0, 4.0)
 #: times R: what is left of a graft is told in these steps
-SEEN = (0.5, 1.0, 2.0)
+STEPS_OF_VISIBILITY = (0.5, 1.0, 2.0)
 #: of the median speed: slower than that a machine stands still
 STANDSTILL = 0.02
 #: share of the command that a graft takes at most: no motor's torque varies by more, and a gear
@@ -149,10 +149,10 @@ def machine_of(name: str, experiment: td.Experiment, quick: bool) -> Machine:
     if len(experiment.bodies) != 1:
         raise td.ExperimentError(f"{name}: grafts are for recordings of a single body")
     (body,) = experiment.bodies
-    found = td.find_missing(
+    diagnosis = td.find_missing(
         experiment, plan=QUICK if quick else PLAN, among=("viscous",) if quick else None
     )
-    bandwidth = found.prepared.bandwidth
+    bandwidth = diagnosis.prepared.bandwidth
     parts = []
     for k, record in enumerate(experiment.records):
         for rows in record.segments:
@@ -176,9 +176,9 @@ def machine_of(name: str, experiment: td.Experiment, quick: bool) -> Machine:
         travel=float(np.ptp(position)),
         slow=float(np.quantile(speed[speed > still], 0.2)),
     )
-    model = replace(found.model, known=td.EFFECTS)
+    model = replace(diagnosis.model, known=td.EFFECTS)
     machine = Machine(name, experiment, model, bandwidth, 1.0, tuple(parts), scales)
-    return replace(machine, left=found.after.check_error * machine.force(experiment))
+    return replace(machine, left=diagnosis.after.check_error * machine.force(experiment))
 
 
 def _rms(parts: Sequence[Array]) -> float:
@@ -193,11 +193,11 @@ def grafted(machine: Machine, effect: str, size: float) -> td.Experiment | None:
     """
     (body,) = machine.experiment.bodies
     forces = [GRAFTS[effect].force(now, machine.scales) for *_, now in machine.parts]
-    seen = [
+    visible_forces = [
         _low_passed(force, machine.bandwidth, period)
         for (_, _, period, _), force in zip(machine.parts, forces, strict=True)
     ]
-    strength = size * machine.left / _rms(seen)
+    strength = size * machine.left / _rms(visible_forces)
     records = machine.experiment.records
     commands = [np.array(record.signals[f"{body}.actuator_force"]) for record in records]
     for (k, rows, _, now), force in zip(machine.parts, forces, strict=True):
@@ -225,24 +225,24 @@ def row_of(machine: Machine, effect: str, size: float, quick: bool) -> dict[str,
     experiment = grafted(machine, effect, size) if effect else machine.experiment
     if experiment is None:
         return None
-    found = td.find_missing(
+    diagnosis = td.find_missing(
         experiment,
         machine.model,
         plan=QUICK if quick else PLAN,
         among=("viscous", "spring") if quick else None,
     )
     force = machine.force(experiment)
-    alike = {group[0].effect.name: [c.effect.name for c in group] for group in found.groups}
+    alike = {group[0].effect.name: [c.effect.name for c in group] for group in diagnosis.groups}
     return {
         "recording": machine.name,
         "graft": effect,
         "size": size,
-        "named": [c.effect.name for c in found.missing],
-        "ladder": [rung.added.effect.name for rung in found.rungs if rung.added],
+        "named": [c.effect.name for c in diagnosis.missing],
+        "ladder": [rung.added.effect.name for rung in diagnosis.rungs if rung.added],
         "alike": alike,
-        "verdict": found.verdict,
-        "before": found.before.check_error * force / machine.left,
-        "after": found.after.check_error * force / machine.left,
+        "verdict": diagnosis.verdict,
+        "before": diagnosis.before.check_error * force / machine.left,
+        "after": diagnosis.after.check_error * force / machine.left,
     }
 
 
@@ -264,7 +264,7 @@ OUTCOMES = ("right", "among others", "leading", "missed", "false name")
 COLOURS = ("#1b7837", "#a6dba0", "#fdae61", "0.75", "#b2182b")
 
 
-def seen(row: Mapping[str, Any]) -> float:
+def visible_size(row: Mapping[str, Any]) -> float:
     """What the user's model, estimated again, leaves of a graft, times R.
 
     Its free parameters take up a part: a drag passes for friction, a spring for gravity.
@@ -279,9 +279,9 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
         "| --- " * (len(OUTCOMES) + 2) + "|",
     ]
     groups = {"no graft": [outcome(row) for row in rows if not row["graft"]]}
-    for low, high in itertools.pairwise((0.0, *SEEN, float("inf"))):
+    for low, high in itertools.pairwise((0.0, *STEPS_OF_VISIBILITY, float("inf"))):
         name = f"{low:g} R and more" if np.isinf(high) else f"{low:g} to {high:g} R"
-        groups[name] = [outcome(r) for r in rows if r["graft"] and low <= seen(r) < high]
+        groups[name] = [outcome(r) for r in rows if r["graft"] and low <= visible_size(r) < high]
     for name, judged in groups.items():
         counts = " | ".join(str(judged.count(one)) for one in OUTCOMES)
         lines.append(f"| {name} | {len(judged)} | {counts} |")
@@ -366,10 +366,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 continue
             rows.append(row)
             path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-            said = rows[-1]
+            last = rows[-1]
             print(
-                f"{name}: {effect or 'no graft'} {size:g}: {outcome(said)}; "
-                f"{', '.join(said['named'] or said['ladder']) or '-'} ({said['verdict']})",
+                f"{name}: {effect or 'no graft'} {size:g}: {outcome(last)}; "
+                f"{', '.join(last['named'] or last['ladder']) or '-'} ({last['verdict']})",
                 flush=True,
             )
     if not rows:

@@ -60,8 +60,8 @@ def _describe(folder: Path, case: Planned) -> str:
         return f"{case.level}: no machine meets this level"
     truth = load_truth(folder, case.name)
     row = row_of(case, truth, load_answer(folder / "answers" / f"{case.name}.json"), "answers")
-    said = row.named or row.groups or row.verdict
-    return f"{case.level:<8}{row.true or '-'} -> {said}: {row.outcome} ({row.seconds:.0f} s)"
+    answer = row.named or row.groups or row.verdict
+    return f"{case.level:<8}{row.true or '-'} -> {answer}: {row.outcome} ({row.seconds:.0f} s)"
 
 
 def write(campaign: Campaign, output: Path) -> str:

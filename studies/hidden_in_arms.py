@@ -89,13 +89,13 @@ class Row:
     """A judged case.
 
     size: rms of the hidden force over that of the joint's, check record; 0 where none is hidden
-    said: verdict or names;  before, after: check errors of the arm;  seconds: of processor time
+    name: verdict or names;  before, after: check errors of the arm;  seconds: of processor time
     """
 
     case: Case
     size: float
     outcome: str
-    said: str
+    name: str
     before: float
     after: float
     floor: float
@@ -157,7 +157,7 @@ def judged(case: Case, folder: Path) -> Row | None:
         case=case,
         size=hidden["size"],
         outcome=judge(case.truth, answer),
-        said=named or answer.verdict,
+        name=named or answer.verdict,
         before=ladder[0]["check_error"],
         after=ladder[-1]["check_error"],
         floor=answer.content["noise_floor"],
@@ -192,7 +192,7 @@ def details(rows: Sequence[Row]) -> str:
         errors = [f"{100 * x:.2f}" for x in (r.before, r.after, r.floor)]
         size = f"{100 * r.size:.1f}"
         about = [r.case.name, str(r.case.joints), f"{r.case.late:g}", hidden, size]
-        lines.append([*about, r.said, r.outcome, *errors])
+        lines.append([*about, r.name, r.outcome, *errors])
     head = ["case", "joints", "rows late", "hidden", "its force, %", "said", "outcome"]
     return _table([*head, "before, %", "after, %", "floor, %"], lines)
 
@@ -208,8 +208,8 @@ def _place(hidden: tuple[str, int, float]) -> tuple[str, int]:
 def plot(rows: Sequence[Row]) -> Figure:
     """Error of the arm before and after, over the size of what is hidden."""
     figure, axes = plt.subplots(figsize=(4.2, 3.2), layout="constrained")
-    for mark, found, label in (("o", True, "right"), ("x", False, "not right")):
-        mine = [r for r in rows if (r.outcome in RIGHT) == found]
+    for mark, is_right, label in (("o", True, "right"), ("x", False, "not right")):
+        mine = [r for r in rows if (r.outcome in RIGHT) == is_right]
         size, before, after = (
             [100 * getattr(r, name) for r in mine] for name in ("size", "before", "after")
         )
@@ -235,7 +235,7 @@ def write(rows: Sequence[Row], output: Path) -> str:
             "hidden": r.case.hidden,
             "late": r.case.late,
             "outcome": r.outcome,
-            "said": r.said,
+            "said": r.name,
             "errors": [r.before, r.after, r.floor],
             "size": r.size,
             "seconds": r.seconds,
@@ -271,7 +271,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 run(case, options.seed, folder, 10.0 if options.quick else SECONDS)
             if (row := judged(case, folder)) is not None:
                 rows.append(row)
-                print(case.name, case.joints, case.hidden, row.said, row.outcome, flush=True)
+                print(case.name, case.joints, case.hidden, row.name, row.outcome, flush=True)
         print(write(rows, options.output))
     print(f"written: {options.output / NAME}.md and others")
 

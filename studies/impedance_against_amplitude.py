@@ -42,7 +42,7 @@ def main() -> None:
         __doc__,
         run,
         quick="fewer amplitudes",
-        said=lambda maps: repr(maps[0]),
+        text=lambda maps: repr(maps[0]),
         figures=lambda maps: {
             "": maps[0].plot(model=maps[1]),
             "_two_columns": maps[0].plot(model=maps[1], columns=2),

@@ -98,7 +98,7 @@ def both(*, quick: bool = False) -> tuple[ImpedanceMap, ...]:
     return *run(quick=quick), *at_ten_millimetres(quick=quick)
 
 
-def said(maps: tuple[ImpedanceMap, ...]) -> str:
+def summary(maps: tuple[ImpedanceMap, ...]) -> str:
     """The map, and what the two readings make of MBC at 4 Hz."""
     lines = [
         f"A = {1e3 * factor:.3g} mm at 1 Hz: corner at {corner_of(factor):.3g} Hz, MBC at "
@@ -114,7 +114,7 @@ def main() -> None:
         __doc__,
         both,
         quick="fewer frequencies",
-        said=said,
+        text=summary,
         figures=lambda maps: {
             "": maps[0].plot(model=maps[1]),
             "_two_columns": maps[0].plot(model=maps[1], columns=2),

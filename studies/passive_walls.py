@@ -42,7 +42,7 @@ def body(*, period: float, damping: float, cancelled: float) -> dict[str, float]
     }
 
 
-def settled(bodies: dict[float, dict[str, float]], stiffnesses: np.ndarray) -> np.ndarray:
+def statuses_of(bodies: dict[float, dict[str, float]], stiffnesses: np.ndarray) -> np.ndarray:
     """Status of each wall (a row each) beside each body, keyed by the axis of the map."""
 
     def claim(x: float, stiffness: float) -> Claim:
@@ -63,7 +63,7 @@ def run(*, quick: bool = False) -> xarray.Dataset:
             {float(x): body(**{**fixed, name: float(x)}, cancelled=f) for x in values}
             for f in CANCELLED
         ]
-        status = np.array([settled(case, stiffnesses) for case in cases])
+        status = np.array([statuses_of(case, stiffnesses) for case in cases])
         limit = [[stiffest_spring(**b) for b in case.values()] for case in cases]
         data[f"over_{name}"] = (("cancelled", "stiffness", name), status)
         data[f"limit_over_{name}"] = (("cancelled", name), np.array(limit), {"units": "N/m"})

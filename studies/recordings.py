@@ -42,8 +42,8 @@ SENTENCES = 4
 
 def names_in(folder: Path | None) -> list[str]:
     """The recordings of a folder, then the public ones that it lacks."""
-    own = sorted(p.parent.name for p in folder.glob("*/experiment.toml")) if folder else []
-    return [*own, *(n for n in RECORDINGS if n not in own)]
+    names = sorted(p.parent.name for p in folder.glob("*/experiment.toml")) if folder else []
+    return [*names, *(n for n in RECORDINGS if n not in names)]
 
 
 def experiment_of(name: str, folder: Path | None, source: str | None) -> Experiment:
@@ -64,37 +64,37 @@ def row_of(
     plan, among = (QUICK if quick else PLAN), (only or None)
     is_arm = experiment.arm is not None
     find = find_missing_in_arm if is_arm else td.find_missing
-    found: Any = find(experiment, plan=plan, among=among)
-    taken = time.perf_counter() - wall, time.process_time() - processor
-    return described(found, output, name) | {
-        "seconds": {"wall": taken[0], "processor": taken[1]},
+    diagnosis: Any = find(experiment, plan=plan, among=among)
+    seconds = time.perf_counter() - wall, time.process_time() - processor
+    return described(diagnosis, output, name) | {
+        "seconds": {"wall": seconds[0], "processor": seconds[1]},
         "only": list(only),
         "quick": quick,
     }
 
 
-def described(found: Any, output: Path, name: str) -> dict[str, Any]:
+def described(diagnosis: Any, output: Path, name: str) -> dict[str, Any]:
     """What a diagnosis, or that of an arm, says of a recording; its figure beside the table."""
-    is_arm, learned = found.experiment.arm is not None, found.learnable
-    save_figure(found.plot(), output / name)
+    is_arm, learned = diagnosis.experiment.arm is not None, diagnosis.learnable
+    save_figure(diagnosis.plot(), output / name)
     row = {
-        "verdict": found.verdict,
+        "verdict": diagnosis.verdict,
         "ladder": [
             {"added": rung.title or None, "check_error": rung.fit.check_error}
-            for rung in found.rungs
+            for rung in diagnosis.rungs
         ],
-        "missing": [str(c) for c in found.missing],
-        "text": str(found).replace(str(found.experiment.folder), name),
-        "floor": found.floor if is_arm else found.floor.value,
+        "missing": [str(c) for c in diagnosis.missing],
+        "text": str(diagnosis).replace(str(diagnosis.experiment.folder), name),
+        "floor": diagnosis.floor if is_arm else diagnosis.floor.value,
         "trees": None if learned is None else learned.alone,
         "learnable": None if learned is None else learned.error,
     }
     if is_arm:
         return row
-    left = where_it_fails(found.after, found.prepared, found.floor)[:SENTENCES]
+    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)[:SENTENCES]
     return row | {
-        "indistinguishable": [[str(c) for c in group] for group in found.groups],
-        "cannot_tell": [str(one) for one in found.undetermined],
+        "indistinguishable": [[str(c) for c in group] for group in diagnosis.groups],
+        "cannot_tell": [str(one) for one in diagnosis.undetermined],
         "left": [one.sentence for one in left],
     }
 
@@ -111,10 +111,10 @@ def table(rows: Mapping[str, Mapping[str, Any]]) -> str:
             continue
         first, last = (row["ladder"][i]["check_error"] for i in (0, -1))
         trees = "-" if row["trees"] is None else f"{100 * row['trees']:.2f} %"
-        tried = f", of {len(row['only'])} effects" if row["only"] else ""
+        selection = f", of {len(row['only'])} effects" if row["only"] else ""
         lines.append(
             f"| `{name}` | {100 * first:.2f} % | {100 * last:.2f} % | {trees} | {_named(row)} | "
-            f"{row['seconds']['processor']:.0f} s{tried} |"
+            f"{row['seconds']['processor']:.0f} s{selection} |"
         )
     return "\n".join(lines)
 

@@ -67,7 +67,7 @@ def run(*, quick: bool = False) -> tuple[Study, Study, float]:
     return grid, drawn, friction if claim.status == "proved" else float("nan")
 
 
-def said(result: tuple[Study, Study, float]) -> str:
+def summary(result: tuple[Study, Study, float]) -> str:
     """How many simulations, and whether any of them grows where it is proved passive."""
     grid, drawn, limit = result
     within = grid["growth"].sel({LEVEL: slice(None, limit)})
@@ -104,4 +104,4 @@ def numbers(result: tuple[Study, Study, float]) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, said=said, figures=figures, numbers=numbers)
+    write_study(__file__, __doc__, run, text=summary, figures=figures, numbers=numbers)

@@ -72,8 +72,8 @@ def worst_turn(late: int) -> float:
     if late == 1:
         return math.pi
     angle = np.linspace(0.01, math.pi, 4000)
-    given = -np.sin((late + 0.5) * angle) * np.sin(angle / 2) / (angle / 2) / angle
-    return float(angle[np.argmax(given)])
+    energy = -np.sin((late + 0.5) * angle) * np.sin(angle / 2) / (angle / 2) / angle
+    return float(angle[np.argmax(energy)])
 
 
 def held(late: int, period: float, stiffness: float, *, free: bool) -> Diagram:

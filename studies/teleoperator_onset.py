@@ -36,7 +36,7 @@ from teleopdesign.simulate import Trajectory, simulate
 
 FRICTION, MASTER, SLAVE = 1.0, 0.1, 0.3  # N, kg, kg
 COUPLING, DAMPING = 2000.0, 1.0  # P, N/m, and D, N s/m, of the map that does not vary it
-OWN_DAMPING = 0.2  # b of the slave, N s/m
+SLAVE_DAMPING = 0.2  # b of the slave, N s/m
 CONTACT = 0.25  # k_e/P of the map that does not vary it
 AMPLITUDE = 5e-3  # m: there the coupling pulls ten times as hard as friction
 LENGTHS = 5.0  # u: bristle lengths of the compensator in that amplitude
@@ -50,7 +50,7 @@ def machine(share: float, *, damping: float, contact: float) -> Diagram:
     """
     bare = td.Body("prismatic", {"inertia": td.Value(MASTER)})
     slave = bare.with_values({"inertia": SLAVE})
-    slave = slave.with_effect(td.EFFECTS["viscous"], {"damping": OWN_DAMPING})
+    slave = slave.with_effect(td.EFFECTS["viscous"], {"damping": SLAVE_DAMPING})
     slave = slave.with_effect(td.EFFECTS["coulomb"], {"level": FRICTION})
     spring = td.Body("prismatic", {"inertia": td.Value(0.0)})
     spring = spring.with_effect(td.EFFECTS["spring"], {"stiffness": contact * COUPLING})
@@ -98,8 +98,8 @@ def growth(share: float, *, damping: float, contact: float) -> float:
 
 def balance(*, damping: float, contact: float) -> float:
     """f_D/f_C at which a cycle of that amplitude gives out just what the dampers take."""
-    taken = math.pi / 4 * (damping + OWN_DAMPING) * swing(contact) * AMPLITUDE
-    return largest_ratio(LENGTHS) * (1 + taken / FRICTION)
+    loss = math.pi / 4 * (damping + SLAVE_DAMPING) * swing(contact) * AMPLITUDE
+    return largest_ratio(LENGTHS) * (1 + loss / FRICTION)
 
 
 def run(*, quick: bool = False) -> xarray.Dataset:

@@ -133,25 +133,25 @@ def run(quick: bool = False) -> xr.Dataset:
     return xr.Dataset(data, coords, attrs={"duration_s": float(times[-1])})
 
 
-def said(found: xr.Dataset) -> str:
+def summary(data: xr.Dataset) -> str:
     """A line for each machine, engine and setting."""
     lines = [f"{'machine':<18}{'engine':<16}{'error':>10}{'ms':>10}"]
-    for machine in found["machine"].values:
-        for engine in found["engine"].values:
-            one = found.sel(machine=machine, engine=engine)
+    for machine in data["machine"].values:
+        for engine in data["engine"].values:
+            one = data.sel(machine=machine, engine=engine)
             for e, s in zip(one["error"].values, one["seconds"].values, strict=True):
                 if np.isfinite(e):
                     lines.append(f"{machine:<18}{engine:<16}{e:>10.1e}{1e3 * s:>10.2f}")
     return "\n".join(lines)
 
 
-def plot(found: xr.Dataset) -> Figure:
+def plot(data: xr.Dataset) -> Figure:
     """Error over processor time, a panel for each machine."""
-    names = found["machine"].values
+    names = data["machine"].values
     figure, panels = plt.subplots(1, len(names), figsize=(3.6 * len(names), 3.2), squeeze=False)
     for panel, machine in zip(panels[0], names, strict=True):
-        for engine in found["engine"].values:
-            one = found.sel(machine=machine, engine=engine)
+        for engine in data["engine"].values:
+            one = data.sel(machine=machine, engine=engine)
             panel.loglog(1e3 * one["seconds"], one["error"], "o-", label=engine)
         panel.set(title=machine, xlabel="processor time (ms)", ylabel="error of position / range")
         panel.grid(True, alpha=0.3)
@@ -161,4 +161,4 @@ def plot(found: xr.Dataset) -> Figure:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__ or "", run, quick="one machine, 50 ms", said=said, plot=plot)
+    write_study(__file__, __doc__ or "", run, quick="one machine, 50 ms", text=summary, plot=plot)

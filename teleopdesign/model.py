@@ -178,9 +178,9 @@ class Model:
         return place, local_name
 
     def _refuse_parameter(self, name: object) -> None:
-        said = f'"{name}"' if isinstance(name, str) else describe_value(name)
+        shown = f'"{name}"' if isinstance(name, str) else describe_value(name)
         near = did_you_mean(name, self.parameters) if isinstance(name, str) else ""
-        raise ModelError(f"model: no parameter {said}{near}")
+        raise ModelError(f"model: no parameter {shown}{near}")
 
     @check_types
     def declared(self, name: str) -> Parameter:

@@ -33,10 +33,12 @@ def takes_less_than(seconds):
     """Fails what takes more processor time than that, on a machine of the reference's pace."""
     start = time.process_time()
     yield
-    taken = time.process_time() - start
-    if taken >= seconds:
+    duration = time.process_time() - start
+    if duration >= seconds:
         allowed = seconds * slowness()
-        assert taken < allowed, f"took {taken:.3g} s of processor time, allowed {allowed:.3g} s"
+        assert duration < allowed, (
+            f"took {duration:.3g} s of processor time, allowed {allowed:.3g} s"
+        )
 
 
 @contextmanager

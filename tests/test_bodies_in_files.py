@@ -27,9 +27,9 @@ ALL = with_block_effects(EFFECTS)
 
 def in_an_experiment(lines, folder):
     """The device of the rod's experiment, described by these lines."""
-    own = folder / f"{len(list(folder.iterdir()))}"
-    own.mkdir()
-    file = write_rod(own / "rod") / "experiment.toml"
+    case = folder / f"{len(list(folder.iterdir()))}"
+    case.mkdir()
+    file = write_rod(case / "rod") / "experiment.toml"
     text = file.read_text()
     begin, end = text.index("[model.device]"), text.index("[channels]")
     text = text[:begin] + "\n".join(["[model.device]", *lines, ""]) + text[end:]
@@ -61,10 +61,10 @@ def same(one, other):
 
 def with_needs(name):
     """The effect with those that it needs beside it, in an order that a body may have."""
-    found = []
+    effects = []
     for need in sorted(ALL[name].needs):
-        found += with_needs(need)
-    return [*found, ALL[name]]
+        effects += with_needs(need)
+    return [*effects, ALL[name]]
 
 
 def body_with(name, axis, number=0.3):
@@ -113,7 +113,7 @@ def test_a_plain_number_is_in_si_and_a_unit_is_converted(at, tmp_path):
 
 @pytest.mark.parametrize("at", PLACES)
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("level = 0.5", 'level = { value = 1, unit = "kg" }',
          'effects.coulomb.level.unit: found "kg", expected a force such as "N" or "mN"'),
@@ -133,19 +133,19 @@ def test_a_plain_number_is_in_si_and_a_unit_is_converted(at, tmp_path):
          "`teleopdesign effects`)"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_the_same_sentence_in_every_file(at, old, new, said, tmp_path):
+def test_a_mistake_is_the_same_sentence_in_every_file(at, old, new, message, tmp_path):
     file = {"model.device": "rod/experiment.toml", "blocks.Z_M": "loop.toml"}[at]
     with pytest.raises(ExperimentError) as caught:
         PLACES[at](lines_with(at, old, new), tmp_path)
-    dot = "" if said.startswith(":") else "."
-    assert str(caught.value) == f"{file}: {at}{dot}{said}"
+    dot = "" if message.startswith(":") else "."
+    assert str(caught.value) == f"{file}: {at}{dot}{message}"
 
 
 def test_open_parameters_are_for_experiments_alone(tmp_path):
     """A fit finds what is left open; a diagram has none."""
     lines = ['axis = "prismatic"', "inertia = 1", "[{at}.effects.viscous]"]
-    found = in_an_experiment([x.replace("{at}", "model.device") for x in lines], tmp_path)
-    assert found.parameters["viscous.damping"].value == 0.0 and found.effects[0].name == "viscous"
+    body = in_an_experiment([x.replace("{at}", "model.device") for x in lines], tmp_path)
+    assert body.parameters["viscous.damping"].value == 0.0 and body.effects[0].name == "viscous"
     with pytest.raises(ExperimentError, match='effects.viscous: no key "damping", expected a num'):
         in_a_diagram([x.replace("{at}", "blocks.Z_M") for x in lines], tmp_path)
 

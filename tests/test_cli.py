@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from diagnose.contract import violations
-from own_effect import OWN
+from users_effect import SOURCE
 
 import teleopdesign
 from teleopdesign import EFFECTS
@@ -99,7 +99,7 @@ def test_an_effects_page_has_its_text_parameters_and_source(name, capsys):
 
 def test_a_users_effect_has_a_page(tmp_path, capsys):
     file = tmp_path / "own_drag.py"
-    file.write_text(OWN)
+    file.write_text(SOURCE)
     assert main(["effects", "own_drag", "--effect", str(file)]) == 0
     assert "F = D v abs(v)" in capsys.readouterr().out
 
@@ -108,7 +108,7 @@ def test_a_users_effect_has_a_page(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_a_missing_folder_is_one_line_also_in_a_process_of_its_own(tmp_path):
+def test_a_missing_folder_is_one_line_also_in_a_separate_process(tmp_path):
     done = run("diagnose", tmp_path / "nothing")
     assert done.returncode == 2
     assert done.stderr.splitlines() == [f"teleopdesign: {'nothing'}: no such folder"]
@@ -209,7 +209,7 @@ AS_LOGGED = {
         pytest.param("samples left out", marks=pytest.mark.slow),
     ],
 )
-def test_what_a_logger_did_to_a_record_is_read_and_told(flaw, rod, capsys):
+def test_what_a_logger_did_to_a_record_is_read_and_reported(flaw, rod, capsys):
     change, expected = AS_LOGGED[flaw]
     main(["check", str(with_plain_record(rod, change))])
     out = capsys.readouterr()
@@ -244,7 +244,7 @@ def test_a_folder_in_place_of_a_result_is_refused(rod, tmp_path, capsys):
 @pytest.mark.parametrize("command", [["effects"], ["diagnose", str(ROD)]])
 def test_a_bad_effect_file_is_one_line(command, tmp_path, capsys):
     file = tmp_path / "own_drag.py"
-    file.write_text(OWN.replace("EFFECT =", "OTHER ="))
+    file.write_text(SOURCE.replace("EFFECT =", "OTHER ="))
     assert "found no EFFECT" in refused(capsys, *command, "--effect", file)
     assert "no such effect file" in refused(capsys, *command, "--effect", tmp_path / "none.py")
 
@@ -289,11 +289,11 @@ def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
 @pytest.mark.slow
 def test_a_users_effect_takes_part_in_a_diagnosis(short_rod, few, tmp_path):
     file = tmp_path / "own_drag.py"
-    file.write_text(OWN)
+    file.write_text(SOURCE)
     result = tmp_path / "answer.json"
     assert main(["diagnose", str(short_rod), "--effect", str(file), "--json", str(result)]) == 0
-    tried = {c["effect"] for c in json.loads(result.read_text())["candidates"]}
-    assert "own_drag" in tried
+    names = {c["effect"] for c in json.loads(result.read_text())["candidates"]}
+    assert "own_drag" in names
 
 
 @pytest.mark.slow
@@ -302,10 +302,10 @@ def test_the_demo_names_the_effect_and_writes_its_files(tmp_path, capsys):
     assert "written: " in capsys.readouterr().out
     files = {p.name for p in (tmp_path / "demo").iterdir()}
     assert files == {"answer.json", "predictions.csv.gz", "ladder.png", "report.html"}
-    found = json.loads((tmp_path / "demo" / "answer.json").read_text())
-    assert violations(found) == []
-    assert found["verdict"] == "effects_missing"
-    assert found["missing"] == [{"effect": "stribeck", "at": "device"}]
+    answer = json.loads((tmp_path / "demo" / "answer.json").read_text())
+    assert violations(answer) == []
+    assert answer["verdict"] == "effects_missing"
+    assert answer["missing"] == [{"effect": "stribeck", "at": "device"}]
 
 
 def test_a_reader_that_stops_early_is_no_error():

@@ -22,26 +22,26 @@ NAMED = {"clarabel", "furo", "myst-parser", "sphinx"}
 
 def names(requirements):
     """Distributions of a list of requirements, without versions and extras."""
-    found = [re.match(r"[A-Za-z0-9-]+", r)[0] for r in requirements]
-    return {n for n in found if n != PROJECT["name"]}
+    distributions = [re.match(r"[A-Za-z0-9-]+", r)[0] for r in requirements]
+    return {n for n in distributions if n != PROJECT["name"]}
 
 
 def imported(trees):
     """Top-level modules that these syntax trees import, by name or by import_module."""
-    found = set()
+    modules = set()
     for tree in trees:
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
-                found |= {a.name for a in node.names}
+                modules |= {a.name for a in node.names}
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
-                found.add(node.module)
+                modules.add(node.module)
             elif isinstance(node, ast.Call) and node.args:
                 first = node.args[0]
                 if isinstance(first, ast.Constant) and isinstance(first.value, str):
                     name = getattr(node.func, "attr", getattr(node.func, "id", ""))
                     if name in ("import_module", "find_spec", "importorskip"):
-                        found.add(first.value)
-    return {name.partition(".")[0] for name in found}
+                        modules.add(first.value)
+    return {name.partition(".")[0] for name in modules}
 
 
 # read when a test asks, not when tests are collected: every process of a run collects
@@ -73,8 +73,8 @@ def test_a_dependency_of_an_extra_is_imported_somewhere(name):
 
 
 def test_the_package_imports_only_what_it_asks_for():
-    asked = {MODULES.get(n, n) for n in CORE.union(*EXTRAS.values())}
+    modules = {MODULES.get(n, n) for n in CORE.union(*EXTRAS.values())}
     # markupsafe comes with jinja2, whose documentation says to import it from there; llvmlite with
     # numba, in the one version that it works with
-    known = {*asked, *sys.stdlib_module_names, "teleopdesign", "markupsafe", "llvmlite"}
+    known = {*modules, *sys.stdlib_module_names, "teleopdesign", "markupsafe", "llvmlite"}
     assert known >= imported_by_the_package()

@@ -21,9 +21,9 @@ def script():
 
 def test_every_effect_that_is_drawn_has_a_value_for_each_parameter_that_it_needs(script):
     for name, values in script.VALUES.items():
-        own = EFFECTS[name].parameters
-        needed = {p for p, parameter in own.items() if not parameter.optional}
-        assert needed <= set(values) <= set(own), name
+        parameters = EFFECTS[name].parameters
+        needed = {p for p, parameter in parameters.items() if not parameter.optional}
+        assert needed <= set(values) <= set(parameters), name
 
 
 def test_the_printed_table_has_the_effects_that_are_drawn(script):

@@ -44,9 +44,9 @@ def test_the_names_are_those_that_type_checkers_see():
     """The lazy names and the imports for type checkers are the same."""
     tree = ast.parse(Path(td.__file__).read_text())
     (block,) = [n for n in tree.body if isinstance(n, ast.If)]
-    seen = [a.asname or a.name for f in block.body for a in f.names if f.module]
+    imported_names = [a.asname or a.name for f in block.body for a in f.names if f.module]
     further = [name for names in td.FURTHER.values() for name in names]
-    assert sorted(seen) == sorted([*td.__all__, *further])
+    assert sorted(imported_names) == sorted([*td.__all__, *further])
 
 
 def test_an_unknown_name_is_an_attribute_error():

@@ -19,18 +19,18 @@ def test_what_a_compiled_function_calls_in_other_files_counts_for_it():
 
 def test_generated_source_is_compiled_anew_where_what_it_imports_has_changed(monkeypatch):
     source = "from teleopdesign.realise.lane_exp import exp\n\n\ndef f(x):\n    return exp(x)\n"
-    asked = []
+    calls = []
 
     def hashed(files):
-        asked.append([Path(f) for f in files])
-        return f"state {len(asked)}"
+        calls.append([Path(f) for f in files])
+        return f"state {len(calls)}"
 
     monkeypatch.setattr(compiled, "hash_files", hashed)
     monkeypatch.setattr(compiled, "cache_folder", lambda: None)
     make = compiled.compiled_module.__wrapped__
     names = [make(source, "f")["__name__"] for _ in range(2)]
     assert names[0] != names[1]
-    assert asked == [[Path(lane_exp.__file__)]] * 2
+    assert calls == [[Path(lane_exp.__file__)]] * 2
 
 
 def test_a_file_that_is_gone_counts_as_empty(tmp_path):
@@ -63,10 +63,10 @@ print(outer(1.0))
 @pytest.mark.slow
 def test_a_caller_does_not_go_on_with_what_an_old_callee_did(tmp_path):
     (tmp_path / "outer.py").write_text(OUTER)
-    said = []
+    outputs = []
     for factor in ("2.0", "30.0"):
         (tmp_path / "inner.py").write_text(INNER.format(factor=factor))
         command = [sys.executable, "outer.py"]
         run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
-        said.append(run.stdout.strip())
-    assert said == ["3.0", "31.0"]
+        outputs.append(run.stdout.strip())
+    assert outputs == ["3.0", "31.0"]

@@ -69,14 +69,14 @@ def test_an_effect_added_and_taken_away_leaves_the_model_as_it_was(name, model):
     assert less.parameters == base.parameters and less.effects == base.effects
 
 
-def test_an_effect_of_ones_own_takes_part(model):
-    own = Effect(
+def test_an_effect_of_the_user_takes_part(model):
+    effect = Effect(
         role="force",
         law=lambda now, p: p.drag * now.velocity,
         parameters={"drag": Parameter("damping", "any")},
         absent={"drag": 0.0},
     ).named("own", "Own.")
-    more = model.with_effect(own, values={"drag": 2.0})
+    more = model.with_effect(effect, values={"drag": 2.0})
     assert more.parameters["device.own.drag"].value == 2.0
     assert "device.own.drag = 2 N*s/m" in repr(more)
 

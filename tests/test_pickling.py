@@ -40,10 +40,10 @@ def test_a_deep_copy_is_equal_and_prints_alike(make):
 def test_what_is_equal_has_the_same_hash(make):
     thing = make()
     try:
-        own = hash(thing)
+        value = hash(thing)
     except TypeError:
         pytest.skip("holds a mapping that can be changed: no hash")
-    assert hash(pickle.loads(pickle.dumps(thing))) == own
+    assert hash(pickle.loads(pickle.dumps(thing))) == value
 
 
 @pytest.mark.parametrize("make", EVERY)
@@ -77,7 +77,7 @@ def test_catalogued_things_stay_themselves():
         assert pickle.loads(pickle.dumps(law)) is td.CONTROLLERS[name]
 
 
-OWN = '''"""Own drag."""
+SOURCE = '''"""Own drag."""
 
 from teleopdesign import Effect, Parameter
 
@@ -97,7 +97,7 @@ EFFECT = Effect(
 
 def test_an_effect_file_pickles_by_its_path_and_is_refused_when_it_has_changed(tmp_path):
     file = tmp_path / "own.py"
-    file.write_text(OWN)
+    file.write_text(SOURCE)
     effect = td.load_effect(file)
     assert td.load_effect(file) is effect
     data = pickle.dumps(BODY.with_effect(effect, {"drag": 1.0}))
@@ -105,7 +105,7 @@ def test_an_effect_file_pickles_by_its_path_and_is_refused_when_it_has_changed(t
     code = "import pickle, sys; print(pickle.load(sys.stdin.buffer).parameters['own.drag'].value)"
     run = subprocess.run([sys.executable, "-c", code], input=data, capture_output=True, check=True)
     assert run.stdout.split() == [b"1.0"]
-    file.write_text(OWN.replace("now.velocity", "now.position"))
+    file.write_text(SOURCE.replace("now.velocity", "now.position"))
     changed = td.load_effect(file)
     assert changed is not effect and changed != effect
     with pytest.raises(td.ModelError, match="own.py: the file has changed"):
@@ -119,8 +119,8 @@ def a_law(now, p):
 def test_an_effect_without_a_file_says_why_it_does_not_pickle():
     def made(law):
         parameters = {"drag": td.Parameter("damping", "any")}
-        own = td.Effect(role="force", law=law, parameters=parameters, absent={"drag": 0.0})
-        return own.named("own", "Own.")
+        effect = td.Effect(role="force", law=law, parameters=parameters, absent={"drag": 0.0})
+        return effect.named("own", "Own.")
 
     with pytest.raises(td.ModelError, match='Effect "own": cannot be written .* law is a function'):
         pickle.dumps(made(lambda now, p: p.drag * now.velocity))

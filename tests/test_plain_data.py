@@ -20,7 +20,7 @@ from teleopdesign.plain_data import json_text, make_plain, write_beside, write_j
 NUMBERS = st.floats() | st.integers() | st.floats(width=32).map(np.float32) | st.booleans()
 LEAVES = NUMBERS | st.text() | st.none() | st.lists(st.floats()).map(np.array)
 DATA = st.recursive(
-    LEAVES, lambda own: st.lists(own) | st.tuples(own) | st.dictionaries(st.text(), own)
+    LEAVES, lambda inner: st.lists(inner) | st.tuples(inner) | st.dictionaries(st.text(), inner)
 )
 
 

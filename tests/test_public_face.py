@@ -64,7 +64,7 @@ def test_every_public_name_has_one_group_and_the_docstring_shows_the_groups():
 
 
 @pytest.mark.slow
-def test_a_folder_is_there_without_an_import_of_its_own():
+def test_a_folder_is_there_without_a_separate_import():
     """In a package that nothing has used before: one process that forgets it in between.
 
     One way leads to all of them: every eighth is enough.
@@ -110,7 +110,7 @@ def test_few_names_are_shown_and_every_other_public_name_stays_within_reach():
         assert getattr(td, name) is getattr(import_module(f"teleopdesign.{home}"), name)
 
 
-def test_a_misspelt_name_is_told_the_nearest():
+def test_a_misspelt_name_is_answered_with_the_nearest():
     with pytest.raises(AttributeError, match='did you mean "haptic_interface"'):
         td.haptic_interfac  # noqa: B018
 
@@ -150,9 +150,9 @@ def test_two_low_passes_in_series_are_the_product_of_their_transfer_functions():
     diagram = td.haptic_interface(body, force_feedback=first.then(second))
     frequency = np.array([1.0, 7.0, 60.0])
     s = 2j * np.pi * frequency
-    found = td.frequency.loop_gain(diagram, controller="H")
+    response = td.frequency.loop_gain(diagram, controller="H")
     product = 1 / ((1 + s / (2 * np.pi * 5)) * (1 + s / (2 * np.pi * 20)))
-    ratio = found(s) / product
+    ratio = response(s) / product
     # the rest of the loop does not depend on the low-passes: the ratio is the loop with H = 1
     one = td.haptic_interface(body, force_feedback=td.from_control(_unit(), name="one"))
     np.testing.assert_allclose(ratio, td.frequency.loop_gain(one, controller="H")(s), rtol=1e-9)

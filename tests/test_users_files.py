@@ -4,7 +4,7 @@ import os
 import sys
 
 import pytest
-from own_effect import OWN
+from users_effect import SOURCE
 
 from teleopdesign.controllers import load_controller
 from teleopdesign.effects import load_effect
@@ -17,10 +17,10 @@ def test_an_edit_that_keeps_size_and_time_of_the_file_is_read(tmp_path, monkeypa
     """Bytecode kept by Python is told by size and time of the file: it would run the old effect."""
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     path = tmp_path / "drag.py"
-    path.write_text(OWN)
+    path.write_text(SOURCE)
     assert load_effect(path).source == "made for a test"
     stamp = path.stat()
-    path.write_text(OWN.replace("made for a test", "made for a TEST"))
+    path.write_text(SOURCE.replace("made for a test", "made for a TEST"))
     os.utime(path, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
     assert path.stat().st_size == stamp.st_size
     assert load_effect(path).source == "made for a TEST"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from functools import cache
@@ -14,9 +15,14 @@ from syntax_trees import PACKAGE, syntax_trees
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 #: participles and the like: they name grammar, where a name should say what it holds
-BANNED = frozenset("asked found give given own referred seen settled taken told tried".split())
+BANNED = frozenset("asked found give given own referred said seen settled taken told tried".split())
 #: such words say no more as a part of a name: `own_body`, `told_rows`
-BANNED_PARTS = frozenset("found own settled told tried".split())
+BANNED_PARTS = frozenset("found own said seen settled told tried".split())
+#: a file without any of these words names nothing by one of them; `@given` is that of hypothesis
+WORD = re.compile(rf"(?<![@a-z])(?:{'|'.join(BANNED | BANNED_PARTS)})(?![a-z])", re.I)
+#: what else is written in Python, beside the package
+ROOT = Path(__file__).parents[1]
+FOLDERS = ("benchmarks", "docs", "golden", "release", "studies", "tests")
 #: keywords of public functions, kept under the names that users type
 PUBLIC_KEYWORDS = {
     # m or rad by which ideal friction gives before it slides: `simulate(..., give=...)`
@@ -87,6 +93,8 @@ def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.asname
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             yield node.lineno, node.id
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.attr
 
 
 def misnamed(module: str, tree: ast.AST) -> list[str]:
@@ -113,6 +121,18 @@ def test_no_name_says_grammar_instead_of_a_thing():
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_no_name_beside_the_package_says_grammar_instead_of_a_thing(folder):
+    """Studies, documentation, golden files, benchmarks, and tests with the names of the tests."""
+    wrong = []
+    for path in sorted((ROOT / folder).rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if WORD.search(text):
+            module = path.relative_to(ROOT).with_suffix("").as_posix()
+            wrong += misnamed(module, ast.parse(text))
+    assert not wrong, "\n".join(wrong)
+
+
 @pytest.mark.parametrize(
     "code",
     [
@@ -130,9 +150,11 @@ def test_no_name_says_grammar_instead_of_a_thing():
         "try: pass\nexcept ValueError as seen: pass",
         "own_body = 1",
         "class A:\n    told_rows: int",
+        "self.said = 1",
+        "def test_a_hum_is_found(): ...",
     ],
 )
-def test_a_misnamed_thing_is_seen_wherever_it_is_named(code):
+def test_a_misnamed_thing_is_detected_wherever_it_is_named(code):
     assert misnamed("module", ast.parse(code))
 
 
@@ -159,7 +181,7 @@ def test_no_two_public_types_have_the_same_name():
         for node in tree.body:
             if defined := type_of(node, module):
                 meanings[defined[0]].add(defined[1])
-    assert {name: found for name, found in meanings.items() if len(found) > 1} == {}
+    assert {name: kinds for name, kinds in meanings.items() if len(kinds) > 1} == {}
 
 
 @pytest.mark.parametrize(
@@ -172,7 +194,7 @@ def test_no_two_public_types_have_the_same_name():
         ("Key = TypeVar('Key')", None),
     ],
 )
-def test_a_type_is_seen_as_a_class_and_as_a_name(code, defined):
+def test_a_type_counts_as_a_class_and_as_a_name(code, defined):
     assert type_of(ast.parse(code).body[0], "module") == defined
 
 

@@ -133,10 +133,10 @@ def right(parameter, wrong):
     return wrong
 
 
-def refused_or_taken(call, given):
+def refused_or_taken(call, arguments):
     """Call it; any error that is not one of the package's own fails the test."""
     try:
-        call(**given)
+        call(**arguments)
     except TeleopDesignError as error:
         message = str(error)
         assert message and len(message.splitlines()) == 1
@@ -156,16 +156,16 @@ def try_all(call):
     parameters = checked_parameters(call)
     for one in parameters:
         for wrong in WRONG.values():
-            given = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
+            values = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
             refused = refusal(call, one, wrong)
             if refused or str(one.annotation) in ("Any", "typing.Any"):
-                refused_or_taken(call, {**given, one.name: wrong})
+                refused_or_taken(call, {**values, one.name: wrong})
 
 
 def refusal(call, parameter, wrong):
     """Whether the annotation refuses that value: what it takes may start a long computation."""
-    found = inspect.unwrap(call if inspect.isfunction(call) else getattr(call, "__init__", call))
-    names = vars(inspect.getmodule(found) or inspect.getmodule(call))
+    function = inspect.unwrap(call if inspect.isfunction(call) else getattr(call, "__init__", call))
+    names = vars(inspect.getmodule(function) or inspect.getmodule(call))
     annotation = arguments._resolve(parameter.annotation, {**names, "__name__": names["__name__"]})
     check = arguments.check_of(annotation)
     return check is not None and check(wrong) is not None
@@ -182,8 +182,8 @@ def test_a_constructor_refuses_what_it_cannot_take(constructor):
     for one in checked_parameters(constructor):
         for wrong in WRONG.values():
             parameters = checked_parameters(constructor)
-            given = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
-            refused_or_taken(constructor, {**given, one.name: wrong})
+            values = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
+            refused_or_taken(constructor, {**values, one.name: wrong})
 
 
 @pytest.mark.parametrize(("make", "name"), METHODS, ids=lambda x: x if isinstance(x, str) else "")
@@ -192,8 +192,8 @@ def test_a_method_refuses_what_it_cannot_take(make, name):
     for one in checked_parameters(method):
         for wrong in WRONG.values():
             parameters = checked_parameters(method)
-            given = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
-            refused_or_taken(method, {**given, one.name: wrong})
+            values = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
+            refused_or_taken(method, {**values, one.name: wrong})
 
 
 def test_every_public_function_is_checked():
@@ -283,7 +283,7 @@ SAYS = {
 
 
 @pytest.mark.parametrize("case", SAYS)
-def test_what_was_found_and_expected_is_said(case):
+def test_a_refusal_states_the_value_and_what_was_expected(case):
     call, message = SAYS[case]
     with pytest.raises(td.ModelError) as caught:
         call()
@@ -296,7 +296,7 @@ def test_a_mistake_about_an_experiment_is_an_experiment_error():
 
 
 @pytest.mark.parametrize(
-    ("annotation", "taken", "refused"),
+    ("annotation", "accepted_values", "refused"),
     [
         (float, [1, 2.5, np.float32(1), np.int64(3), sp.Rational(1, 2), float("inf")],
          [True, np.True_, "1", None, float("nan"), 1j, [1.0], np.zeros(1), sp.Symbol("x")]),
@@ -310,7 +310,7 @@ def test_a_mistake_about_an_experiment_is_an_experiment_error():
         (float | None, [None, 1.0], ["a", True]),
     ],
 )  # fmt: skip
-def test_an_annotation_takes_and_refuses(annotation, taken, refused):
+def test_an_annotation_takes_and_refuses(annotation, accepted_values, refused):
     check = arguments.check_of(annotation)
-    assert [v for v in taken if check(v) is not None] == []
+    assert [v for v in accepted_values if check(v) is not None] == []
     assert all(check(v) is not None for v in refused)

@@ -80,7 +80,7 @@ def latex(expression: sp.Expr, names: Mapping[sp.Symbol, str]) -> str:
     return str(_Latex({"symbol_names": dict(names)}).doprint(expression))
 
 
-def own_symbol(name: str, parameter: Parameter) -> str:
+def parameter_symbol(name: str, parameter: Parameter) -> str:
     """The symbol that a parameter's meaning begins with ("F_C: ..."), as LaTeX."""
     head, colon, _ = parameter.meaning.partition(": ")
     if not colon or len(head) > 12 or " of " in head:
@@ -100,9 +100,9 @@ def _letter(word: str) -> str:
 
 def law_lines(effect: Effect) -> list[str]:
     """The law and the rates of its hidden states as the code has them, in LaTeX."""
-    own = effect.symbols()
+    symbols = effect.symbols()
     names = {SIGNALS[n]: s for n, s in _SYMBOLS.items() if n in SIGNALS}
-    names |= {own[n]: own_symbol(n, p) for n, p in effect.parameters.items()}
+    names |= {symbols[n]: parameter_symbol(n, p) for n, p in effect.parameters.items()}
     states = effect.state_symbols()
     names |= {z: "z" if len(states) == 1 else rf"z_{{{i}}}" for i, z in enumerate(states.values())}
     left = _LEFT.get(effect.role, "F")
@@ -114,8 +114,8 @@ def law_lines(effect: Effect) -> list[str]:
 
 
 def linear_line(effect: Effect) -> str:
-    own = effect.symbols()
-    names = {own[n]: own_symbol(n, p) for n, p in effect.parameters.items()}
+    symbols = effect.symbols()
+    names = {symbols[n]: parameter_symbol(n, p) for n, p in effect.parameters.items()}
     form = effect.linear_form(S)
     if form is None:
         return "Linear form: none declared; transfer functions leave it out and say so."
@@ -268,9 +268,9 @@ def constants(*modules: str) -> str:
     rows = []
     for module in modules:
         full = f"teleopdesign.{module}"
-        found, comments = import_module(full), ModuleAnalyzer.for_module(full).find_attr_docs()
+        content, comments = import_module(full), ModuleAnalyzer.for_module(full).find_attr_docs()
         for (owner, name), text in comments.items():
-            value = getattr(getattr(found, owner) if owner else found, name, None)
+            value = getattr(getattr(content, owner) if owner else content, name, None)
             if (owner or name.isupper()) and isinstance(value, int | float):
                 words = plain(" ".join(text).strip(" ."))
                 full_name = f"{owner}.{name}" if owner else name
@@ -281,19 +281,23 @@ def constants(*modules: str) -> str:
 def api(module: str) -> str:
     """autodoc of the names in a module's `__all__`, from where they are defined."""
     full = "teleopdesign" if module == "." else f"teleopdesign.{module}"
-    root, found = import_module("teleopdesign"), import_module(full)
+    root, content = import_module("teleopdesign"), import_module(full)
     lines = []
     public = root.GROUPS | root.FURTHER
     names = [name for group in public.values() for name in group]
     top = {} if module == "." else {id(getattr(root, n)): n for n in names}
-    groups = public if module == "." else {"": sorted(found.__all__, key=str.lower)}
+    groups = public if module == "." else {"": sorted(content.__all__, key=str.lower)}
     begins = {next(iter(names)): group for group, names in groups.items() if group}
     for name in (n for names in groups.values() for n in names):
-        thing = getattr(found, name)
+        thing = getattr(content, name)
         if name in begins:
             lines += [f".. rubric:: {begins[name].capitalize()}", ""]
-        if (own := top.get(id(thing))) is not None:
-            lines += [f"``{full}.{name}``", f"   the same as :py:obj:`teleopdesign.{own}`", ""]
+        if (short_name := top.get(id(thing))) is not None:
+            lines += [
+                f"``{full}.{name}``",
+                f"   the same as :py:obj:`teleopdesign.{short_name}`",
+                "",
+            ]
         elif inspect.isclass(thing):
             lines += [f".. autoclass:: {full}::{name}", "   :members:", ""]
         elif callable(thing):

@@ -13,35 +13,35 @@ _ENTRY = re.compile(r"(?:raises )?[A-Za-z_][\w, ]*: ")
 
 def blocks(text: str) -> list[tuple[str, list[str]]]:
     """Paragraphs of a docstring: ("code" | "entries" | "text", lines)."""
-    found = []
+    parts = []
     for part in re.split(r"\n\s*\n", dedent(text).strip("\n")):
         lines = part.split("\n")
         if all(line.startswith("    ") for line in lines if line.strip()):
-            if found and found[-1][0] == "code":
-                found[-1][1].extend(["", *dedent(part).split("\n")])
+            if parts and parts[-1][0] == "code":
+                parts[-1][1].extend(["", *dedent(part).split("\n")])
                 continue
-            found.append(("code", dedent(part).split("\n")))
-        elif found and _ENTRY.match(lines[0]):
-            found.append(("entries", lines))
+            parts.append(("code", dedent(part).split("\n")))
+        elif parts and _ENTRY.match(lines[0]):
+            parts.append(("entries", lines))
         else:
-            found.append(("text", lines))
-    return found
+            parts.append(("text", lines))
+    return parts
 
 
 def entries(lines: list[str]) -> list[tuple[str, str]]:
     """(name, text) of "name: text" lines; two spaces after ";" part entries on one line."""
-    found: list[tuple[str, str]] = []
+    pairs: list[tuple[str, str]] = []
     for line in lines:
         for piece in re.split(r";  +", line.strip()):
             match = _ENTRY.match(piece)
             if match and not line.startswith(" "):
-                found.append((match.group().removesuffix(": "), piece[match.end() :]))
-            elif found:
-                name, text = found[-1]
-                found[-1] = (name, f"{text} {piece}")
+                pairs.append((match.group().removesuffix(": "), piece[match.end() :]))
+            elif pairs:
+                name, text = pairs[-1]
+                pairs[-1] = (name, f"{text} {piece}")
             else:
-                found.append(("", piece))
-    return found
+                pairs.append(("", piece))
+    return pairs
 
 
 def escaped(text: str) -> str:

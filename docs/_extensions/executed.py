@@ -67,9 +67,10 @@ def run_session(code: str, where: Page, raises: str | None) -> tuple[str, list[A
     sys.path.insert(0, str(where.folder))
     try:
         for statement in ast.parse(code).body:
-            own = lines[statement.lineno - 1 : statement.end_lineno]
+            source = lines[statement.lineno - 1 : statement.end_lineno]
             transcript += "".join(
-                f"{'>>>' if i == 0 else '...'} {line}".rstrip() + "\n" for i, line in enumerate(own)
+                f"{'>>>' if i == 0 else '...'} {line}".rstrip() + "\n"
+                for i, line in enumerate(source)
             )
             printed = io.StringIO()
             with contextlib.redirect_stdout(printed):
@@ -116,10 +117,10 @@ class Session(SphinxDirective):
             text, figures = run_session("\n".join(self.content), here, self.options.get("raises"))
         except Exception as error:
             raise self.error(f"example failed: {type(error).__name__}: {error}") from error
-        found: list[nodes.Node] = []
+        content_nodes: list[nodes.Node] = []
         if "hidden" not in self.options:
-            found.append(_literal(text, "pycon"))
-        return found + [self.picture(figure, here) for figure in figures]
+            content_nodes.append(_literal(text, "pycon"))
+        return content_nodes + [self.picture(figure, here) for figure in figures]
 
     def picture(self, figure: Any, here: Page) -> nodes.Node:
         import matplotlib.pyplot as plt

@@ -55,12 +55,12 @@ def laws():
     with plt.style.context(STYLE):
         figure, axes = plt.subplots(1, 2, sharey=True, figsize=(7.16, 2.7))
         for law, (color, line) in LINES.items():
-            found = led(law, motion, 1.0, "continuous")
-            cycle = slice(len(found["time"]) // 2, None)  # the first one settles
-            force = found["R_MBC"].values[cycle]
+            motion_with_law = led(law, motion, 1.0, "continuous")
+            cycle = slice(len(motion_with_law["time"]) // 2, None)  # the first one settles
+            force = motion_with_law["R_MBC"].values[cycle]
             style = {"color": color, "linestyle": line, "label": law.replace("_", " ")}
-            axes[0].plot(1e3 * found["L_velocity"].values[cycle], force, **style)
-            axes[1].plot(1e3 * found["L"].values[cycle], force, **style)
+            axes[0].plot(1e3 * motion_with_law["L_velocity"].values[cycle], force, **style)
+            axes[1].plot(1e3 * motion_with_law["L"].values[cycle], force, **style)
         axes[0].set(xlabel="velocity (mm/s)", ylabel="added force (N)")
         axes[1].set(xlabel="position (mm)")
         for axis, title in zip(axes, ("(a) over velocity", "(b) over position"), strict=True):
@@ -92,11 +92,11 @@ def estimates():
         figure, axes = plt.subplots(2, 2, sharex=True, sharey=True, figsize=(7.16, 3.4))
         for axis, letter, (name, way) in zip(axes.flat, "abcd", ESTIMATES.items(), strict=True):
             sampled = led("smoothed_coulomb", motion, 0.25, Sampling(encoder_step=7.2e-6, **way))
-            for found, style in (
+            for simulation, style in (
                 (true, {"color": "0.6", "lw": 2.2, "label": "true velocity"}),
                 (sampled, {"color": "#0072B2", "label": "sampled", "drawstyle": "steps-post"}),
             ):
-                shown = found.data.sel(time=slice(start, end))
+                shown = simulation.data.sel(time=slice(start, end))
                 axis.plot(1e3 * shown["time"], shown["R_MBC"], **style)
             axis.set_title(f"({letter}) {name}", loc="left")
             axis.grid(True)

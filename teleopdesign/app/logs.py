@@ -22,7 +22,7 @@ POINTS = 3000
 #: entries of a form of the page, by the name of the field; empty or None: to be detected
 Answers = Mapping[str, str | None]
 #: quantity in the forms of the page -> its name in the survey
-ASKED = {
+QUANTITIES = {
     "time": "time",
     "position": "position",
     "actuator force": "actuator_force",
@@ -67,7 +67,7 @@ class Preview:
         """Which units are guesses, and where to type them; "" if every unit is known."""
         guessed = [
             f"*{name}* ({_cell(entry['unit'])})"
-            for name, key in ASKED.items()
+            for name, key in QUANTITIES.items()
             if f"channels.{key}.unit" in self.survey.guesses
             and "unit" in (entry := self.survey.channels.get(key, {}))
         ]
@@ -139,7 +139,7 @@ def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file
     for key in units:
         column = survey.channels.get(key, {}).get("column")
         if column is None:
-            shown = next(name for name, channel in ASKED.items() if channel == key)
+            shown = next(name for name, channel in QUANTITIES.items() if channel == key)
             raise ExperimentError(f"{file}: {shown} unit: choose the column of the {shown} as well")
         columns[key] = column
     named = {columns[key]: unit for key, unit in units.items()}
@@ -178,11 +178,11 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
 def choices_of(answers: Answers) -> Choices:
     """Columns, axis and constants from a form of the page; an empty answer: to be detected.
 
-    answers: by the names of `ASKED` and `NUMBERS`, "axis", and "torque constant" and "lever arm"
-        with their units
+    answers: by the names of `QUANTITIES` and `NUMBERS`, "axis", and "torque constant" and "lever
+        arm" with their units
     raises ExperimentError: a constant that is no number
     """
-    column = {key: answers.get(name) or None for name, key in ASKED.items()}
+    column = {key: answers.get(name) or None for name, key in QUANTITIES.items()}
     number = {key: _number(answers, name) for name, key in NUMBERS.items()}
     constant = (answers.get("torque constant") or "").strip()
     arm = (answers.get("lever arm") or "").strip()
@@ -202,8 +202,8 @@ def choices_of(answers: Answers) -> Choices:
 
 def units_of(answers: Answers) -> dict[str, str]:
     """The units that a form of the page states, by channel."""
-    said = {key: (answers.get(f"{name} unit") or "").strip() for name, key in ASKED.items()}
-    return {key: unit for key, unit in said.items() if unit}
+    units = {key: (answers.get(f"{name} unit") or "").strip() for name, key in QUANTITIES.items()}
+    return {key: unit for key, unit in units.items() if unit}
 
 
 def _number(answers: Answers, name: str) -> float | None:

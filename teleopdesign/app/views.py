@@ -49,7 +49,7 @@ def span_sliders(duration: float, proposed: Spans) -> tuple[PageElement, PageEle
 def column_form(columns: Sequence[str]) -> PageElement:
     """The form for a log: columns with their units, axis, constants."""
     fields: dict[str, PageElement] = {}
-    for name in logs.ASKED:
+    for name in logs.QUANTITIES:
         fields[name] = mo.ui.dropdown(columns, label=name)
         fields[f"{name} unit"] = mo.ui.text(label=f"{name} unit", full_width=False)
     fields["axis"] = mo.ui.dropdown(["prismatic", "revolute"], label="axis")
@@ -64,7 +64,7 @@ def column_form(columns: Sequence[str]) -> PageElement:
 def form_rows(form: PageElement) -> PageElement:
     """The layout of the form: each column above its unit, then axis and constants."""
     fields = form.elements
-    pairs = [mo.vstack([fields[name], fields[f"{name} unit"]]) for name in logs.ASKED]
+    pairs = [mo.vstack([fields[name], fields[f"{name} unit"]]) for name in logs.QUANTITIES]
     others = [fields[name] for name in ("axis", "torque constant", "lever arm", *logs.NUMBERS)]
     return mo.vstack([place_side_by_side(*pairs), place_side_by_side(*others)])
 
@@ -196,9 +196,9 @@ def design_view(bench: Workbench, body: str) -> PageElement:
 
 def export_view(bench: Workbench, write: PageElement) -> PageElement:
     """The button that writes files, and the script that repeats the user's steps."""
-    said = (
+    sentence = (
         "Report (html), answer (json), figure (svg), for each body the compensation as a diagram "
         "(toml), and a script that repeats these steps."
     )
     script = mo.md(f"```python\n{export.script(bench)}\n```")
-    return mo.vstack([mo.md(said), write, mo.accordion({"The script": script})])
+    return mo.vstack([mo.md(sentence), write, mo.accordion({"The script": script})])

@@ -137,8 +137,8 @@ def _robot(root: ET.Element, file: str) -> _Robot:
             word = getattr(joint, one)
             if word in names:
                 what = "joint" if one == "name" else "link"
-                said = "is given twice" if one == "name" else "hangs on two joints"
-                raise ExperimentError(f"{file}: {what} {quote(word)} {said}")
+                problem = "is given twice" if one == "name" else "hangs on two joints"
+                raise ExperimentError(f"{file}: {what} {quote(word)} {problem}")
             names.add(word)
     return _Robot(file, links, tuple(joints))
 

@@ -250,8 +250,8 @@ def _value(number_or_value: object, name: object) -> Value:
 
 def _missing_parameter_error(name: object, known: Iterable[str]) -> ModelError:
     near = did_you_mean(name, known) if isinstance(name, str) else ""
-    said = quote(name) if isinstance(name, str) else repr(name)
-    return ModelError(f"body: no parameter {said}, has {', '.join(known)}{near}")
+    shown = quote(name) if isinstance(name, str) else repr(name)
+    return ModelError(f"body: no parameter {shown}, has {', '.join(known)}{near}")
 
 
 @lru_cache(maxsize=4096)

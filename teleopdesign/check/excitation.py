@@ -111,8 +111,9 @@ def _summary(
         )
     if base.fit_error > CRITERIA.adequate * floor:
         parts.append(
-            f"these limits hold above the noise floor, {100 * floor:.2g} % of the force; as long "
-            f"as {100 * base.fit_error:.2g} % are unexplained, small effects may be hidden in them."
+            f"these limits hold above the noise floor, {100 * floor:.2g} % of the force; "
+            f"{100 * base.fit_error:.2g} % of the force is unexplained, and small effects may be "
+            "hidden in this part."
         )
     return Finding(
         "what the record can show",
@@ -209,7 +210,7 @@ def _look_alikes(visible_effects: Sequence[Visibility], place: str) -> list[Find
         Finding(
             "look-alikes",
             "note",
-            f"look alike on these records, unless they are large: {text}.",
+            f"these effects look alike on the records, unless they are large: {text}.",
             {"groups": float(len(groups))},
             place,
         )

@@ -79,8 +79,9 @@ def describe_motion(
         "note" if missing else "fine",
         f"travels {np.ptp(x):.3g} {unit_of('position', axis)}, up to {fastest:.3g} "
         f"{unit_of('velocity', axis)}, {turns} reversals; "
-        f"{100 * forth:.0f} % of the time forward, {100 * back:.0f} % backward, without visible "
-        f"motion in the rest{'. Limits: ' + missing if missing else ''}.",
+        f"{100 * forth:.0f} % of the time forward, {100 * back:.0f} % backward, "
+        f"{100 * (1.0 - forth - back):.0f} % without visible motion"
+        f"{'. Limits: ' + missing if missing else ''}.",
         numbers,
         place,
     )

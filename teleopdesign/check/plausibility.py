@@ -108,8 +108,8 @@ def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[F
     if 1 / FAR < gain.value < FAR:
         return
     lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other))
-    said = model.body(balance.body).parameters["inertia"].value
-    ratio = balance.strengths["inertia"].value / said if said else float("nan")
+    inertia = model.body(balance.body).parameters["inertia"].value
+    ratio = balance.strengths["inertia"].value / inertia if inertia else float("nan")
     wrong = "one of the two is"
     if abs(math.log10(max(ratio, 1e-300))) < NEAR:
         wrong = f"{other} is"
@@ -274,7 +274,7 @@ def _describe_lateness(seconds: float, sample_time: float, behind: str) -> str:
 def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Finding:
     body = model.body(place)
     inertia = balance.strengths["inertia"]
-    said = body.parameters["inertia"].value
+    of_model = body.parameters["inertia"].value
     numbers = {"inertia": inertia.value, "left": balance.left, "gain": balance.gain.value}
     if not inertia.sure:
         text = (
@@ -283,7 +283,7 @@ def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Findin
     else:
         text = (
             f"signs and units agree: the motion requires an inertia of {inertia.value:.3g} "
-            f"{body.unit('inertia')}, the model states {said:.3g} {body.unit('inertia')}"
+            f"{body.unit('inertia')}, the model states {of_model:.3g} {body.unit('inertia')}"
         )
     if balance.other:
         gain = with_standard_error(balance.gain.value, balance.gain.error)

@@ -63,12 +63,12 @@ def run(options: argparse.Namespace) -> int:
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
     from ..unexplained import describe_residual
 
-    fit, prepared, floor, said = _fit_model(options)
-    print(f"{said}\n")
+    fit, prepared, floor, model_text = _fit_model(options)
+    print(f"{model_text}\n")
     description = describe_residual(fit, prepared, floor)
     print(description)
     if options.json is not None:
-        write_json(options.json, {"model": said, **description.as_data()})
+        write_json(options.json, {"model": model_text, **description.as_data()})
     if options.figure is not None:
         with write_beside(options.figure) as part:
             description.plot().savefig(part)

@@ -226,5 +226,5 @@ def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -
                 f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the records still show motion"
             )
             lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
-    lines.append(f"a compensation: teleopdesign design {source} --output design")
+    lines.append(f"to design a compensation: teleopdesign design {source} --output design")
     return ["", *lines]

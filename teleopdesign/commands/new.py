@@ -157,8 +157,8 @@ def survey_text(survey: Survey, name: str) -> str:
     """Lines on what was understood, one for each channel, and on what was guessed."""
     lines = [f"{name}: {survey.duration:.4g} s, {len(survey.columns)} columns; {survey.axis} axis"]
     for key, entry in survey.channels.items():
-        said = ("column", "unit") if "column" in entry else entry
-        rest = {k: v for k, v in entry.items() if k not in said}
+        keys = ("column", "unit") if "column" in entry else entry
+        rest = {k: v for k, v in entry.items() if k not in keys}
         more = ", ".join(f"{k} {_shorten(v)}" for k, v in rest.items())
         column = f'"{entry["column"]}"' if "column" in entry else _shorten(entry)
         unit = f" in {entry['unit']}" if "unit" in entry and "column" in entry else ""

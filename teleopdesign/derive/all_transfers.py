@@ -161,7 +161,7 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
                 _derive(f"{output}/{signal}", case, transfers, undone, seconds)
     for block in diagram.blocks:
         if isinstance(block, Moving) and block.driver in diagram.outside:
-            text = f"impedance that {block.driver} works against, all else zero"
+            text = f"impedance at {block.driver}, with all other inputs zero"
             case = Case(diagram, block.driver, block.motion, block.motion, text)
             _derive(f"{block.driver}/{block.motion}", case, transfers, undone, seconds)
     return Transfers(diagram, Frozen(transfers), Frozen(undone))

@@ -150,11 +150,11 @@ def _list_left_out(design: Design) -> list[str]:
 def _compare_predictions(design: Design) -> list[str]:
     """Notes on cases where the quasi-static prediction and the simulation differ."""
     unit, lines = unit_of("force", design.body.axis), list[str]()
-    said: list[CasePrediction] = []
+    cases: list[CasePrediction] = []
     for case, p in design.prediction.cases.items():
-        if p in said:  # without a cancellation two cases are the same as two others
+        if p in cases:  # without a cancellation two cases are the same as two others
             continue
-        said.append(p)
+        cases.append(p)
         if p.failed:
             lines.append(f"{case}: not simulated: {p.failed}.")
             continue

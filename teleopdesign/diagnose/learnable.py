@@ -43,7 +43,7 @@ MOST_ROWS = 20_000
 TREES, RATE, LEAVES, ROWS_OF_A_LEAF = 150, 0.08, 31, 40
 #: a place is named if its part of the learned force exceeds its part of the rows by more than this;
 #: otherwise the learned force is spread over all places
-SAID = 0.2
+EXCESS_OF_A_PLACE = 0.2
 
 
 @dataclass(frozen=True)
@@ -289,10 +289,10 @@ def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) ->
         unit = unit_of("velocity", axes.pop())
         borders = np.quantile(speed, np.linspace(0.1, 0.9, 9))
         excesses = [excess(speed < border) for border in borders]
-        if max(excesses) > SAID:
+        if max(excesses) > EXCESS_OF_A_PLACE:
             words.append(f"below {borders[int(np.argmax(excesses))]:.2g} {unit}")
-        elif -min(excesses) > SAID:
+        elif -min(excesses) > EXCESS_OF_A_PLACE:
             words.append(f"above {borders[int(np.argmin(excesses))]:.2g} {unit}")
-    if excess(near) > SAID:
+    if excess(near) > EXCESS_OF_A_PLACE:
         words.append("around reversals")
     return " ".join(words)

@@ -40,11 +40,11 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         facts = record_facts(model, place, prepared, numbers)
         alongs = [(measured_along(body, s.motion), s) for s in stretches]
         for effect in effects:
-            said = _ask_effect(effect, "plausible", facts)
-            if said is None and effect.role == "force":
-                said = _explain_cancelled(effect, alongs, facts)
-            if said is not None:
-                meanings[effect.name, place] = said
+            reason = _ask_effect(effect, "plausible", facts)
+            if reason is None and effect.role == "force":
+                reason = _explain_cancelled(effect, alongs, facts)
+            if reason is not None:
+                meanings[effect.name, place] = reason
     return meanings
 
 
@@ -98,12 +98,12 @@ def _ask_effect(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
         return None
     values = {n: facts.body[f"{effect.name}.{n}"] for n in effect.parameters}
     try:
-        said = check(SimpleNamespace(**values), facts)
+        reason = check(SimpleNamespace(**values), facts)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise ModelError(f"{effect.name}: {hook}: {type(error).__name__}: {error}") from error
-    if said is not None and not (isinstance(said, str) and said.strip()):
-        raise ModelError(f"{effect.name}: {hook}: found {said!r}, expected None or a sentence")
-    return said
+    if reason is not None and not (isinstance(reason, str) and reason.strip()):
+        raise ModelError(f"{effect.name}: {hook}: found {reason!r}, expected None or a sentence")
+    return reason
 
 
 def record_facts(

@@ -218,7 +218,7 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     if candidate.key in stands_for:
         return stands_for[candidate.key]
     new = _select_new(stands_for, base, prepared)
-    return next((f"with it, {key[0]} is implausible: {said}" for key, said in new.items()), "")
+    return next((f"with it, {key[0]} is implausible: {reason}" for key, reason in new.items()), "")
 
 
 def _select_new(
@@ -226,7 +226,7 @@ def _select_new(
 ) -> dict[tuple[str, str], str]:
     """The implausible effects of a fit that were plausible in the base."""
     before = implausible_effects(base.model, prepared) if stands_for else {}
-    return {key: said for key, said in stands_for.items() if key not in before}
+    return {key: reason for key, reason in stands_for.items() if key not in before}
 
 
 def _find_discredited_effect(

@@ -93,8 +93,8 @@ def find_offsets(
         values = {n: v - float(c) for (n, v), c in zip(values.items(), change, strict=True)}
         if "friction_level" in values:
             values["friction_level"] = max(values["friction_level"], LEAST - 1.0)
-    said = {n: 1.0 + v if n == "friction_level" else v for n, v in values.items()}
-    return RecordOffsets(said, corrected_body, corrected_motions, tuple(slopes))
+    offsets = {n: 1.0 + v if n == "friction_level" else v for n, v in values.items()}
+    return RecordOffsets(offsets, corrected_body, corrected_motions, tuple(slopes))
 
 
 def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:

@@ -37,8 +37,11 @@ def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undete
         if not fit.model.body(added.at).has(added.effect.name):
             continue
         by_effect = undetermined_of(added.effect, added.at, fit.model, prepared)
-        said = [by_effect or alike_on_records(fit, added, prepared), known_together(fit, added)]
-        sentences += [Undetermined(added, one) for one in said if one]
+        statements = [
+            by_effect or alike_on_records(fit, added, prepared),
+            known_together(fit, added),
+        ]
+        sentences += [Undetermined(added, one) for one in statements if one]
     return tuple(sentences)
 
 

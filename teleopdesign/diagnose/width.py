@@ -59,6 +59,6 @@ class OpenWidths:
         if not any(p.search.essential for p in candidate.effect.parameters.values()):
             return ""
         if id(fit) not in self.known:
-            said = explain_open_width(fit, candidate, self.prepared, criteria=self.criteria)
-            self.known[id(fit)] = (fit, said)
+            sentence = explain_open_width(fit, candidate, self.prepared, criteria=self.criteria)
+            self.known[id(fit)] = (fit, sentence)
         return self.known[id(fit)][1]

@@ -40,7 +40,7 @@ def period(effect: Effect) -> str | float | None:
     lengths = [n for n, p in effect.parameters.items() if p.quantity == "position"]
     offsets: list[tuple[str | float, sp.Expr]] = [(n, effect.symbols()[n]) for n in lengths]
     offsets.append((float(2 * sp.pi), 2 * sp.pi))
-    return next((said for said, offset in offsets if _is_same_at(effect, offset)), None)
+    return next((name for name, offset in offsets if _is_same_at(effect, offset)), None)
 
 
 def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:

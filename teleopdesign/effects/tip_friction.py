@@ -23,14 +23,14 @@ def plausible(p, facts):
         return None
     # at a reversal the transmission is wound from one side to the other
     wound = 2.0 * p.level / max(stiffness)
-    said = f"a friction of {facts.text(p.level, 'force')} winds the transmission up by "
-    said += facts.text(wound, "position")
+    sentence = f"a friction of {facts.text(p.level, 'force')} winds the transmission up by "
+    sentence += facts.text(wound, "position")
     if wound < 0.5 * facts.step:
         step = facts.text(facts.step, "position")
-        return f"{said}, below the step of {step}: the effect imitates friction of the actuator"
+        return f"{sentence}, below the step of {step}: the effect imitates friction of the actuator"
     if wound > facts.travel:
         travel = facts.text(facts.travel, "position")
-        return f"{said}, more than the travel of {travel}: the effect imitates a spring"
+        return f"{sentence}, more than the travel of {travel}: the effect imitates a spring"
     return None
 
 

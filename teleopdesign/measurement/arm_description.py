@@ -24,7 +24,7 @@ _JOINT = ("urdf_joint", "motor_inertia", "effects")
 _LINK = ("joint", "name", "kind", "axis", "xyz", "rpy", "mass", "centre", "inertia")
 #: a joint is a body: its name stands in channels and answers
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
-_TAKEN = (
+_RESERVED = (
     *("arm", "device", "environment", "links", "master", "record", "record_shift"),
     *("segment", "slave", "t", "time"),
 )
@@ -76,10 +76,10 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
 
 
 def _require_name(name: str, where: str) -> None:
-    if not _NAME.fullmatch(name) or name in _TAKEN:
+    if not _NAME.fullmatch(name) or name in _RESERVED:
         raise ExperimentError(
             f"{where}: found {quote(name)}, expected a name of letters and digits, none of "
-            f"{', '.join(_TAKEN)}"
+            f"{', '.join(_RESERVED)}"
         )
 
 

@@ -172,12 +172,12 @@ def unfit_unit(name: str) -> str | None:
     return text if short and text.lower() not in words else None
 
 
-def why_no_unit(name: str, said: str | None, quantity: str, axis: str) -> str:
+def why_no_unit(name: str, stated: str | None, quantity: str, axis: str) -> str:
     """Why the unit of a column is a guess: none is stated, none that is known, or another's.
 
-    said: in a row of units, or as an attribute of the column
+    stated: the unit in a row of units, or in an attribute of the column
     """
-    text = said or unfit_unit(name)
+    text = stated or unfit_unit(name)
     if text is None:
         return f"the name {name!r} states no unit"
     unit = unit_of_text(text)

@@ -216,9 +216,9 @@ def channel_table(
     if "unit" in table or not isinstance(column, str):
         return table
     quantity = BODY_QUANTITIES[key]
-    said = units.get(column) or log.units.get(column)
+    stated = units.get(column) or log.units.get(column)
     along = "prismatic" if "lever_arm" in table else axis  # a force in N beside an angle
-    unit = as_unit(said) if said else unit_in_name(column, quantity, along)
+    unit = as_unit(stated) if stated else unit_in_name(column, quantity, along)
     if unit is None and (text := unfit_unit(column)):
         instead = f"units={{{column!r}: {unit_of(quantity, axis)!r}}}"
         if quantity == "force" and unit_in_name(column, quantity) and axis == "revolute":

@@ -95,18 +95,18 @@ def _left_out(
     """Reading steps for rows that are not used; the masks cover all rows."""
     steps = []
     if empty.any():
-        said = f"{count_of(int(empty.sum()), 'row')} with a cell that holds no number"
+        reason = f"{count_of(int(empty.sum()), 'row')} with a cell that holds no number"
         part = f"{100 * float(empty.mean()):.2g} % of the rows"
-        steps.append(ReadingStep(file, said, "read as lost", part))
+        steps.append(ReadingStep(file, reason, "read as lost", part))
     if again.any():
-        said = f"{count_of(int(again.sum()), 'row')} the same as the one before"
+        reason = f"{count_of(int(again.sum()), 'row')} the same as the one before"
         part = f"{100 * float(again.mean()):.2g} % of the rows"
-        steps.append(ReadingStep(file, said, "read as lost", part))
+        steps.append(ReadingStep(file, reason, "read as lost", part))
     if between.any():
-        said = "rows come faster than readings, which all channels change together"
+        reason = "rows come faster than readings, which all channels change together"
         rule = f"one row of each reading, {1 / sample_time:.4g} a second"
         part = f"{100 * float(between.mean()):.2g} % of the rows say nothing new"
-        steps.append(ReadingStep(file, said, rule, part))
+        steps.append(ReadingStep(file, reason, rule, part))
     return steps
 
 

@@ -22,9 +22,9 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     step = float(np.median(np.abs(np.diff(finite))))
     # a spreadsheet counts days; read in seconds, such a log would be too short for a record
     if step < LONGEST_DAYS and _SHORTEST / DAY < float(np.ptp(finite)) < _SHORTEST:
-        return "day", f"steps of {step:.4g} are those of a log only in days"
+        return "day", f"day: only in days are steps of {step:.4g} usual for a log"
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
     unit = next(name for largest, name in scales if step < largest or largest == math.inf)
     if unit == "s" and step > 1e-5:
         return "s", ""
-    return unit, f"steps of {step:.4g} are those of a log only in {unit}"
+    return unit, f"{unit}: only in {unit} are steps of {step:.4g} usual for a log"

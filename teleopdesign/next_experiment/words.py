@@ -35,24 +35,24 @@ def _sentences(proposal: Proposal) -> list[str]:
         return [_explain_nothing_open(proposal)]
     if proposal.reference is None:
         return ["All candidate motions exceed the limits, so no motion is proposed."]
-    said = []
+    sentences = []
     pairs = list_pairs_once(proposal)
     decided = [p for p in pairs if proposal.decides(p)]
     left_open = [p for p in pairs if not proposal.decides(p)]
     if proposal.is_useful:
-        said.append(_describe_motion(proposal))
+        sentences.append(_describe_motion(proposal))
     if len(decided) > FEW:
-        said.append(_describe_count(proposal, decided))
+        sentences.append(_describe_count(proposal, decided))
     else:
-        said += [_describe_gain(proposal, p) for p in decided]
-    said += [_describe_rest(proposal, p) for p in left_open]
+        sentences += [_describe_gain(proposal, p) for p in decided]
+    sentences += [_describe_rest(proposal, p) for p in left_open]
     if proposal.diagnosis.more_is_missing:
-        said.append(
+        sentences.append(
             "None of these models explains the present records: an error of "
             f"{say_floors(proposal.diagnosis.left)} noise floors remains, so the true effect may "
             "be none of them."
         )
-    return said
+    return sentences
 
 
 def _explain_nothing_open(proposal: Proposal) -> str:
@@ -118,26 +118,26 @@ def _describe_gain(proposal: Proposal, pair: tuple[int, int]) -> str:
 def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     a, b = (proposal.rivals[i] for i in pair)
     most = min(s.predicted for s in select_pair(proposal, pair))
-    said = (
+    sentence = (
         f"No candidate motion within the limits distinguishes {a} from {b}: the separation is "
         f"{most:.2f} noise floors, and {min(s.present for s in select_pair(proposal, pair)):.2f} "
         "on the present records, where 1 is clear."
     )
     remedies = proposal.remedies.get(pair, ())
     if not remedies:
-        return said
-    return f"{said} {_describe_remedies(remedies)}"
+        return sentence
+    return f"{sentence} {_describe_remedies(remedies)}"
 
 
 #: most remedies in a sentence, so that it stays readable
-MOST_SAID = 3
+MOST_REMEDIES = 3
 
 
 def _describe_remedies(remedies: Sequence[Remedy]) -> str:
     helping = [r for r in remedies if r.separation >= DECIDES]
     if helping:
-        listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])
-        more = len(helping) - MOST_SAID
+        listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_REMEDIES])
+        more = len(helping) - MOST_REMEDIES
         others = f"; or in {more} other ways (`Proposal.remedies`)" if more > 0 else ""
         return f"In simulation, the true effect would be identified if {listed}{others}."
     changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)

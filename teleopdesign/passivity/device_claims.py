@@ -158,16 +158,19 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     limits = [
         Margin(text + alone, level, force)
         for text, level in (
-            ("largest f_D that is passive at the estimates", _round_limit(device.lowest.estimate)),
             (
-                "largest f_D that is passive for every level in the interval",
+                "largest compensator level f_D for passivity at the estimates",
+                _round_limit(device.lowest.estimate),
+            ),
+            (
+                "largest compensator level f_D for passivity at every level in the interval",
                 _round_limit(device.lowest.low),
             ),
         )
     ]
     presliding = device.presliding
     if presliding is None:
-        text = "largest f_D that drives no motion, with viscous damping"
+        text = "largest compensator level f_D that drives no motion, with viscous damping"
         return [*limits, Margin(text + alone, _round_limit(device.least_resistance.low), force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
     if device.damping.low * device.lowest.low < recoil:

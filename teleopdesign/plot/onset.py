@@ -170,12 +170,12 @@ def _mark_status(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -
 
     across, up = np.meshgrid(x, y)
     size = 6 if len(x) < 30 else 1.5
-    for said, colour, marker, label in (
+    for kind, colour, marker, label in (
         ("proved", PROVED, "o", "claim proved"),
         ("refuted", REFUTED, "x", "claim refuted by a wave"),
         ("unknown", GREY, "s", "claim unknown"),
     ):
-        shown = status == said
+        shown = status == kind
         if shown.any():
             axis.scatter(
                 across[shown],

@@ -259,11 +259,11 @@ def _list_lagging_speeds(body: Body) -> dict[sp.Symbol, Effect]:
 
 def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
     """The signals of a point, in words with units, without parameters."""
-    said = {SPEED: "speed"} | dict.fromkeys(_list_lagging_speeds(body), "speed")
-    said |= {s: n for n, s in SIGNALS.items()}
+    names = {SPEED: "speed"} | dict.fromkeys(_list_lagging_speeds(body), "speed")
+    names |= {s: n for n, s in SIGNALS.items()}
     return (
         ", ".join(
-            f"{said[s]} {x:.3g}{_unit_of(said[s], body)}" for s, x in point.items() if s in said
+            f"{names[s]} {x:.3g}{_unit_of(names[s], body)}" for s, x in point.items() if s in names
         )
         or ANY_MOTION
     )

@@ -248,8 +248,10 @@ def _findings_on_exclusions(diagnosis: Diagnosis) -> list[Finding]:
     """Effects that the user excluded from the search."""
     if not diagnosis.left_out:
         return []
-    said = "; ".join(diagnosis.left_out)
-    return [Finding("left out of the search", "warning", f"{said[0].upper()}{said[1:]}.")]
+    exclusions = "; ".join(diagnosis.left_out)
+    return [
+        Finding("left out of the search", "warning", f"{exclusions[0].upper()}{exclusions[1:]}.")
+    ]
 
 
 def _findings_unchecked(diagnosis: Diagnosis) -> list[Finding]:

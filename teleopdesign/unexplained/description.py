@@ -146,10 +146,12 @@ def findings_of(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
     error, floors = f"{100 * part.error:.2g} %", number(part.floors)
     time = part.views["time"]
     if part.is_adequate:
-        said = f"the model leaves {error} of the force, no more than sensor noise would leave"
-        return (Finding("what is left", "fine", f"{said}.", numbers, where, time),)
-    said = f"the model leaves {error} of the force, {floors} times what sensor noise would leave"
-    findings = [Finding("what is left", "warning", f"{said}.", numbers, where, time)]
+        sentence = f"the model leaves {error} of the force, no more than sensor noise would leave"
+        return (Finding("what is left", "fine", f"{sentence}.", numbers, where, time),)
+    sentence = (
+        f"the model leaves {error} of the force, {floors} times what sensor noise would leave"
+    )
+    findings = [Finding("what is left", "warning", f"{sentence}.", numbers, where, time)]
     for one in part.dependences:
         findings.append(_finding(one, where))
     if part.floors > CRITERIA.adequate:
@@ -170,41 +172,43 @@ def _finding(one: DescribedDependence, where: str) -> Finding:
     if d.alike:
         listed = ", ".join(d.alike[:3]) + (", ..." if len(d.alike) > 3 else "")
         alike = f" (no better: {listed})"
-    said = f"{one.sentence}. That is {100 * d.explained:.0f} % of what is left{alike}."
+    sentence = f"{one.sentence}. That is {100 * d.explained:.0f} % of what is left{alike}."
     topic = f"dependence: {d.shape.name}"
-    return Finding(topic, "warning", said[0].upper() + said[1:], numbers, where, one.graph)
+    return Finding(topic, "warning", sentence[0].upper() + sentence[1:], numbers, where, one.graph)
 
 
 def _rest(part: BodyResidual, where: str) -> list[Finding]:
     """Findings on the remaining residual: its frequencies, correlation in time, and size."""
     low, high = part.whiteness.band
     numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
-    said = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
+    sentence = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
     if low < 1.0:  # the first band
-        said = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
+        sentence = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
     if part.whiteness.probability < ALARM:
         largest = int(np.argmax(np.abs(part.whiteness.correlation) / part.whiteness.noise))
         lag, r = part.whiteness.lag[largest], part.whiteness.correlation[largest]
         numbers |= {"lag": float(lag), "correlation": float(r)}
-        said += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
-        said += ", unlike sensor noise"
-    findings = [Finding("frequency", "note", f"{said}.", numbers, where, part.views["frequency"])]
+        sentence += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
+        sentence += ", unlike sensor noise"
+    findings = [
+        Finding("frequency", "note", f"{sentence}.", numbers, where, part.views["frequency"])
+    ]
     if part.at_rest > MOSTLY:
-        said = f"{100 * part.at_rest:.0f} % of the residual lies where no motion can be seen."
+        sentence = f"{100 * part.at_rest:.0f} % of the residual lies where no motion can be seen."
         velocity = part.views["velocity"]
-        findings.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
+        findings.append(Finding("rest", "note", sentence, {"share": part.at_rest}, where, velocity))
     floors = part.after / part.floor if part.floor else float("inf")
     if floors > CRITERIA.adequate and part.after**2 > UNDESCRIBED * part.error**2:
         what = "Beside that" if part.dependences else f"None of {len(SHAPES)} dependences is sure:"
         verb = f"{number(floors)} times the sensors' noise"
-        said = (
+        sentence = (
             f"{what}, {verb} stays undescribed."
             if part.dependences
             else f"{what} {verb} stay undescribed."
         )
         findings.append(
             Finding(
-                "undescribed", "note", said, {"noise floors": floors}, where, part.views["time"]
+                "undescribed", "note", sentence, {"noise floors": floors}, where, part.views["time"]
             )
         )
     return findings

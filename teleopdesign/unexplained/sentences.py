@@ -112,16 +112,18 @@ def sentence_for(
     wave = formula is not None and len(formula.terms) == 1 and formula.terms[0].kind == "wave"
     if shape.is_wave or (wave and len(largest_regions(regions)) > 2):
         assert formula is not None
-        said = _wave(shape, formula, axis)
+        sentence = _wave(shape, formula, axis)
     elif goes_up_and_down(regions) and shape.variable.name in ("position", "time"):
         low, high = float(curve.y.min()), float(curve.y.max())
         over = _describe_range(shape.variable)
-        said = f"{_subject(shape)} goes up and down {over}, by {_spread(low, high, shape, axis)}"
+        sentence = (
+            f"{_subject(shape)} goes up and down {over}, by {_spread(low, high, shape, axis)}"
+        )
     elif regions:
-        said = _ranges(shape, regions, axis)
+        sentence = _ranges(shape, regions, axis)
     else:
         return ""
-    return said + _qualify(shape, contrasts) + _describe_following(formula, axis)
+    return sentence + _qualify(shape, contrasts) + _describe_following(formula, axis)
 
 
 def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
@@ -135,15 +137,15 @@ def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
     if shape.carrier is LOST:
         return " and ".join(f"{where} up to {size}" for where, size, _ in parts)
     need = "the device needs" if shape.carrier is not LATENESS else "the command acts"
-    said = ""
+    sentence = ""
     for where, size, i in parts:
         if i == 0:
-            said = f"{where} {need} up to {size} than the model"
+            sentence = f"{where} {need} up to {size} than the model"
         else:
-            said += f", {where} up to {size}"
+            sentence += f", {where} up to {size}"
     if shape.carrier is FORCE and not shape.variable.signed:
-        said += " (counted in the positive direction)"
-    return said
+        sentence += " (counted in the positive direction)"
+    return sentence
 
 
 def _subject(shape: Shape) -> str:
@@ -198,22 +200,22 @@ def _constant(shape: Shape, value: float, axis: str) -> str:
 
 
 def _qualify(shape: Shape, contrasts: Sequence[Contrast]) -> str:
-    said = ""
+    words = ""
     signed = shape.variable is not None and shape.variable.signed
     for contrast in contrasts:
         directions = "forward" in contrast.sides
         if directions and signed:  # the ranges say it
             continue
         if contrast.only:
-            said += f", only {'moving ' if directions else ''}{contrast.only}"
+            words += f", only {'moving ' if directions else ''}{contrast.only}"
         elif contrast.differs and min(contrast.sizes) > 0:
             strong = int(contrast.sizes[1] > contrast.sizes[0])
             ratio = contrast.sizes[strong] / contrast.sizes[1 - strong]
             if ratio > UNLIKE:
-                said += f", {number(float(ratio))} times as much {contrast.sides[strong]}"
+                words += f", {number(float(ratio))} times as much {contrast.sides[strong]}"
         elif directions and shape.carrier is FRICTION:
-            said += ", in both directions"
-    return said
+            words += ", in both directions"
+    return words
 
 
 def _describe_following(formula: Formula | None, axis: str) -> str:
@@ -230,8 +232,8 @@ def formula_text(formula: Formula, axis: str) -> str:
     if len(parts) > 1 and shape.carrier.name in FACTORS:
         text = f"({text})"
     units = [unit_of(q, axis) for q in (shape.carrier.quantity, shape.variable.quantity)]
-    said = ", ".join(dict.fromkeys(u.replace("*", " ") for u in units if u != "1"))
-    return f"F = {text}{FACTORS.get(shape.carrier.name, '')} ({said})"
+    units_text = ", ".join(dict.fromkeys(u.replace("*", " ") for u in units if u != "1"))
+    return f"F = {text}{FACTORS.get(shape.carrier.name, '')} ({units_text})"
 
 
 def _term(term: FormulaTerm, c: Array, u: str) -> str:

@@ -41,7 +41,7 @@ def served(tmp_path, request):
     finally:
         process.send_signal(signal.SIGINT)
         try:
-            said, _ = process.communicate(timeout=300)
+            output, _ = process.communicate(timeout=300)
         finally:
             process.kill()  # no server stays behind
-    assert (said, process.returncode) == ("teleopdesign: stopped\n", 130)
+    assert (output, process.returncode) == ("teleopdesign: stopped\n", 130)

@@ -128,6 +128,8 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         page.get_by_role("tab", name="Compare").click()
         page.get_by_role("cell", name="device.stribeck.extra_static_level").wait_for()
         page.locator("canvas, svg.marks").first.wait_for()
+        page.get_by_label("Another").select_option("+ stribeck at device")
+        page.wait_for_timeout(1000)  # the chosen model is drawn
         picture(page, folder, "compare")
         page.get_by_role("tab", name="Parameters").click()
         page.get_by_role("columnheader", name="as estimated").wait_for()
@@ -138,6 +140,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         claims = page.get_by_text("proved: Coulomb friction")  # laid out twice, shown once
         claims.locator("visible=true").first.wait_for()
         page.get_by_role("tab", name="Diagram").click()
+        page.wait_for_timeout(500)  # the tab is shown as chosen
         picture(page, folder, "design", full_page=True)
         page.get_by_role("tab", name="Export").click()
         press(page, "Write report, answer, model and script")

@@ -11,7 +11,7 @@ from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.tables import DOORS
 
 
-def test_experiments_and_logs_are_found_below_the_folder(tmp_path):
+def test_experiments_and_logs_below_the_folder_are_listed(tmp_path):
     for name in ("rod", "day/one", "a/b/deep"):
         (tmp_path / name).mkdir(parents=True)
         (tmp_path / name / "experiment.toml").write_text("")

@@ -19,11 +19,11 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_the_columns_are_found_and_what_is_guessed_is_said(folder):
+def test_the_columns_are_recognised_and_guesses_are_reported(folder):
     shown = logs.preview(folder, "swing.csv.gz")
     assert shown.columns == ("t", "u", "x", "f_h")
     table = unescape(shown.table())
-    assert "| position | x | m | m, from its range" in table
+    assert "| position | x | m | m: the name" in table
     assert "| actuator_force | u | N |" in table
     assert "| interaction_force | f_h | N |" in table
     assert len(shown.plot().axes) == 3  # position, actuator force, force of the hand
@@ -98,16 +98,16 @@ def test_a_column_without_a_unit_gets_one_by_hand(bare):
     assert np.ptp(fit.signals["device.position"]) == pytest.approx(np.radians(50), rel=0.01)
 
 
-def test_a_unit_counts_for_the_column_that_was_found(bare):
+def test_a_unit_counts_for_the_recognised_column(bare):
     """No column is chosen: the unit is that of the column that the table shows."""
-    found = logs.preview(bare, "bare.csv").survey.channels["position"]["column"]
+    column = logs.preview(bare, "bare.csv").survey.channels["position"]["column"]
     position = logs.preview(bare, "bare.csv", {"position unit": "deg"}).survey.channels["position"]
-    assert (position["column"], position["unit"]) == (found, "deg")
+    assert (position["column"], position["unit"]) == (column, "deg")
     with pytest.raises(ExperimentError, match="hand force unit: choose the column of the hand"):
         logs.preview(bare, "bare.csv", {**STATED, "hand force": None, "position unit": "rad"})
 
 
-@pytest.mark.parametrize("name", logs.ASKED)
+@pytest.mark.parametrize("name", logs.QUANTITIES)
 @pytest.mark.parametrize(
     ("unit", "says"), [("furlong", "expected a unit such as"), ("kg", "expected one of a")]
 )
@@ -118,7 +118,7 @@ def test_a_wrong_unit_is_one_line_that_names_column_and_unit(bare, name, unit, s
     assert "\n" not in line and STATED[name] in line and unit in line and says in line
 
 
-def test_all_that_a_survey_may_be_told_has_a_field_on_the_page(bare):
+def test_every_choice_of_a_survey_has_a_field_on_the_page(bare):
     """What the command asks for when it is not sure, the page can be told as well."""
     answers = {
         **STATED,
@@ -132,13 +132,13 @@ def test_all_that_a_survey_may_be_told_has_a_field_on_the_page(bare):
     from teleopdesign.app import views
 
     assert set(answers) == set(views.column_form(("a",)).elements)
-    told = logs.choices_of(answers)
-    unsaid = [f.name for f in fields(told) if not getattr(told, f.name) and f.name != "units"]
+    choices = logs.choices_of(answers)
+    unsaid = [f.name for f in fields(choices) if not getattr(choices, f.name) and f.name != "units"]
     assert unsaid == []
-    assert set(logs.units_of(answers)) == set(logs.ASKED.values())
+    assert set(logs.units_of(answers)) == set(logs.QUANTITIES.values())
 
 
-def test_a_log_in_which_nothing_is_found_still_shows_its_columns(tmp_path):
+def test_a_log_without_recognised_columns_still_shows_its_columns(tmp_path):
     t = np.arange(5000) / 100
     rng = np.random.default_rng(3)
     rows = np.column_stack([t, np.sin(t), rng.normal(size=(5000, 2))])

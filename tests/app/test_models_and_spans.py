@@ -99,8 +99,8 @@ def test_the_page_tries_the_effects_that_it_was_started_with(monkeypatch):
 
 
 def test_the_workbench_tries_what_it_is_asked_to_beside_effects_that_are_described():
-    tried = Workbench.of(td.load_experiment(td.example("rod")), among=["bias", "coulomb"])
-    assert [r.candidate.key for r in tried.candidates] == [("bias", "device")]
+    workbench = Workbench.of(td.load_experiment(td.example("rod")), among=["bias", "coulomb"])
+    assert [r.candidate.key for r in workbench.candidates] == [("bias", "device")]
 
 
 def test_a_page_is_not_served_for_an_unknown_effect(tmp_path, capsys):

@@ -29,7 +29,7 @@ def teleoperator(served):
 @pytest.mark.slow
 @pytest.mark.parametrize("served", [FEW], indirect=True)
 @pytest.mark.skipif(CHROMIUM is None, reason=WHY)
-def test_each_side_of_a_teleoperator_is_shown_and_gets_effects_of_its_own(teleoperator):
+def test_each_side_of_a_teleoperator_is_shown_and_gets_separate_effects(teleoperator):
     address, folder = teleoperator
     with opened(address, patience=900) as page:
         press(page, "Open")

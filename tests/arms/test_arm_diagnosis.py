@@ -54,7 +54,7 @@ def test_knowledge_of_two_joints_adds_up():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [2, 4])
-def test_friction_of_every_joint_is_found_with_links_that_nobody_knows(tmp_path, count):
+def test_friction_of_every_joint_is_detected_with_links_that_nobody_knows(tmp_path, count):
     arm, folder = made(tmp_path, 1 + count, count)
     _, fit = fitted(folder)
     for i, (joint, one) in enumerate(fit.fits.items()):
@@ -74,18 +74,18 @@ def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_pat
     written = ["--json", str(answer), "--predictions", str(predictions), "--figure", str(figure)]
     assert main(["diagnose", str(folder), *written]) == 0
     assert figure.stat().st_size > 10_000
-    said = json.loads(answer.read_text())
-    assert said["verdict"] == "effects_missing"
-    assert said["missing"] == [{"effect": "stribeck", "at": "joint2"}]
-    assert {"joint1.coulomb.level", "joint2.viscous.damping"} < set(said["model_parameters"])
-    assert any(name.startswith("arm.link2.") for name in said["model_parameters"])
-    errors = [row["check_error"] for row in said["ladder"]]
+    document = json.loads(answer.read_text())
+    assert document["verdict"] == "effects_missing"
+    assert document["missing"] == [{"effect": "stribeck", "at": "joint2"}]
+    assert {"joint1.coulomb.level", "joint2.viscous.damping"} < set(document["model_parameters"])
+    assert any(name.startswith("arm.link2.") for name in document["model_parameters"])
+    errors = [row["check_error"] for row in document["ladder"]]
     assert errors == sorted(errors, reverse=True)
     rows = list(csv.DictReader(predictions.read_text().splitlines()))
     check = [row for row in rows if row["record"].startswith("check")]
     # all that was hidden is named: what is left does not repeat
-    assert said["learnable"] > 0.8 * said["black_box"]["left"]
-    own = said["ladder"][-1]["joints"]
+    assert document["learnable"] > 0.8 * document["black_box"]["left"]
+    joints = document["ladder"][-1]["joints"]
     for joint in ("joint1", "joint2"):
         measured, left = (
             zero_phase(np.array([float(r[f"{joint}.{q}"]) for r in check]), 8.0, 0.01)[25:-25]
@@ -93,12 +93,12 @@ def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_pat
         )
         error = np.sqrt(np.sum(left**2) / np.sum(measured**2))
         # the force that is compared is averaged over each hold, the recorded one is not: 1 %
-        assert error == pytest.approx(own[joint]["check_error"], rel=0.05)
-    squares = [one["check_error"] ** 2 for one in own.values()]
-    assert said["ladder"][-1]["check_error"] == pytest.approx(np.sqrt(np.mean(squares)))
+        assert error == pytest.approx(joints[joint]["check_error"], rel=0.05)
+    squares = [one["check_error"] ** 2 for one in joints.values()]
+    assert document["ladder"][-1]["check_error"] == pytest.approx(np.sqrt(np.mean(squares)))
 
 
-def test_what_helps_on_at_a_joint_is_said_with_the_answer_and_not_searched_anew():
+def test_what_helps_further_at_a_joint_stands_in_the_answer_and_is_not_searched_anew():
     def joint(verdict, groups, more):
         return SimpleNamespace(verdict=verdict, groups=groups, more_is_missing=more)
 

@@ -129,8 +129,8 @@ def test_the_command_writes_what_the_simulation_says_of_every_joint(two, tmp_pat
     _, experiment, _ = two
     path = tmp_path / "answer.json"
     only = ["--quick", "--only", "bias", "--json", str(path)]
-    asked = [str(experiment.folder), *only, "--simulate", "--loop", "200", "20"]
-    assert main(["diagnose", *asked]) == 0
+    arguments = [str(experiment.folder), *only, "--simulate", "--loop", "200", "20"]
+    assert main(["diagnose", *arguments]) == 0
     assert "Simulation, driven in its loop" in capsys.readouterr().out
     horizons = json.loads(path.read_text())["simulation"]["horizons"]
     assert {h["at"] for h in horizons} == {"joint1", "joint2"}

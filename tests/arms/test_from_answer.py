@@ -71,19 +71,19 @@ def test_two_rounds_settle_links_that_a_missing_effect_had_led_astray(folder):
 
 
 def test_the_diagnosis_reads_back_as_it_was(folder, answer):
-    said = json.loads(answer.read_text())
-    assert said["missing"] == [{"effect": "spring", "at": "joint2"}]
+    document = json.loads(answer.read_text())
+    assert document["missing"] == [{"effect": "spring", "at": "joint2"}]
     experiment = td.load_experiment(folder)
     restored = restore_arm_diagnosis(load_answer(answer), experiment)
     again = json.loads(json.dumps(arm_answer(restored)))
     numbers = {"experiment", "joints", "left_over_noise_floors"}
-    assert {n for n in said if again[n] != said[n]} <= numbers
+    assert {n for n in document if again[n] != document[n]} <= numbers
     for joint in ("joint1", "joint2"):
-        assert again["joints"][joint]["models"] == said["joints"][joint]["models"]
-        assert again["joints"][joint]["verdict"] == said["joints"][joint]["verdict"]
+        assert again["joints"][joint]["models"] == document["joints"][joint]["models"]
+        assert again["joints"][joint]["verdict"] == document["joints"][joint]["verdict"]
         # residuals are computed anew: rounding of what is written
         assert again["joints"][joint]["left_over_noise_floors"] == pytest.approx(
-            said["joints"][joint]["left_over_noise_floors"], rel=1e-6
+            document["joints"][joint]["left_over_noise_floors"], rel=1e-6
         )
     # a notebook shows the ladder and what is said of each joint
     shown = restored._repr_html_()
@@ -101,13 +101,13 @@ def test_the_page_has_a_part_for_each_joint(answer, tmp_path):
     assert "lacks <b>spring</b> at joint2" in html
 
 
-def test_what_trees_learn_is_said_of_each_joint_and_of_the_arm(answer, folder):
-    said = json.loads(answer.read_text())
-    boxes = [said["joints"][j]["black_box"] for j in ("joint1", "joint2")]
-    assert said["black_box"]["left"] == pytest.approx(
+def test_what_trees_learn_is_reported_for_each_joint_and_for_the_arm(answer, folder):
+    document = json.loads(answer.read_text())
+    boxes = [document["joints"][j]["black_box"] for j in ("joint1", "joint2")]
+    assert document["black_box"]["left"] == pytest.approx(
         np.sqrt(np.mean([box["left"] ** 2 for box in boxes]))
     )
-    assert said["learnable"] <= said["black_box"]["left"]
+    assert document["learnable"] <= document["black_box"]["left"]
     text = str(restore_arm_diagnosis(load_answer(answer), td.load_experiment(folder)))
     assert text.count("black box: ") == 2
 
@@ -146,20 +146,25 @@ def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "message"),
     [
         ("describe", "of the force"),
         ("export --to urdf", "joint2.coulomb.level"),
         ("next", "next experiment"),
-        ("passivity --dahl 0.5 2000 --pose joint1=20deg", "largest f_D that is passive"),
+        (
+            "passivity --dahl 0.5 2000 --pose joint1=20deg",
+            "largest compensator level f_D for passivity",
+        ),
     ],
 )
-def test_one_joint_is_taken_from_the_answer(answer, capsys, command, said, monkeypatch, tmp_path):
+def test_one_joint_is_taken_from_the_answer(
+    answer, capsys, command, message, monkeypatch, tmp_path
+):
     monkeypatch.chdir(tmp_path)
     name, *rest = command.split()
     output = ["--output", "joint.urdf"] if name == "export" else []
     assert main([name, str(answer), "--body", "joint2", *rest, *output]) == 0
-    assert said in capsys.readouterr().out
+    assert message in capsys.readouterr().out
 
 
 def test_a_pose_gives_the_inertia_that_the_links_have_there(folder, answer, tmp_path, capsys):
@@ -184,8 +189,8 @@ def test_the_body_of_a_joint_has_the_inertia_of_the_final_links(folder, answer):
 def test_a_bad_pose_is_one_line(answer, capsys, pose):
     arguments = ["--to", "urdf", "--body", "joint1", "--pose", pose, "--output", "x.urdf"]
     assert main(["export", str(answer), *arguments]) == 2
-    said = capsys.readouterr().err.strip()
-    assert f"--pose {pose}" in said and "\n" not in said
+    output = capsys.readouterr().err.strip()
+    assert f"--pose {pose}" in output and "\n" not in output
 
 
 @pytest.mark.parametrize(
@@ -217,8 +222,8 @@ def test_an_answer_that_was_changed_is_refused_in_one_line(
 def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
     second = shutil.copytree(folder, tmp_path / "second")
     out = tmp_path / "out"
-    given = ["--quick", "--only", "spring", "quadratic_drag", "--output", str(out)]
-    assert main(["diagnose", str(folder), str(second), *given]) == 0
+    arguments = ["--quick", "--only", "spring", "quadratic_drag", "--output", str(out)]
+    assert main(["diagnose", str(folder), str(second), *arguments]) == 0
     first, other = csv.DictReader((out / "table.csv").read_text().splitlines())
     assert first["missing"] == "spring at joint2" and not first["failure"]
     # the same records: the same answer

@@ -23,8 +23,8 @@ from teleopdesign.effects import EFFECTS
 
 
 def test_only_an_inertia_is_taken_up_by_base_parameters_at_every_joint():
-    taken = set(EFFECTS) - set(ladder._select_beyond_links(EFFECTS))
-    assert taken == {"added_inertia"}
+    effects = set(EFFECTS) - set(ladder._select_beyond_links(EFFECTS))
+    assert effects == {"added_inertia"}
 
 
 def refused(monkeypatch, errors, floors):

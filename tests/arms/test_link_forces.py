@@ -159,7 +159,7 @@ def test_base_parameters_say_all_that_the_links_do(count, seed):
     assert len(base.names) == len(set(base.names)) <= 11 * count
 
 
-def test_a_link_that_turns_about_the_vertical_is_told_by_one_parameter():
+def test_a_link_that_turns_about_the_vertical_is_determined_by_one_parameter():
     arm = Chain((arm_of(random_arm(np.random.default_rng(3), 1)).links[0],))
     upright = Chain(
         tuple(

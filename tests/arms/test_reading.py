@@ -64,7 +64,7 @@ def test_any_text_is_an_arm_or_one_line(tmp_path_factory, content):
         read_urdf(path, "arm.urdf", ["axis1"])
 
 
-def test_joints_in_the_wrong_order_are_told_the_right_one(tmp_path, text):
+def test_joints_in_the_wrong_order_are_answered_with_the_right_one(tmp_path, text):
     with pytest.raises(ExperimentError, match="axis1, axis2, axis3"):
         read(tmp_path, text, ["axis2", "axis1", "axis3"])
 
@@ -123,7 +123,7 @@ def test_a_bad_description_of_an_arm_is_one_line(tmp_path, folder, before, after
     assert "\n" not in str(caught.value)
 
 
-def test_links_of_the_packages_own_read_as_their_urdf(tmp_path, folder):
+def test_links_in_the_format_of_the_package_read_as_their_urdf(tmp_path, folder):
     experiment = td.load_experiment(folder)
     entries = []
     for i, link in enumerate(experiment.arm.arm.links):
@@ -141,12 +141,12 @@ def test_links_of_the_packages_own_read_as_their_urdf(tmp_path, folder):
         "[channels]", "\n".join([*entries, "[channels]"])
     )
     (tmp_path / "experiment.toml").write_text(written)
-    own = td.load_experiment(tmp_path).arm.arm
+    arm = td.load_experiment(tmp_path).arm.arm
     motion = np.random.default_rng(1).normal(size=(3, 2, 4))
-    given_masses = own.inertial
+    given_masses = arm.inertial
     assert given_masses[0] == 2 and given_masses[3] == pytest.approx(0.2)
     assert np.allclose(
-        force_columns(own, *motion), force_columns(experiment.arm.arm, *motion), atol=1e-12
+        force_columns(arm, *motion), force_columns(experiment.arm.arm, *motion), atol=1e-12
     )
 
 
@@ -161,20 +161,20 @@ def test_an_experiment_on_an_arm_pickles_and_says_itself(folder):
 @pytest.mark.parametrize("command", ["describe", "design", "passivity", "export --to mjcf"])
 def test_a_command_on_one_joint_asks_for_it_in_one_line(folder, capsys, command):
     assert main([*command.split(), str(folder)]) == 2
-    said = capsys.readouterr().err.strip().splitlines()
-    assert "joint1, joint2: choose one with --body" in said[-1]
+    output = capsys.readouterr().err.strip().splitlines()
+    assert "joint1, joint2: choose one with --body" in output[-1]
 
 
-def test_a_joint_that_is_not_there_is_told_the_nearest(folder, capsys):
+def test_a_joint_that_is_not_there_is_answered_with_the_nearest(folder, capsys):
     assert main(["design", str(folder), "--body", "joint3"]) == 2
     assert 'no joint "joint3"' in capsys.readouterr().err
 
 
-def test_the_signals_of_an_arm_are_checked_and_what_is_not_asked_is_said(folder, capsys):
+def test_the_signals_of_an_arm_are_checked_and_what_is_not_asked_is_reported(folder, capsys):
     assert main(["check", str(folder)]) == 0
-    said = " ".join(capsys.readouterr().out.split())
-    assert "joint2.actuator_force: no outliers" in said
-    assert "not checked which effects the record can show" in said
+    output = " ".join(capsys.readouterr().out.split())
+    assert "joint2.actuator_force: no outliers" in output
+    assert "not checked which effects the record can show" in output
 
 
 def test_what_compares_bodies_refuses_an_arm_in_one_line(folder):

@@ -68,7 +68,7 @@ def test_it_pushes_only_beyond_the_contact_position(depth, force):
     assert float(law) == pytest.approx(force, abs=1e-12)
 
 
-def test_its_parameters_go_by_its_own_name_and_belong_to_the_slave(folder):
+def test_parameters_of_an_environment_bear_its_name_and_belong_to_the_slave(folder):
     model = Model.from_experiment(load_experiment(folder))
     assert model.locate("environment.stiffness") == ("slave", "environment.stiffness")
     assert "slave.environment.stiffness" not in model.parameters
@@ -89,7 +89,7 @@ def test_an_environment_without_stiffness_is_named(folder):
         edited(folder, 'stiffness = { value = 0.5, unit = "N/mm" }\n', "")
 
 
-def test_its_effects_stand_in_its_own_table_and_at_its_own_place(folder):
+def test_effects_of_an_environment_stand_in_its_table_and_at_its_place(folder):
     more = """[model.environment.effects]
 contact_damping = { damping = { value = 2, unit = "N*s/m" } }
 
@@ -123,9 +123,9 @@ def test_an_effect_in_the_wrong_table_is_named(folder, effect, table, message):
 
 def test_effects_of_a_contact_are_candidates_where_one_is_modelled_only(folder):
     model = Model.from_experiment(load_experiment(folder))
-    found = {c.key for c in candidates(model)}
-    assert {("contact_damping", "environment"), ("contact_hardening", "environment")} <= found
-    assert not {("viscous", "environment"), ("contact_damping", "slave")} & found
+    keys = {c.key for c in candidates(model)}
+    assert {("contact_damping", "environment"), ("contact_hardening", "environment")} <= keys
+    assert not {("viscous", "environment"), ("contact_damping", "slave")} & keys
     with pytest.raises(ModelError, match="acts at the environment"):
         model.with_effect("contact_damping", at="slave")
     with pytest.raises(ModelError, match="acts at a body"):
@@ -143,9 +143,9 @@ def test_a_right_model_in_contact_leaves_what_the_reference_leaves(case):
     hidden = shared_folder("hidden")
     truth = json.loads((hidden / "truth" / f"{case}.json").read_text())
     experiment = load_experiment(hidden / "cases" / case)
-    found = estimate(Model.from_experiment(experiment), prepare(experiment))
+    fit = estimate(Model.from_experiment(experiment), prepare(experiment))
     # the reference knows the true motion; along an encoder's, friction takes up some of the noise
     # wherever no direction is told
-    assert 0.8 < found.check_error / truth["check_error_base"] < 1.1
+    assert 0.8 < fit.check_error / truth["check_error_base"] < 1.1
     true = truth["model_parameters"]["environment.stiffness"]
-    assert found.model.parameters["environment.stiffness"].value == pytest.approx(true, rel=0.1)
+    assert fit.model.parameters["environment.stiffness"].value == pytest.approx(true, rel=0.1)

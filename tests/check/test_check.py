@@ -60,50 +60,50 @@ def plausible(experiment):
 
 
 def the_one(experiment, topic):
-    found = [f for f in plausible(experiment) if f.concern != "fine"]
-    assert [f.topic for f in found] == [topic], list(map(str, found))
-    return found[0]
+    findings = [f for f in plausible(experiment) if f.concern != "fine"]
+    assert [f.topic for f in findings] == [topic], list(map(str, findings))
+    return findings[0]
 
 
 # signs and units
 
 
 def test_a_right_record_agrees_with_its_model(rod):
-    (found,) = plausible(rod)
-    assert found.concern == "fine"
+    (finding,) = plausible(rod)
+    assert finding.concern == "fine"
     # Stribeck is missing in this model: 6 % of the force, which the inertia takes part of
-    assert found.numbers["inertia"] == pytest.approx(0.19, rel=0.1)
-    assert found.numbers["gain"] == pytest.approx(1.0, abs=0.03)
+    assert finding.numbers["inertia"] == pytest.approx(0.19, rel=0.1)
+    assert finding.numbers["gain"] == pytest.approx(1.0, abs=0.03)
 
 
 @pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force", "position"])
 def test_the_channel_whose_sign_is_turned_is_named(rod, quantity):
-    found = the_one(changed(rod, quantity, np.negative), "signs")
-    assert found.concern == "warning"
-    assert found.sentence.startswith(f"{quantity} has the opposite sign")
-    assert (found.numbers["gain"] < 0) == (quantity != "position")
+    finding = the_one(changed(rod, quantity, np.negative), "signs")
+    assert finding.concern == "warning"
+    assert finding.sentence.startswith(f"{quantity} has the opposite sign")
+    assert (finding.numbers["gain"] < 0) == (quantity != "position")
 
 
 @pytest.mark.parametrize(("factor", "slip"), [(1e3, "in mm, given as m"), (1e2, "in cm, given")])
-def test_a_position_in_another_unit_than_stated_is_told_by_the_model(rod, factor, slip):
-    found = the_one(changed(rod, "position", lambda x: factor * x), "units")
-    assert slip in found.sentence
-    assert found.numbers["ratio.inertia"] == pytest.approx(1 / factor, rel=0.15)
-    assert found.numbers["ratio.coulomb.level"] == pytest.approx(1.0, rel=0.15)
+def test_a_position_in_another_unit_than_stated_is_detected_by_the_model(rod, factor, slip):
+    finding = the_one(changed(rod, "position", lambda x: factor * x), "units")
+    assert slip in finding.sentence
+    assert finding.numbers["ratio.inertia"] == pytest.approx(1 / factor, rel=0.15)
+    assert finding.numbers["ratio.coulomb.level"] == pytest.approx(1.0, rel=0.15)
 
 
-def test_an_inertia_in_grams_given_as_kilograms_is_told_from_a_position(rod):
+def test_an_inertia_in_grams_given_as_kilograms_is_distinguished_from_a_wrong_position(rod):
     model = Model.from_experiment(rod)
     heavy = model.with_values({"device.inertia": 186.6})
-    (found,) = check_plausibility(heavy, prepare(rod))
-    assert "inertia is meant in g, given as kg" in found.sentence
+    (finding,) = check_plausibility(heavy, prepare(rod))
+    assert "inertia is meant in g, given as kg" in finding.sentence
 
 
 @pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force"])
 def test_one_force_in_another_unit_is_named_by_the_inertia(rod, quantity):
-    found = the_one(changed(rod, quantity, lambda x: 1e3 * x), "units")
-    assert f"{quantity} is in another unit" in found.sentence
-    factor = max(found.numbers["gain"], 1 / found.numbers["gain"])
+    finding = the_one(changed(rod, quantity, lambda x: 1e3 * x), "units")
+    assert f"{quantity} is in another unit" in finding.sentence
+    factor = max(finding.numbers["gain"], 1 / finding.numbers["gain"])
     assert factor == pytest.approx(1e3, rel=0.05)
 
 
@@ -123,12 +123,12 @@ def test_one_force_in_another_unit_is_named_by_the_inertia(rod, quantity):
     ],
 )
 def test_a_channel_shifted_by_whole_samples_is_named_with_the_time(rod, quantity, samples, concern):
-    found = the_one(changed(rod, quantity, shifted(samples)), "time shift")
-    assert found.concern == concern
+    finding = the_one(changed(rod, quantity, shifted(samples)), "time shift")
+    assert finding.concern == concern
     # three standard errors of the interaction force's shift, 0.4 ms; of the others' 0.1 ms
     error = 1.2e-3 if quantity == "interaction_force" else 3e-4
-    assert found.numbers[f"{quantity}.lag"] == pytest.approx(samples * 1e-3, abs=error)
-    assert set(found.numbers) & {"left", "unshifted"}
+    assert finding.numbers[f"{quantity}.lag"] == pytest.approx(samples * 1e-3, abs=error)
+    assert set(finding.numbers) & {"left", "unshifted"}
 
 
 @pytest.mark.parametrize(("other", "concern"), [(0.0, "note"), (1.0, "warning")])
@@ -160,11 +160,11 @@ def test_a_shift_by_a_radian_and_more_is_no_delay_on_a_motion_of_one_frequency(o
         bandwidth=10.0,
         effects=["coulomb", "viscous"],
     )
-    found = the_one(experiment, "time shift")
-    assert found.concern == concern and found.numbers["interaction_force.lag"] == pytest.approx(
+    finding = the_one(experiment, "time shift")
+    assert finding.concern == concern and finding.numbers["interaction_force.lag"] == pytest.approx(
         0.29, abs=0.02
     )
-    assert ("no delay before you know it" in found.sentence) == (concern == "note")
+    assert ("no delay before you know it" in finding.sentence) == (concern == "note")
 
 
 # teleoperators
@@ -179,9 +179,9 @@ def test_columns_of_master_and_slave_that_are_swapped_are_named(quantity):
         replace(r, signals={**r.signals, one: r.signals[two], two: r.signals[one]})
         for r in experiment.records
     )
-    found = the_one(replace(experiment, records=records), "swapped columns")
-    assert one in found.sentence and two in found.sentence
-    assert found.numbers["swapped"] < 0.1 < found.numbers["as_given"]
+    finding = the_one(replace(experiment, records=records), "swapped columns")
+    assert one in finding.sentence and two in finding.sentence
+    assert finding.numbers["swapped"] < 0.1 < finding.numbers["as_given"]
 
 
 # what a record can show
@@ -189,17 +189,17 @@ def test_columns_of_master_and_slave_that_are_swapped_are_named(quantity):
 
 def shows(experiment, known):
     model = Model.from_experiment(experiment, known)
-    found = check_excitation(model, prepare(experiment), np.random.default_rng(0))
-    return {f.topic: f for f in found}
+    findings = check_excitation(model, prepare(experiment), np.random.default_rng(0))
+    return {f.topic: f for f in findings}
 
 
-def test_a_rich_record_shows_what_is_tried_and_says_from_which_size(rod, few):
-    found = shows(rod, few)
-    numbers = found["what the record can show"].numbers
+def test_a_rich_record_shows_every_candidate_and_from_which_size(rod, few):
+    findings = shows(rod, few)
+    numbers = findings["what the record can show"].numbers
     assert all(numbers[n] < 0.1 for n in SOME if n not in ("coulomb", "viscous"))
-    assert "stribeck (extra_static_level from 0.0" in found["what the record can show"].sentence
-    assert "bias and coulomb_asymmetry" in found["look-alikes"].sentence
-    assert found["motion"].concern == "fine"
+    assert "stribeck (extra_static_level from 0.0" in findings["what the record can show"].sentence
+    assert "bias and coulomb_asymmetry" in findings["look-alikes"].sentence
+    assert findings["motion"].concern == "fine"
 
 
 def test_effects_that_can_be_shown_stand_in_rows_that_fit_the_terminal(rod, few, monkeypatch):
@@ -228,8 +228,8 @@ def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few
     base = estimate(model, prepared, effort=EFFORTS.rough)
     spring = [c for c in candidates(base.model) if c.effect.name == "spring"]
     floor = base.fit_error
-    (seen,) = visibilities(base, prepared, spring, floor)
-    stiffness = seen.strength["stiffness"]
+    (visibility,) = visibilities(base, prepared, spring, floor)
+    stiffness = visibility.strength["stiffness"]
     # a spring that the machine has and the model lacks: its force is missing from the command
     planted = replace(
         rod,
@@ -267,19 +267,19 @@ def one_way(experiment):
 
 
 def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
-    found = shows(one_way(rod), few)
-    summary = found["what the record can show"]
+    findings = shows(one_way(rod), few)
+    summary = findings["what the record can show"]
     assert math.isinf(summary.numbers["coulomb_asymmetry"])
     assert math.isinf(summary.numbers["bias"]), "one way, friction is a constant force"
     assert "same force as coulomb.level" in summary.sentence
     assert "it moves in one direction only" in summary.sentence
     assert "spring (it never returns to an earlier position)" in summary.sentence
-    motion = found["motion"]
+    motion = findings["motion"]
     assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
     assert "no interaction force is measured" in motion.sentence
 
 
-def test_a_users_own_effect_is_judged_like_any_other(rod, few, tmp_path):
+def test_an_effect_of_the_user_is_judged_like_any_other(rod, few, tmp_path):
     path = tmp_path / "magnet.py"
     path.write_text(
         '"""Magnet: pulls towards the middle, ever less far away."""\n'
@@ -295,7 +295,7 @@ def test_a_users_own_effect_is_judged_like_any_other(rod, few, tmp_path):
     assert 0.0 < numbers["magnet"] < 0.1
 
 
-def test_a_limit_that_the_command_never_reaches_is_said_to_show_below_it(rod):
+def test_a_limit_that_the_command_never_reaches_would_show_below_the_largest_command(rod):
     known = {n: catalogue()[n] for n in ("coulomb", "viscous", "actuator_saturation")}
     sentence = shows(rod, known)["what the record can show"].sentence
     commands = np.abs(rod.records[0].signals["device.actuator_force"])
@@ -307,16 +307,16 @@ def test_a_limit_that_the_command_never_reaches_is_said_to_show_below_it(rod):
 
 
 def test_what_a_record_can_show_is_not_asked_while_signs_disagree(rod):
-    found = check_experiment(changed(rod, "position", np.negative))
-    assert str(found).count("\n") == len(found) - 1, "printed, a line for each"
-    assert found._repr_html_().count("<tr>") == len(found) + 1
-    assert found[-1].sentence.startswith("not checked which effects the record can show")
-    assert [f.topic for f in found if f.concern == "warning"] == ["signs"]
+    findings = check_experiment(changed(rod, "position", np.negative))
+    assert str(findings).count("\n") == len(findings) - 1, "printed, a line for each"
+    assert findings._repr_html_().count("<tr>") == len(findings) + 1
+    assert findings[-1].sentence.startswith("not checked which effects the record can show")
+    assert [f.topic for f in findings if f.concern == "warning"] == ["signs"]
 
 
-def test_a_body_that_never_moves_is_said_to_rest(rod):
-    found = check_experiment(changed(rod, "position", np.zeros_like))
-    assert "device never moves" in found[-1].sentence
+def test_a_body_that_never_moves_is_reported_as_at_rest(rod):
+    findings = check_experiment(changed(rod, "position", np.zeros_like))
+    assert "device never moves" in findings[-1].sentence
 
 
 def test_a_long_record_is_judged_on_windows_of_itself(rod):
@@ -337,10 +337,10 @@ def test_of_many_short_segments_every_nth_is_taken(rod, length):
     pieces = tuple(slice(a, a + length) for a in range(0, 60 * rows, length))
     long = replace(record, time=time, signals=repeated, segments=pieces)
     short = excerpt(replace(rod, records=(long,)), most=60_000)
-    (found,) = short.records
+    (selection,) = short.records
     # a window of 4 s more or less
-    assert sum(s.stop - s.start for s in found.segments) == pytest.approx(60_000, abs=4000)
-    starts = np.array([s.start for s in found.segments])
+    assert sum(s.stop - s.start for s in selection.segments) == pytest.approx(60_000, abs=4000)
+    starts = np.array([s.start for s in selection.segments])
     assert starts[0] < 0.1 * len(time) and starts[-1] > 0.9 * len(time)
     assert np.diff(starts).max() < 3 * np.diff(starts).min() + 2 * length
 
@@ -351,9 +351,9 @@ def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "no warnings." in printed
     assert printed.index("note ") < printed.index("fine ")
-    found = json.loads(path.read_text())["findings"]
-    assert {f["concern"] for f in found} == {"note", "fine"}
-    assert {f["topic"] for f in found} >= {"sample clock", "signs and units", "motion"}
+    answer = json.loads(path.read_text())["findings"]
+    assert {f["concern"] for f in answer} == {"note", "fine"}
+    assert {f["topic"] for f in answer} >= {"sample clock", "signs and units", "motion"}
 
 
 def test_the_command_refuses_a_file_that_it_could_not_write(tmp_path, capsys):
@@ -372,12 +372,12 @@ def test_twenty_seconds_of_records_are_checked_within_two(rod):
 @pytest.mark.slow
 def test_shared_measurements_raise_no_false_warning():
     """Of simulated cases none; a delayed command is a note, for physics does that too."""
-    found = {}
+    topics = {}
     for folder in sorted(shared_folder("hidden/cases").iterdir()):
         warned = [f for f in plausible(load_experiment(folder)) if f.concern == "warning"]
         if warned:
-            found[folder.name] = list(map(str, warned))
-    assert found == {}
+            topics[folder.name] = list(map(str, warned))
+    assert topics == {}
 
 
 def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubted():
@@ -387,7 +387,7 @@ def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubte
     force = np.sign(np.cos(2 * np.pi * 0.3 * t))
     data = {"t": t, "x": position, "F": force}
 
-    def asked(bandwidth):
+    def recorded_below(bandwidth):
         return td.experiment(
             data,
             axis="prismatic",
@@ -398,10 +398,10 @@ def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubte
             bandwidth=bandwidth,
         )
 
-    model = td.Model.from_experiment(asked(40.0))
-    (doubt,) = check_bandwidth(model, prepare(asked(40.0)))
+    model = td.Model.from_experiment(recorded_below(40.0))
+    (doubt,) = check_bandwidth(model, prepare(recorded_below(40.0)))
     assert doubt.topic == "bandwidth" and doubt.concern == "warning"
     assert doubt.numbers["seen"] < 0.5 * doubt.numbers["could"]
     assert 'write bandwidth = { value = 10, unit = "Hz" } at comparison' in doubt.sentence
     # what the finding says to type is taken
-    assert list(check_bandwidth(model, prepare(asked(doubt.numbers["proposed"])))) == []
+    assert list(check_bandwidth(model, prepare(recorded_below(doubt.numbers["proposed"])))) == []

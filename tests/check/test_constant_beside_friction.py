@@ -40,13 +40,13 @@ def write_strokes(folder, side, pressure):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("side", "pressure", "is_said"),
+    ("side", "pressure", "is_reported"),
     [(side, pressure, side < 0) for side in (1.0, -1.0) for pressure in (250.0, 15.0, 0.0)],
 )
-def test_friction_beside_a_pressure_tells_the_sign(side, pressure, is_said, tmp_path):
+def test_friction_beside_a_pressure_tells_the_sign(side, pressure, is_reported, tmp_path):
     findings = check_experiment(write_strokes(tmp_path / "strokes", side, pressure))
-    said = [f for f in findings if "opposite sign" in f.sentence]
-    assert bool(said) == is_said, [f.sentence for f in findings]
+    warnings_of_sign = [f for f in findings if "opposite sign" in f.sentence]
+    assert bool(warnings_of_sign) == is_reported, [f.sentence for f in findings]
 
 
 PENDULUM = EXPERIMENT.replace("prismatic", "revolute").replace("kg", "kg*m^2")
@@ -75,6 +75,6 @@ def write_swings(folder, side, stiffness):
 def test_a_pendulum_that_the_model_lacks_turns_no_inertia(side, stiffness, tmp_path):
     """It swings in phase with its torque, as if it had a negative inertia."""
     findings = check_experiment(write_swings(tmp_path / "swings", side, stiffness))
-    said = [f for f in findings if "opposite sign" in f.sentence]
-    assert bool(said) == (side < 0), [f.sentence for f in findings]
+    warnings_of_sign = [f for f in findings if "opposite sign" in f.sentence]
+    assert bool(warnings_of_sign) == (side < 0), [f.sentence for f in findings]
     assert not [f for f in findings if "lags the motion" in f.sentence]

@@ -84,8 +84,10 @@ def joint(factor):
 
 
 def test_a_position_in_turns_that_is_given_as_radians_is_named():
-    (found,) = check_plausibility(*joint(1 / (2 * np.pi)))
-    assert found.concern == "note" and "the position is in turns, given as rad" in found.sentence
+    (finding,) = check_plausibility(*joint(1 / (2 * np.pi)))
+    assert (
+        finding.concern == "note" and "the position is in turns, given as rad" in finding.sentence
+    )
     (right,) = check_plausibility(*joint(1.0))
     assert right.concern == "fine" and "signs and units agree" in right.sentence
 
@@ -94,17 +96,17 @@ def test_a_position_in_turns_that_is_given_as_radians_is_named():
 def test_an_inertia_several_times_the_models_is_no_agreement(times):
     model, prepared = joint(1.0)
     wrong = model.with_values({"device.inertia": 0.02 / times})
-    (found,) = check_plausibility(wrong, prepared)
-    assert found.concern == "note" and "times the model's" in found.sentence
-    assert "turns" not in found.sentence
-    assert found.numbers["ratio.inertia"] == pytest.approx(times, rel=0.1)
+    (finding,) = check_plausibility(wrong, prepared)
+    assert finding.concern == "note" and "times the model's" in finding.sentence
+    assert "turns" not in finding.sentence
+    assert finding.numbers["ratio.inertia"] == pytest.approx(times, rel=0.1)
 
 
 def test_forces_of_another_scale_are_named_beside_first_values_that_are_guesses():
     model, prepared = joint(1.0)
     rough = {"device.inertia": 1.2, "device.coulomb.level": 12.0, "device.viscous.damping": 0.02}
-    (found,) = check_plausibility(model.with_values(rough), prepared)
-    assert found.concern == "warning" and "a torque constant or a gear ratio" in found.sentence
+    (finding,) = check_plausibility(model.with_values(rough), prepared)
+    assert finding.concern == "warning" and "a torque constant or a gear ratio" in finding.sentence
 
 
 @pytest.mark.parametrize(("word", "meant"), [("stiction", "stribeck"), ("LuGre", "presliding")])

@@ -18,8 +18,8 @@ def test_an_answer_becomes_mjcf_and_urdf_beside_it(answer, capsys):
     capsys.readouterr()
     for form, ending, tag in (("mjcf", ".xml", "mujoco"), ("urdf", ".urdf", "robot")):
         assert main(["export", str(answer), "--to", form]) == 0
-        said = capsys.readouterr().out
-        assert "device.coulomb.level" in said and "left out: stribeck at device" in said
+        output = capsys.readouterr().out
+        assert "device.coulomb.level" in output and "left out: stribeck at device" in output
         root = ElementTree.parse(answer.with_suffix(ending)).getroot()
         assert root.tag == tag and len(list(root.iter("joint"))) == 1
 

@@ -47,13 +47,13 @@ def short_log(tmp_path, monkeypatch, capsys):
 
 def test_no_command_shows_the_commands_and_where_to_begin(capsys):
     assert main([]) == 2
-    said = capsys.readouterr().err
-    assert "teleopdesign new log.csv" in said and "diagnose" in said
+    output = capsys.readouterr().err
+    assert "teleopdesign new log.csv" in output and "diagnose" in output
 
 
 def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
-    said = capsys.readouterr().out
-    (option,) = re.findall(r"otherwise: --torque-constant .*", said)
+    output = capsys.readouterr().out
+    (option,) = re.findall(r"otherwise: --torque-constant .*", output)
     more = shlex.split(option.removeprefix("otherwise: ").replace("VALUE", "0.05"))
     log = ["new", "bench.csv", "--yes", "--output", "joint", *more]
     assert main(log) == 2
@@ -69,7 +69,7 @@ def test_an_answer_that_is_no_number_is_refused_in_one_line(tmp_path, monkeypatc
     rows = np.column_stack([np.round(2000 * np.sin(2 * t)), np.sign(np.cos(2 * t))])
     np.savetxt("log.csv", rows, delimiter=",", header="enc,i (A)", comments="")
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
-    monkeypatch.setattr("builtins.input", lambda asked: "many" if "sample_rate" in asked else "")
+    monkeypatch.setattr("builtins.input", lambda prompt: "many" if "sample_rate" in prompt else "")
     assert main(["new", "log.csv"]) == 2
     assert "sample_rate: found 'many', expected a number" in capsys.readouterr().err
 
@@ -79,13 +79,15 @@ def test_check_says_once_how_the_log_was_read_and_names_no_steps_that_were_inter
 ):
     capsys.readouterr()
     assert main(["check", "joint"]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    output = " ".join(capsys.readouterr().out.split())
     # two records, the fit and the check one
-    assert said.count("of a row off an even clock") == said.count("rows lost") == 2
-    assert "not read in steps" not in said
+    assert output.count("of a row off an even clock") == output.count("rows lost") == 2
+    assert "not read in steps" not in output
 
 
-def test_an_inertia_that_the_motion_does_not_tell_is_said_at_once(tmp_path, monkeypatch, capsys):
+def test_an_inertia_that_the_motion_does_not_tell_is_reported_at_once(
+    tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     t = np.arange(3000) / 500
     rows = np.column_stack([t, np.sin(2 * t), np.cos(2 * t + 0.01) - 0.3 * np.sin(2 * t)])
@@ -97,10 +99,10 @@ def test_an_inertia_that_the_motion_does_not_tell_is_said_at_once(tmp_path, monk
     )
 
 
-def next_commands(said, name):
+def next_commands(output, name):
     """What is printed to be typed next."""
-    lines = re.findall(rf"teleopdesign ({name} .*)", said)
-    assert lines, said
+    lines = re.findall(rf"teleopdesign ({name} .*)", output)
+    assert lines, output
     return shlex.split(lines[-1])
 
 
@@ -113,8 +115,8 @@ def test_each_command_prints_the_next_one_up_to_claims_and_a_figure(tmp_path, mo
     command = next_commands(capsys.readouterr().out, "diagnose")
     few = ["--only", "stribeck", "presliding", "quadratic_drag", "bias"]
     assert main([*command, "--json", "answer.json", "--figure", "figure.pdf", *few]) == 0
-    said = capsys.readouterr().out
-    assert "written: report.html, answer.json, figure.pdf" in said
+    output = capsys.readouterr().out
+    assert "written: report.html, answer.json, figure.pdf" in output
     answer = json.loads(Path("answer.json").read_text(encoding="utf-8"))
     assert answer["missing"] == [{"effect": "stribeck", "at": "device"}]
     device = answer["models"]["ladder"][-1]["device"]
@@ -123,14 +125,14 @@ def test_each_command_prints_the_next_one_up_to_claims_and_a_figure(tmp_path, mo
         value = device["effects"][effect][parameter] if parameter else device["inertia"]
         # 3 standard errors, and what the guessed motor constant is off
         assert value["value"] == pytest.approx(true, abs=3 * value["stderr"] + 0.01 * true), name
-        assert f"device.{name} = " in said
-    assert main(next_commands(said, "design")) == 0
-    said = capsys.readouterr().out
-    assert "device_design.json" in said
-    assert main(next_commands(said, "derive")) == 0
+        assert f"device.{name} = " in output
+    assert main(next_commands(output, "design")) == 0
+    output = capsys.readouterr().out
+    assert "device_design.json" in output
+    assert main(next_commands(output, "derive")) == 0
     transfers = capsys.readouterr().out
     assert "Zhat_M = Gamma^-1 (Z_M - C)" in transfers
-    assert main(next_commands(said, "passivity")) == 0
+    assert main(next_commands(output, "passivity")) == 0
     assert capsys.readouterr().out.count("proved ") >= 1
     assert main(["derive", "answer.json", "--figure", "device.svg"]) == 0
     assert "Zhat_M = (0.012" in capsys.readouterr().out
@@ -153,7 +155,7 @@ def test_derive_takes_the_device_of_an_answer_and_refuses_options_of_one_beside_
     assert main(["diagnose", str(rod), *only, "--json", "answer.json"]) == 0
     capsys.readouterr()
     assert main(["derive", "answer.json"]) == 0
-    said = capsys.readouterr().out
-    assert "Left out, because they have no linear form: Z_M.coulomb, Z_M.stribeck" in said
-    assert re.search(r"With values.*frozen at a speed of \S+ m/s:", said)
+    output = capsys.readouterr().out
+    assert "Left out, because they have no linear form: Z_M.coulomb, Z_M.stribeck" in output
+    assert re.search(r"With values.*frozen at a speed of \S+ m/s:", output)
     assert "--body: found beside a diagram" in refused("derive", "haptic-interface", "--body", "x")

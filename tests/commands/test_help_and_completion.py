@@ -17,13 +17,13 @@ COMMANDS = next(a for a in PARSER._actions if isinstance(a, argparse._SubParsers
 def examples(name):
     """Every command line of the examples in a command's help."""
     text = COMMANDS[name].format_help().partition("examples:\n")[2]
-    found = []
+    results = []
     for line in text.splitlines():
         command = re.search(r"teleopdesign [^|)#]*", line)
         assert command, f"{name}: {line!r} is no command"
         # what explains a command stands two spaces or more behind it
-        found.append(re.split(r"\s{2,}", command[0].strip())[0])
-    return found
+        results.append(re.split(r"\s{2,}", command[0].strip())[0])
+    return results
 
 
 @pytest.mark.parametrize("name", sorted(COMMANDS))

@@ -29,9 +29,9 @@ def test_an_option_that_cannot_be_taken_is_refused_and_nothing_is_written(
     rows = np.column_stack([T, Q, np.sign(np.cos(2 * np.pi * 0.7 * T))])
     np.savetxt("my log.csv", rows, delimiter=",", header="time,pos,current", comments="")
     assert main(["new", "my log.csv", "--yes", *option]) == 2
-    said = capsys.readouterr()
-    assert said.err.count("\n") == 1 and REFUSED[option] in said.err
-    assert not said.out and not (tmp_path / "my log_experiment").exists()
+    output = capsys.readouterr()
+    assert output.err.count("\n") == 1 and REFUSED[option] in output.err
+    assert not output.out and not (tmp_path / "my log_experiment").exists()
 
 
 def test_what_to_type_next_can_be_typed_where_a_name_has_spaces(tmp_path, monkeypatch, capsys):

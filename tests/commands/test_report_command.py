@@ -36,8 +36,8 @@ def data_of(page):
 def test_the_page_of_an_answer_tells_what_the_answer_tells(answer, capsys):
     assert main(["report", str(answer)]) == 0
     page = answer.with_suffix(".html")
-    said = capsys.readouterr().out
-    assert f"written: {page}" in said and "nothing is searched or estimated again" in said
+    output = capsys.readouterr().out
+    assert f"written: {page}" in output and "nothing is searched or estimated again" in output
     shown, saved = data_of(page), json.loads(answer.read_text())
     assert shown["answer"]["candidates"] == saved["candidates"]
     assert shown["answer"]["verdict"] == saved["verdict"]

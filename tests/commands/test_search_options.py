@@ -20,27 +20,27 @@ class Terminal(io.StringIO):
         return True
 
 
-def tried(path):
+def effects_in(path):
     return {c["effect"] for c in json.loads(path.read_text())["candidates"]}
 
 
 @pytest.mark.slow
-def test_only_the_named_effects_are_tried_and_the_answer_says_so(rod, few, tmp_path, capsys):
+def test_only_the_named_effects_are_candidates_and_the_answer_says_so(rod, few, tmp_path, capsys):
     answer = tmp_path / "answer.json"
     command = ["diagnose", str(rod), "--only", "stribeck", "bias", "--json", str(answer)]
     assert main(command) == 0
-    assert tried(answer) == {"stribeck", "bias"}
-    said = "only these effects were candidates: bias, stribeck"
-    assert json.loads(answer.read_text())["left_out"] == [said]
-    assert f"left out: {said}" in capsys.readouterr().out
+    assert effects_in(answer) == {"stribeck", "bias"}
+    note = "only these effects were candidates: bias, stribeck"
+    assert json.loads(answer.read_text())["left_out"] == [note]
+    assert f"left out: {note}" in capsys.readouterr().out
 
 
 @pytest.mark.slow
-def test_an_excluded_effect_is_not_tried(rod, few, tmp_path):
+def test_an_excluded_effect_is_no_candidate(rod, few, tmp_path):
     answer = tmp_path / "answer.json"
     command = ["diagnose", str(rod), "--exclude", "presliding", "--exclude", "spring"]
     assert main([*command, "--json", str(answer)]) == 0
-    assert tried(answer) == {"stribeck", "bias"}
+    assert effects_in(answer) == {"stribeck", "bias"}
 
 
 @pytest.mark.slow
@@ -71,7 +71,7 @@ def test_a_wrong_name_is_one_line_with_the_nearest_name(arguments, expected, rod
     assert expected in refused("diagnose", rod, *arguments)
 
 
-def test_a_folder_behind_only_is_told_to_stand_before_it(rod, refused):
+def test_a_folder_behind_only_is_asked_to_stand_before_it(rod, refused):
     line = refused("diagnose", rod, "--only", "bias", rod)
     assert f'"{rod}" is a file or folder: put it before --only' in line
 
@@ -88,7 +88,7 @@ def test_a_line_of_progress_tells_its_stage_and_count():
     assert ProgressLine("bias", begun=2, total=3).within("step 4") == "step 4: bias (2 of 3)"
 
 
-def test_a_terminal_is_told_the_time_left(monkeypatch):
+def test_a_terminal_shows_the_time_left(monkeypatch):
     terminal, now = Terminal(), [0.0]
     monkeypatch.setattr("sys.stderr", terminal)
     report = Reporter(clock=lambda: now[0])

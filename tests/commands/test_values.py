@@ -23,6 +23,6 @@ def test_a_number_with_a_unit_or_in_si_is_read(text, value):
 def test_anything_else_is_refused_in_one_line(text):
     with pytest.raises(
         ExperimentError, match=r"^--pose joint1: found|^--pose joint1: .*unit"
-    ) as said:
+    ) as error:
         read(text)
-    assert "\n" not in str(said.value)
+    assert "\n" not in str(error.value)

@@ -76,7 +76,7 @@ def desired(t):
 
 
 def force(diagram, *, duration=0.25, motion=SINE, computer="continuous", **arguments):
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=duration,
         inputs={"R_D": desired},
@@ -85,7 +85,7 @@ def force(diagram, *, duration=0.25, motion=SINE, computer="continuous", **argum
         jit=False,
         **{"step": 2.5e-4} | arguments,
     )
-    return found["R_MBC"].values
+    return simulation["R_MBC"].values
 
 
 @pytest.mark.slow
@@ -100,15 +100,15 @@ def test_kernel_and_python_control_give_one_force(name):
     kernel = force(diagram, duration=0.08)  # a reversal at 51 ms
     system = to_iosystem(diagram, prescribed=("L",))
     fine = np.linspace(0, time[-1], 801)
-    given = dict(zip(("L", "L_velocity", "L_acceleration"), SINE.all, strict=True))
-    given |= {"R_D": desired}
-    inputs = [given[n](fine) if n in given else 0 * fine for n in system.input_labels]
+    signals = dict(zip(("L", "L_velocity", "L_acceleration"), SINE.all, strict=True))
+    signals |= {"R_D": desired}
+    inputs = [signals[n](fine) if n in signals else 0 * fine for n in system.input_labels]
     options = {"rtol": 1e-9, "atol": 1e-13, "max_step": 1e-3}
     response = control.input_output_response(
         system, fine, inputs, t_eval=time, solve_ivp_method="LSODA", solve_ivp_kwargs=options
     )
-    found = response.outputs[system.output_labels.index("R_MBC")]
-    assert np.abs(found - kernel).max() < 1e-5 * np.abs(kernel).max()
+    forces = response.outputs[system.output_labels.index("R_MBC")]
+    assert np.abs(forces - kernel).max() < 1e-5 * np.abs(kernel).max()
 
 
 LINEAR = [n for n in RATIONAL if n != "state_space" and CONTROLLERS[n].linear]
@@ -120,13 +120,13 @@ def test_the_linear_form_is_the_law_at_that_speed(name):
     speed = 0.05
     made = law(name)
     ramp = Trajectory(lambda t: speed * t, lambda t: 0 * t + speed, np.zeros_like)
-    found = force(moved(made), motion=ramp, duration=0.1)
+    forces = force(moved(made), motion=ramp, duration=0.1)
     form = made.linear_form("C", S, sp.Float(speed))
     form = form.subs({parameter_symbol("C", n): v for n, v in made.names().items()})
     _, expected = control.step_response(
         as_transfer_function(form * speed / S), PERIOD * np.arange(101)
     )
-    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(forces, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
 
 
 @pytest.mark.slow
@@ -174,8 +174,8 @@ BOUNDED = [law.name for law in laws_that_declare("bound")]
 @given(positions=st.lists(st.floats(-0.1, 0.1), min_size=2, max_size=40))
 def test_no_sequence_of_positions_drives_it_beyond_its_level(name, positions):
     """P38: passivity beside ideal Coulomb friction needs this bound and nothing else."""
-    found = along(law(name), positions, "R_D" if name == "karnopp" else "L")
-    assert np.abs(found).max() <= 0.5 * (1 + 1e-12)
+    forces = along(law(name), positions, "R_D" if name == "karnopp" else "L")
+    assert np.abs(forces).max() <= 0.5 * (1 + 1e-12)
 
 
 def test_an_ability_that_names_no_parameter_is_one_clear_line():
@@ -226,8 +226,8 @@ def test_forward_euler_diverges_where_the_exact_step_does_not():
 
 
 def test_ideal_coulomb_adds_nothing_at_rest():
-    found = along(law("coulomb"), 1e-3 * np.array([0.0, 1.0, 1.0, 1.0, 0.5, 0.5]))
-    np.testing.assert_array_equal(found, [0, 0.5, 0, 0, -0.5, 0])
+    forces = along(law("coulomb"), 1e-3 * np.array([0.0, 1.0, 1.0, 1.0, 0.5, 0.5]))
+    np.testing.assert_array_equal(forces, [0, 0.5, 0, 0, -0.5, 0])
 
 
 def test_ideal_coulomb_in_a_continuous_loop_is_refused_with_the_reason():
@@ -251,11 +251,11 @@ def test_a_law_that_takes_a_force_is_not_wired_to_the_motion():
 
 def test_lugre_in_steady_sliding_is_the_level_of_the_effects():
     speed, made = 0.01, law("lugre", stribeck_velocity=0.02, bristle_damping=0.0)
-    found = along(made, speed * PERIOD * np.arange(6000))[-1]
+    forces = along(made, speed * PERIOD * np.arange(6000))[-1]
     values = SimpleNamespace(level=0.5, extra_static_level=0.1, stribeck_velocity=0.02)
     now = SimpleNamespace(velocity=speed)
     level = sum(EFFECTS[n].law(now, values) for n in ("coulomb", "stribeck"))
-    assert found == pytest.approx(float(level), rel=1e-6)  # after 60 mm, 20 bristle lengths
+    assert forces == pytest.approx(float(level), rel=1e-6)  # after 60 mm, 20 bristle lengths
 
 
 def test_lugre_without_stribeck_and_damping_is_dahl():
@@ -268,8 +268,8 @@ def test_lugre_without_stribeck_and_damping_is_dahl():
 def test_the_sampled_derivative_of_a_ramp_is_its_slope(bandwidth):
     """Also where the derivative's bandwidth is of the order of the sample rate."""
     made = law("proportional_derivative", stiffness=0.0, bandwidth=bandwidth)
-    found = along(made, 0.05 * PERIOD * np.arange(1000))[-1]
-    assert found == pytest.approx(2.0 * 0.05, rel=1e-9)
+    forces = along(made, 0.05 * PERIOD * np.arange(1000))[-1]
+    assert forces == pytest.approx(2.0 * 0.05, rel=1e-9)
 
 
 def test_a_linear_device_follows_its_model_inverse_as_the_low_pass_alone():
@@ -283,7 +283,7 @@ def test_a_linear_device_follows_its_model_inverse_as_the_low_pass_alone():
     _, expected = control.step_response(low_pass, PERIOD * np.arange(101))
     errors = []
     for period in (1e-3, 2.5e-4):
-        found = simulate(
+        simulation = simulate(
             diagram,
             duration=0.1,
             inputs={"L_D": 1.0},
@@ -291,5 +291,5 @@ def test_a_linear_device_follows_its_model_inverse_as_the_low_pass_alone():
             jit=False,
             step=2.5e-4,
         )["L"].values[:: round(PERIOD / period)]
-        errors.append(np.abs(found - expected).max())
+        errors.append(np.abs(simulation - expected).max())
     assert errors[0] < 2e-3 and errors[1] < 0.1 * errors[0]

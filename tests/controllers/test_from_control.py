@@ -31,11 +31,11 @@ def sampled(made, **arguments):
 @pytest.mark.parametrize("system", [NOTCH, FIFTH, control.tf(3.0, 1)])
 def test_a_computer_realises_it_exactly_for_an_input_held_over_a_sample(system):
     """Against python-control's own discretisation by zero-order hold; 1e-12: rounding."""
-    found = sampled(from_control(system))
+    steps = sampled(from_control(system))
     discrete = control.sample_system(control.ss(system), 1e-3, method="zoh")
-    response = control.forced_response(discrete, found["time"].values, found["L"].values)
+    response = control.forced_response(discrete, steps["time"].values, steps["L"].values)
     expected = response.outputs
-    np.testing.assert_allclose(found["R_MBC"], expected, atol=1e-12 * np.abs(expected).max())
+    np.testing.assert_allclose(steps["R_MBC"], expected, atol=1e-12 * np.abs(expected).max())
 
 
 def test_a_filter_of_high_order_keeps_its_digits():
@@ -43,22 +43,22 @@ def test_a_filter_of_high_order_keeps_its_digits():
     zeros, poles, gain = butter(8, 2 * np.pi * 100, analog=True, output="zpk")
     filtered = from_control(control.tf(*butter(8, 2 * np.pi * 100, analog=True)))
     one = {"L": Trajectory(np.ones_like, np.zeros_like, np.zeros_like)}
-    found = sampled(filtered, motion=one, duration=0.05)
-    expected = np.zeros(len(found["time"]), dtype=complex)
+    steps = sampled(filtered, motion=one, duration=0.05)
+    expected = np.zeros(len(steps["time"]), dtype=complex)
     for i, pole in enumerate(poles):
         share = gain / pole / np.prod(pole - np.delete(poles, i))
-        expected += share * (np.exp(pole * found["time"].values) - 1)
+        expected += share * (np.exp(pole * steps["time"].values) - 1)
     assert len(zeros) == 0
-    np.testing.assert_allclose(found["R_MBC"], expected.real, atol=1e-12)
+    np.testing.assert_allclose(steps["R_MBC"], expected.real, atol=1e-12)
 
 
 @pytest.mark.parametrize("dt", [1e-3, True])
 def test_a_discrete_system_is_stepped_as_it_is(dt):
     discrete = control.sample_system(NOTCH, 1e-3, method="tustin")
-    given = control.tf(discrete.num, discrete.den, dt)
-    found = sampled(from_control(given))
-    response = control.forced_response(discrete, found["time"].values, found["L"].values)
-    np.testing.assert_allclose(found["R_MBC"], response.outputs, atol=1e-12)
+    transfer = control.tf(discrete.num, discrete.den, dt)
+    steps = sampled(from_control(transfer))
+    response = control.forced_response(discrete, steps["time"].values, steps["L"].values)
+    np.testing.assert_allclose(steps["R_MBC"], response.outputs, atol=1e-12)
 
 
 def test_its_linear_form_is_its_transfer_function():
@@ -118,7 +118,7 @@ def test_systems_of_one_order_share_one_kernel():
         ),
     ],
 )
-def test_what_is_no_controller_is_said_in_one_line(system, words):
+def test_what_is_no_controller_is_reported_in_one_line(system, words):
     with pytest.raises(ModelError, match=words) as caught:
         from_control(system)
     assert "\n" not in str(caught.value)
@@ -150,9 +150,9 @@ def test_a_nonlinear_system_goes_through_python_control_as_it_is():
     time = np.linspace(0, 0.1, 201)
     inputs = [(0.1 + 0 * time) * (n == "L") for n in system.input_labels]
     response = control.input_output_response(system, time, inputs)
-    found = response.outputs[system.output_labels.index("R_MBC")]
+    forces = response.outputs[system.output_labels.index("R_MBC")]
     np.testing.assert_allclose(
-        found, (0.1 * (1 - np.exp(-50 * time))) ** 3, atol=1e-6
+        forces, (0.1 * (1 - np.exp(-50 * time))) ** 3, atol=1e-6
     )  # its own tolerance, 1e-3 of x
 
 

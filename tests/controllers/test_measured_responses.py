@@ -30,19 +30,19 @@ def test_responses_are_those_of_the_system_that_was_measured():
     """At its own frequencies, where nothing lies between; 1e-12: rounding."""
     known = interface(from_control(FILTER))
     expected = bode(known, frequency=F).values()
-    found = interface(MEASURED)
-    np.testing.assert_allclose(bode(found, frequency=F).values(), expected, rtol=1e-12)
-    matrix = matrix_response(found, ["R_M"], ["R_D"], F).data.values.ravel()
+    diagram = interface(MEASURED)
+    np.testing.assert_allclose(bode(diagram, frequency=F).values(), expected, rtol=1e-12)
+    matrix = matrix_response(diagram, ["R_M"], ["R_D"], F).data.values.ravel()
     np.testing.assert_allclose(matrix, expected, rtol=1e-10)
-    np.testing.assert_allclose(loop_gain(found)(1j * W), loop_gain(known)(1j * W), rtol=1e-12)
+    np.testing.assert_allclose(loop_gain(diagram)(1j * W), loop_gain(known)(1j * W), rtol=1e-12)
 
 
 def test_in_series_it_is_a_factor_and_between_two_frequencies_a_line():
     """1 %: the filter bends by less between 20 frequencies a decade."""
     both = MEASURED.then(controller("gain", {"gain": 2.0}))
     between = 1j * np.sqrt(W[1:] * W[:-1])
-    found, known = (loop_gain(interface(law))(between) for law in (both, from_control(FILTER)))
-    np.testing.assert_allclose(found / known, 2.0, rtol=0.01)
+    response, known = (loop_gain(interface(law))(between) for law in (both, from_control(FILTER)))
+    np.testing.assert_allclose(response / known, 2.0, rtol=0.01)
 
 
 def test_it_is_left_out_by_name_of_what_is_exact():
@@ -53,14 +53,14 @@ def test_it_is_left_out_by_name_of_what_is_exact():
     assert all(c.claim.status != "proved" or "friction" in c.topic for c in claims.claims)
 
 
-def test_what_it_cannot_be_is_said_in_one_line():
-    found = interface(MEASURED)
+def test_what_it_cannot_be_is_reported_in_one_line():
+    diagram = interface(MEASURED)
     for make, words in (
-        (lambda: simulate(found, duration=0.01), "takes part in frequency responses alone"),
-        (lambda: to_iosystem(found), "takes part in frequency responses alone"),
-        (lambda: bode(found, frequency=np.array([500.0])), "measured from 1 to 1000 rad/s"),
-        (lambda: loop_gain(found)(1.0 + 5.0j), "and off it"),
-        (lambda: loop_gain(found).transfer_function(), "is no rational function"),
+        (lambda: simulate(diagram, duration=0.01), "takes part in frequency responses alone"),
+        (lambda: to_iosystem(diagram), "takes part in frequency responses alone"),
+        (lambda: bode(diagram, frequency=np.array([500.0])), "measured from 1 to 1000 rad/s"),
+        (lambda: loop_gain(diagram)(1.0 + 5.0j), "and off it"),
+        (lambda: loop_gain(diagram).transfer_function(), "is no rational function"),
         (lambda: pickle.dumps(MEASURED), "not sent to another process"),
     ):
         with pytest.raises(ModelError) as caught:
@@ -72,11 +72,11 @@ def test_a_delay_margin_is_that_of_the_system_that_was_measured():
     """1 %: lines between 20 frequencies a decade. A gain below 1 throughout bears any delay."""
     for gain in (0.5, 9.0):
         law = controller("gain", {"gain": gain})
-        found, known = (
+        response, known = (
             delay_margin(loop_gain(interface(block.then(law))))
             for block in (MEASURED, from_control(FILTER))
         )
-        assert found == pytest.approx(known, rel=0.01)
+        assert response == pytest.approx(known, rel=0.01)
 
 
 def test_a_matrix_of_responses_is_a_block_for_each_entry_and_a_plant_needs_a_mass():

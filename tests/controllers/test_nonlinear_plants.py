@@ -87,16 +87,16 @@ def test_the_kernel_and_python_control_agree(made, analog):
     """1e-6 of the range: two integrators at tight tolerances on one set of functions."""
     diagram, time = made(analog), np.linspace(0.0, 0.1, 101)
     forces = {n: PUSH[n] for n in diagram.outside}
-    found = simulate(
+    simulation = simulate(
         diagram, duration=0.1, inputs=forces, computer="continuous", step=5e-4, jit=False
     )
     system = to_iosystem(diagram)
-    given = [np.full(len(time), forces[n]) for n in system.input_labels]
-    answer = control.input_output_response(system, time, given, **TIGHT)
-    at = np.rint(found["time"].values / time[1]).astype(int)
+    inputs = [np.full(len(time), forces[n]) for n in system.input_labels]
+    answer = control.input_output_response(system, time, inputs, **TIGHT)
+    at = np.rint(simulation["time"].values / time[1]).astype(int)
     for name in diagram.measured:
         theirs = answer.outputs[system.output_labels.index(name)][at]
-        assert np.abs(found[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
+        assert np.abs(simulation[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
 
 
 @pytest.mark.parametrize("made", [held, linked, with_code])
@@ -104,13 +104,13 @@ def test_in_a_computer_they_agree_sample_by_sample(made):
     diagram, time = made(False), 1e-3 * np.arange(21)
     forces = {n: PUSH[n] for n in diagram.outside}
     computer = Sampling(period=1e-3)
-    found = simulate(diagram, duration=0.02, inputs=forces, computer=computer, jit=False)
+    simulation = simulate(diagram, duration=0.02, inputs=forces, computer=computer, jit=False)
     system = to_iosystem(diagram, dt=1e-3)
-    given = [np.full(21, forces[n]) for n in system.input_labels]
-    answer = control.input_output_response(system, time, given)
+    inputs = [np.full(21, forces[n]) for n in system.input_labels]
+    answer = control.input_output_response(system, time, inputs)
     for name in diagram.measured:
         theirs = answer.outputs[system.output_labels.index(name)]
-        assert np.abs(found[name].values - theirs).max() < 1e-9 * np.ptp(theirs)
+        assert np.abs(simulation[name].values - theirs).max() < 1e-9 * np.ptp(theirs)
 
 
 @pytest.mark.parametrize(

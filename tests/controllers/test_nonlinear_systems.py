@@ -41,7 +41,7 @@ def test_an_analog_system_is_the_same_through_the_kernel_and_through_python_cont
     diagram = haptic_interface(device, cancellation=from_control(cubic()), analog=("C",))
     time = np.linspace(0, 0.2, 201)
     push = 2.0 * np.sin(30.0 * time)  # straight lines between these times in both
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=0.2,
         inputs={"R_V": lambda t: np.interp(t, time, push)},
@@ -56,8 +56,8 @@ def test_an_analog_system_is_the_same_through_the_kernel_and_through_python_cont
         solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-14, "max_step": 5e-4},
     )
     theirs = answer.outputs[system.output_labels.index("L")]
-    assert np.abs(found["L"].values - theirs).max() < 1e-6 * np.ptp(theirs)
-    assert "plain Python" in found.data.attrs["scheme"]
+    assert np.abs(simulation["L"].values - theirs).max() < 1e-6 * np.ptp(theirs)
+    assert "plain Python" in simulation.data.attrs["scheme"]
 
 
 def test_a_computer_carries_a_continuous_system_over_a_sample_with_its_input_held():
@@ -70,8 +70,8 @@ def test_a_computer_carries_a_continuous_system_over_a_sample_with_its_input_hel
         states=2,
     )
     exact = control.ss([[-50.0, 1.0], [0.0, -30.0]], [[1.0], [2.0]], [[3e3, 0.0]], [[7.0]])
-    found, expected = (along(from_control(s))["R_MBC"].values for s in (linear, exact))
-    assert np.abs(found - expected).max() < 1e-8 * np.ptp(expected)
+    forces, expected = (along(from_control(s))["R_MBC"].values for s in (linear, exact))
+    assert np.abs(forces - expected).max() < 1e-8 * np.ptp(expected)
 
 
 @pytest.mark.parametrize("dt", [1e-3, True])
@@ -85,13 +85,13 @@ def test_a_discrete_system_is_stepped_as_python_control_steps_it(dt):
         states=1,
         dt=dt,
     )
-    found = along(from_control(saturated))
-    time, u = found["time"].values, found["L"].values
+    forces = along(from_control(saturated))
+    time, u = forces["time"].values, forces["L"].values
     x, expected = 0.0, []
     for t, value in zip(time, u, strict=True):
         expected.append(100.0 * x * (1.0 + 5.0 * t) + value**3)
         x = float(np.clip(x + 0.2 * value, -4e-3, 4e-3))
-    np.testing.assert_allclose(found["R_MBC"].values, expected, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(forces["R_MBC"].values, expected, rtol=0, atol=1e-15)
 
 
 def test_a_discrete_system_needs_a_computer_of_its_period():
@@ -163,9 +163,9 @@ def test_no_claim_and_no_margin_leaves_it_out_unsaid():
     assert loop_gain(diagram, controller="H").left_out == ("C",)
     with pytest.raises(ModelError, match="loop: C has no linear form"):
         delay_margin(loop_gain(diagram, controller="H"))
-    found = diagram_claims(diagram, rng=np.random.default_rng(1))
-    assert "C" in found.nonlinear
-    whole = [one for one in found.claims if "port" in one.topic]
+    claims = diagram_claims(diagram, rng=np.random.default_rng(1))
+    assert "C" in claims.nonlinear
+    whole = [one for one in claims.claims if "port" in one.topic]
     assert whole
     for one in whole:
         assert one.claim.status == "unknown"

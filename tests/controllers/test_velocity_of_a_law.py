@@ -148,8 +148,8 @@ def test_a_spring_on_a_delayed_position_damps_the_motion_that_it_is_wired_along(
         (300.0 * np.exp(-0.015j) + 5.0j) / (0.2 * (1j) ** 2 + 4.0j), rel=1e-12
     )
     assert as_text(transfer(diagram, "x")["f"]) == "(M + V_K + exp(-s T) K)^-1"
-    found = delay_margin(loop_gain(diagram, controller="K"))
-    assert 0 < found < np.inf
+    response = delay_margin(loop_gain(diagram, controller="K"))
+    assert 0 < response < np.inf
 
 
 def test_a_law_that_takes_a_velocity_is_refused_where_no_motion_says_which():
@@ -168,12 +168,12 @@ def test_describing_functions_take_both_inputs_of_a_law():
     """A law without friction: the describing functions are the linear forms, 1e-9 of rounding."""
     law = LAWS["a user's own"]
     diagram = behind(FRONTS["low-passed"], law)
-    found = quasi_linear_impedance(
+    response = quasi_linear_impedance(
         diagram, amplitude=0.01, frequency=[FREQUENCY], motion="x", force="f"
     )
     expression, _ = with_values(diagram, output="f", input="x", given="x")
     expected = numerical(expression)(np.array([2j * np.pi * FREQUENCY]))
-    np.testing.assert_allclose(found.data["impedance"].values.ravel(), expected, rtol=1e-4)
+    np.testing.assert_allclose(response.data["impedance"].values.ravel(), expected, rtol=1e-4)
 
 
 def test_a_block_of_the_name_that_the_derivation_needs_is_refused():
@@ -206,8 +206,8 @@ def test_a_mode_that_input_and_velocity_cancel_still_grows(front):
     growth = growth_within(diagram)
     assert growth is not None
     assert growth > 0.5
-    found = diagram_claims(diagram, rng=np.random.default_rng(1))
-    assert not [one for one in found.claims if one.claim.status == "proved"]
+    claims = diagram_claims(diagram, rng=np.random.default_rng(1))
+    assert not [one for one in claims.claims if one.claim.status == "proved"]
 
 
 def test_a_claim_over_an_interval_of_a_law_with_two_inputs_is_not_exact():

@@ -102,11 +102,11 @@ def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
     k = 2 * unknown.index(output)
     for i, signal in enumerate(diagram.outside):
         expected = solved[k : k + 2, 2 * i : 2 * i + 2]
-        own = numeric(sp.sympify(transfers[signal]), values)
+        value = numeric(sp.sympify(transfers[signal]), values)
         # weights such as 0.5 are floating numbers, and inverses one inside the other lose digits;
         # a wrong term is off by the size of the blocks
         limit = 1e-7 * (1 + np.abs(expected).max())
-        np.testing.assert_allclose(own, expected, rtol=0, atol=limit)
+        np.testing.assert_allclose(value, expected, rtol=0, atol=limit)
 
 
 def test_a_sum_that_vanishes_only_exactly_determines_nothing():
@@ -136,8 +136,8 @@ def test_a_sum_that_vanishes_only_exactly_determines_nothing():
 def test_an_algebraic_loop_with_a_solution_is_solved():
     diagram = looped(Junction("b", {"a": 1, "c": -1}), Junction("c", {"b": 1}))
     assert transfer(diagram, "b")["a"] == sp.Rational(1, 2)
-    own = looped(Junction("b", {"a": 1, "b": -3}))
-    assert transfer(own, "b")["a"] == sp.Rational(1, 4)
+    self_loop = looped(Junction("b", {"a": 1, "b": -3}))
+    assert transfer(self_loop, "b")["a"] == sp.Rational(1, 4)
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_an_algebraic_loop_with_a_solution_is_solved():
         ),
     ],
 )
-def test_a_loop_without_a_solution_is_told_by_its_signals(diagram, words):
+def test_a_loop_without_a_solution_is_reported_by_its_signals(diagram, words):
     last = diagram.junctions[-1].output
     with pytest.raises(ModelError) as caught:
         transfer(diagram, last)
@@ -167,7 +167,7 @@ def test_a_loop_without_a_solution_is_told_by_its_signals(diagram, words):
     assert words in text and "->" in text and "\n" not in text
 
 
-def test_a_loop_that_has_no_solution_at_its_values_only_is_told():
+def test_a_loop_that_has_no_solution_at_its_values_only_is_reported():
     """e = a + u with u = e: the lead's gain at its pole equal to its zero is 1."""
     one = controller("lead", {"gain": 1.0, "zero": 1.0, "pole": 1.0})
     diagram = Diagram(
@@ -207,7 +207,7 @@ def test_a_derivation_that_takes_too_long_is_named():
     assert "was not derived within" in transfers.undone["T_H"] and "T_H: " in transfers.text()
 
 
-def test_a_transfer_that_is_not_there_is_told_with_the_nearest():
+def test_a_transfer_that_is_not_there_is_reported_with_the_nearest():
     with pytest.raises(ModelError, match='did you mean "T_MBC"'):
         all_transfers(load_shipped("haptic-interface"))["T_MCB"]
 
@@ -238,7 +238,7 @@ def test_names_are_printed_with_their_indices():
     assert name_as_latex("R_M/R_MBC") == r"R_{M}/R_{\mathrm{MBC}}"
 
 
-def test_numbers_alone_are_told_apart_on_matrices_of_a_given_size():
+def test_numbers_alone_are_recognised_on_matrices_of_a_given_size():
     assert counterexample(sp.S(1), sp.S(2)) == {}
     assert counterexample(sp.S(1), sp.S(1)) is None
     assert insert_matrices(sp.S(3), {}, size=2) == 3 * sp.eye(2)

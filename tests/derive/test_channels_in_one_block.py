@@ -48,5 +48,5 @@ def test_impedances_and_hybrid_matrix_are_those_of_the_matrix(s):
     for name, expression in functions.items():
         assert "1.0" not in str(expression)
         numbers = {x: complex(values[x.name]) for x in expression.free_symbols}
-        found = complex(expression.subs(numbers))
-        assert found == pytest.approx(expected[name], rel=1e-12)
+        value = complex(expression.subs(numbers))
+        assert value == pytest.approx(expected[name], rel=1e-12)

@@ -67,25 +67,25 @@ def number(expression, at, late):
 def test_the_hybrid_matrix_is_that_of_an_independent_derivation(scaled):
     """Compared at random rational numbers in exact arithmetic, each e^(-s T) one."""
     scales = {"position_scale": 0.5, "force_scale": 2.0} if scaled else {}
-    found, expected = two_port_functions(four_channel(delay=0.02, **scales)), by_hand(scaled)
+    functions, expected = two_port_functions(four_channel(delay=0.02, **scales)), by_hand(scaled)
     rng = np.random.default_rng(1)
     for _ in range(3):
         at = {x: sp.Rational(int(rng.integers(1, 99)), 7) for x in B.values()}
         numbers = {k: sp.Rational(int(rng.integers(1, 99)), 100) for k in T}
         for name, formula in expected.items():
-            values = [number(e, at, numbers) for e in (commuting(found[name]), formula)]
+            values = [number(e, at, numbers) for e in (commuting(functions[name]), formula)]
             assert values[0] == values[1], name
 
 
 def test_perfect_transparency_is_the_ideal_hybrid_matrix():
     """C_1 = Z_s + C_s, C_4 = Z_m + C_m, C_2 = C_3 = 1, no delay: Lawrence's condition."""
-    found = two_port_functions(four_channel())
+    functions = two_port_functions(four_channel())
     ideal = {"h_12": -1, "h_21": 1, "h_22": 0}
     z = {"Z_m": 3, "C_m": 5, "Z_s": 7, "C_s": 2, "C_1": 9, "C_4": 8, "C_2": 1, "C_3": 1}
     for name, number in ideal.items():
-        e = commuting(found[name])
+        e = commuting(functions[name])
         assert sp.nsimplify(e.subs({B[n]: v for n, v in z.items()})) == number
-    assert sp.nsimplify(commuting(found["h_11"]).subs({B[n]: v for n, v in z.items()})) == 0
+    assert sp.nsimplify(commuting(functions["h_11"]).subs({B[n]: v for n, v in z.items()})) == 0
 
 
 def test_the_shipped_diagram_derives_and_comes_back_from_a_file(tmp_path):
@@ -143,7 +143,7 @@ def test_power_into_the_ports_is_the_same_in_both():
     assert h + h.T == sp.Matrix([[5, 0], [0, 1]])  # no part that is not passive: h_12 = -h_21
 
 
-def test_no_convention_or_function_is_said_in_one_line():
+def test_no_convention_or_function_is_reported_in_one_line():
     four = four_channel()
     singular = sp.Matrix([[1, 1], [1, 0]])
     for make, words in (

@@ -90,7 +90,7 @@ def test_a_simulated_device_with_a_hidden_effect(choose_from, tmp_path):
 
 
 @pytest.mark.slow
-def test_each_body_of_a_teleoperator_is_a_device_of_its_own(few, tmp_path):
+def test_each_body_of_a_teleoperator_is_a_separate_device(few, tmp_path):
     written_case(tmp_path / "case", "stribeck", "teleoperator")
     assert main(["design", str(tmp_path / "case"), "--json", str(tmp_path / "d.json")]) == 0
     made = designs(tmp_path / "d.json")

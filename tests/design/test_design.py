@@ -18,9 +18,9 @@ from teleopdesign.errors import ExperimentError, ModelError
 from teleopdesign.realise.friction_interval import friction_interval
 
 
-def with_effect(found, name, values):
+def with_effect(diagnosis, name, values):
     """The diagnosed rod with one effect more, its values taken as exact."""
-    return replace(found, model=found.model.with_effect(name, values=values))
+    return replace(diagnosis, model=diagnosis.model.with_effect(name, values=values))
 
 
 def test_the_cancelled_level_is_below_every_level_in_the_interval(designed):
@@ -35,7 +35,7 @@ def test_passivity_of_the_cancellation_is_proved_with_a_certificate(designed):
     assert proof.certificates
 
 
-def test_energy_given_out_is_found_where_force_feedback_is_late(designed):
+def test_late_force_feedback_gives_out_energy(designed):
     """Cancellation takes energy in every motion tried; behind a 20 Hz low-pass H does not."""
     for case, holds in (("none", True), ("MBC", True), ("FF", False), ("hybrid", False)):
         claim = designed.claims[case][-1]
@@ -77,17 +77,17 @@ def test_the_quasi_static_error_is_p13_for_coulomb_friction():
     """r(v) = F_C a (b + v)/((a + v)(b + v + k b)) without inertia, at the paper's readings."""
     diagram = world_haptics_2005().with_values({"Z_M.inertia": 0.0})
     motion = StatedMotion(0.0, 0.01, 1.5)
-    found = quasi_static_error(diagram, motion, rows=200)
+    error = quasi_static_error(diagram, motion, rows=200)
     v = np.abs(motion.cycle(200)[2])
     a, b, k, level = 0.015, 0.08, 5.0, 0.5
     expected = level * a * (b + v) / ((a + v) * (b + v + k * b))
-    assert np.abs(found) == pytest.approx(expected, rel=1e-9)
+    assert np.abs(error) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.slow
 def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
-    found = with_effect(rod, "presliding", {"stiffness": 4000.0})
-    made = design(found, assumptions=Assumptions(delay=1e-4))
+    diagnosis = with_effect(rod, "presliding", {"stiffness": 4000.0})
+    made = design(diagnosis, assumptions=Assumptions(delay=1e-4))
     assert made.cancellation.law == "dahl"
     stiffness = made.cancellation.controller.names()["dahl.stiffness"]
     level = made.cancellation.controller.names()["dahl.level"]
@@ -119,16 +119,16 @@ def test_friction_that_may_be_none_is_not_cancelled(unsure):
 def test_an_actuator_that_gives_more_is_commanded_less(rod, designed):
     """Force that acts is command times gain: so are the level and the stiffness of C."""
     body = with_effect(rod, "actuator_gain", {"gain": 1.25}).model.body("device")
-    found = cancellations(body, designed.friction, designed.reach, designed.assumptions)
+    blocks = cancellations(body, designed.friction, designed.reach, designed.assumptions)
     plain = cancellations(designed.body, designed.friction, designed.reach, designed.assumptions)
-    assert [c.law for c in found] == [c.law for c in plain] == ["dahl", "smoothed_coulomb"]
-    for one, own in zip(found, plain, strict=True):
-        values, wanted = one.controller.names(), own.controller.names()
+    assert [c.law for c in blocks] == [c.law for c in plain] == ["dahl", "smoothed_coulomb"]
+    for one, reference in zip(blocks, plain, strict=True):
+        values, wanted = one.controller.names(), reference.controller.names()
         key = f"{one.law}.level"
         # rounded down to three digits
         assert values[key] == pytest.approx(wanted[key] / 1.25, rel=0.005)
-    dahl, own = found[0].controller.names(), plain[0].controller.names()
-    assert dahl["dahl.stiffness"] == pytest.approx(own["dahl.stiffness"] / 1.25, rel=0.01)
+    dahl, reference = blocks[0].controller.names(), plain[0].controller.names()
+    assert dahl["dahl.stiffness"] == pytest.approx(reference["dahl.stiffness"] / 1.25, rel=0.01)
 
 
 def test_what_is_proposed_is_a_diagram_file(designed, tmp_path):
@@ -179,16 +179,16 @@ def test_an_answer_gives_the_model_that_the_diagnosis_ended_with(experiment, tmp
     from teleopdesign.effects import EFFECTS
 
     known = {n: EFFECTS[n] for n in ("coulomb", "viscous", "stribeck", "bias")}
-    found = td.find_missing(experiment, td.Model.from_experiment(experiment, known))
-    write_answer(found, tmp_path / "answer.json")
+    diagnosis = td.find_missing(experiment, td.Model.from_experiment(experiment, known))
+    write_answer(diagnosis, tmp_path / "answer.json")
     read = read_answer(tmp_path / "answer.json", experiment)
-    assert read.model.effects == found.model.effects
-    for name, value in found.model.parameters.items():
+    assert read.model.effects == diagnosis.model.effects
+    for name, value in diagnosis.model.parameters.items():
         other = read.model.parameters[name]
         assert (other.value, other.stderr, other.fixed) == pytest.approx(
             (value.value, value.stderr, value.fixed)
         )
-    assert read.left == pytest.approx(found.left)
+    assert read.left == pytest.approx(diagnosis.left)
 
 
 @pytest.mark.parametrize(
@@ -221,8 +221,8 @@ def test_a_dahl_cancellation_equals_a_damper_in_linear_theory():
                 (td.EFFECTS["viscous"],))  # fmt: skip
     motion = StatedMotion(0.0, 0.02, 1.0)
     made = haptic_interface(body, cancellation=controller("dahl", {"level": 0.5, "stiffness": 1e6}))
-    found = linear_cases(made, motion)["MBC"].values["Z_M.viscous.damping"]
-    assert 50.0 - found == pytest.approx(4 * 0.5 / (np.pi * motion.peak_speed), rel=1e-3)
+    factor = linear_cases(made, motion)["MBC"].values["Z_M.viscous.damping"]
+    assert 50.0 - factor == pytest.approx(4 * 0.5 / (np.pi * motion.peak_speed), rel=1e-3)
 
 
 @pytest.mark.slow
@@ -238,7 +238,7 @@ def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     assert none.simulated == pytest.approx(none.quasi_static, rel=0.2)
 
 
-def test_friction_that_no_record_has_shown_backward_is_said(designed, rod):
+def test_friction_that_no_record_has_shown_backward_is_reported(designed, rod):
     from teleopdesign.design.notes import notes_on
 
     one_way = replace(designed, reach=replace(designed.reach, both_ways=False))

@@ -21,13 +21,13 @@ REACH = Reach(
 
 def body(level=1.0, stderr=0.0, **effects):
     """A body of 0.2 kg with Coulomb friction and other effects, {name: {parameter: value}}."""
-    found = Body("prismatic", {"inertia": Value(0.2)})
-    found = found.with_effect(td.EFFECTS["coulomb"]).with_values(
+    device = Body("prismatic", {"inertia": Value(0.2)})
+    device = device.with_effect(td.EFFECTS["coulomb"]).with_values(
         {"coulomb.level": Value(level, stderr=stderr)}
     )
     for name, values in effects.items():
-        found = found.with_effect(td.EFFECTS[name], values)
-    return found
+        device = device.with_effect(td.EFFECTS[name], values)
+    return device
 
 
 def least(device, errors=0.0):
@@ -41,9 +41,9 @@ def test_coulomb_friction_is_its_level_less_the_errors():
 
 def test_stribeck_friction_is_least_in_fast_motion():
     device = body(1.0, stribeck={"extra_static_level": 0.4, "stribeck_velocity": 0.02})
-    found = friction_interval(device, REACH, errors=0.0)
-    assert found.lowest.estimate == pytest.approx(1.0)
-    assert found.highest.estimate == pytest.approx(1.4)
+    interval = friction_interval(device, REACH, errors=0.0)
+    assert interval.lowest.estimate == pytest.approx(1.0)
+    assert interval.highest.estimate == pytest.approx(1.4)
 
 
 def test_friction_of_two_levels_is_the_lower_one():

@@ -6,9 +6,9 @@ import pytest
 @pytest.fixture(scope="session")
 def stribeck_case(tmp_path_factory):
     """A device whose model lacks `stribeck`: the folder, with truth.json."""
-    from diagnose.own_cases import write_own
+    from diagnose.simulated_cases import write_simulated
 
-    return write_own(tmp_path_factory.mktemp("own") / "stribeck", "stribeck")
+    return write_simulated(tmp_path_factory.mktemp("own") / "stribeck", "stribeck")
 
 
 @pytest.fixture(scope="session")
@@ -20,8 +20,8 @@ def experiment(stribeck_case):
 
 @pytest.fixture(scope="session")
 def diagnosis(experiment):
-    """What is found on `stribeck_case` among the few effects of `own_cases.FEW`."""
-    from diagnose.own_cases import FEW
+    """What is found on `stribeck_case` among the few effects of `simulated_cases.FEW`."""
+    from diagnose.simulated_cases import FEW
 
     from teleopdesign import Model, find_missing
 

@@ -47,7 +47,7 @@ def violations(answer, places=("device",)):
     need(verdict in VERDICTS, f"verdict {verdict!r}")
     need(all(is_place(place_of(d)) for d in missing), "missing: an entry is no effect at a place")
     need(all(set(d) <= {*PLACE, "instead_of"} for d in missing), "missing: keys of an entry")
-    taken = {(d["effect"], d["at"]): d.get("instead_of") for d in missing}
+    replacements = {(d["effect"], d["at"]): d.get("instead_of") for d in missing}
     need(bool(missing) == (verdict == "effects_missing"), "verdict and missing disagree")
     keys = [(d["effect"], d["at"]) for d in missing]
     need(len(set(keys)) == len(keys), "missing: the same effect twice")
@@ -59,13 +59,16 @@ def violations(answer, places=("device",)):
         need(instead is None or isinstance(instead, str), "ladder: instead_of")
         if row["added"] is not None:
             key = row["added"]["effect"], row["added"]["at"]
-            need(taken.get(key, instead) == instead, "missing: instead_of")
+            need(replacements.get(key, instead) == instead, "missing: instead_of")
         others = row["could_be"]
         need(others is None or all(map(is_place, others)), "ladder: could_be")
         need(is_number(row["fit_error"], 0, 1e6), "ladder: fit_error")
         need(is_number(row["check_error"], 0, 1e6), "ladder: check_error")
-        seen = row["check_error_at_command"]
-        need(seen is None or is_number(seen, 0, 1e6), "ladder: check_error_at_command")
+        error_at_command = row["check_error_at_command"]
+        need(
+            error_at_command is None or is_number(error_at_command, 0, 1e6),
+            "ladder: check_error_at_command",
+        )
         need(is_number(row["blind"], 0, 1), "ladder: blind")
     errors = [row["check_error"] for row in ladder]
     need(errors == sorted(errors, reverse=True), "ladder: a rung leaves more than the one before")
@@ -73,9 +76,9 @@ def violations(answer, places=("device",)):
     added = [row["added"] for row in ladder[1:]]
     named = [place_of(d) for d in missing]
     need(all(d in added for d in named), "missing: what the ladder has not added")
-    said = {(c["effect"], c["at"]): c["probability"] for c in answer["candidates"]}
-    need(all(said[key] >= 0.5 for key in keys), "missing: less likely than not")
-    likely = [d for d in added if said[d["effect"], d["at"]] >= 0.5]
+    chances = {(c["effect"], c["at"]): c["probability"] for c in answer["candidates"]}
+    need(all(chances[key] >= 0.5 for key in keys), "missing: less likely than not")
+    likely = [d for d in added if chances[d["effect"], d["at"]] >= 0.5]
     need(named == likely or verdict == "undecided", "missing: a likely one is left out")
     for row in ladder[1:]:
         same = [c for c in answer["candidates"] if row["added"] == {k: c[k] for k in PLACE}]

@@ -61,14 +61,14 @@ def write_made(
             x = motion(t)
             v = np.gradient(x, t)
             needed = inertia * np.gradient(v, t) + force(t, x, v)
-            own = slice(None, None, fine)
+            samples = slice(None, None, fine)
             # a row's force holds until the next: its mean over the row
             held = needed.reshape(-1, fine).mean(axis=1)
-            q = step * np.round(x[own] / step)
+            q = step * np.round(x[samples] / step)
             tau = held + noise * rng.standard_normal(len(held))
             rows += [
                 f"{begin + s:.6f},{a:.9g},{b:.9g},{part}"
-                for s, a, b in zip(t[own], q, tau, strict=True)
+                for s, a, b in zip(t[samples], q, tau, strict=True)
             ]
             begin += duration
         (folder / f"{use}.csv").write_text("t,q,tau,part\n" + "\n".join(rows) + "\n")

@@ -47,9 +47,11 @@ def ranked(error, effect="stribeck", **more):
     """A candidate whose fit leaves this error."""
     identifiable = more.pop("is_identifiable", True)
     instead = more.pop("instead_of", None)
-    said = {k: more.pop(k) for k in ("refused", "implausible") if k in more}
+    reasons = {k: more.pop(k) for k in ("refused", "implausible") if k in more}
     candidate = Candidate(EFFECTS[effect], "device")
-    return Ranked(candidate, fit(error, **more), 9.0, 0.0, identifiable, instead_of=instead, **said)
+    return Ranked(
+        candidate, fit(error, **more), 9.0, 0.0, identifiable, instead_of=instead, **reasons
+    )
 
 
 def rung(error, added=None, alternatives=()):

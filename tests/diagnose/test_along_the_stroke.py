@@ -9,7 +9,7 @@ import teleopdesign as td
 FRICTION = "coulomb = { level = 0.02 }\nviscous = { damping = 0.01 }"
 INERTIA = 0.01  # kg m^2
 #: what depends on the place or the command, and what that is mistaken for
-TRIED = (
+CANDIDATES = (
     "actuator_gain bias cogging cogging_harmonic coulomb coulomb_asymmetry hardening_spring "
     "load_dependent_friction position_dependent_friction position_dependent_gain quadratic_drag "
     "shear_thinning spring stribeck torque_ripple viscous viscous_asymmetry"
@@ -38,7 +38,7 @@ def diagnose(folder, force, size, **changed):
         folder, records, force, effects=FRICTION, step=2e-5, noise=2e-3, bandwidth=60,
         inertia=INERTIA, rate=1000, fixed=False, **changed,
     )  # fmt: skip
-    return td.find_missing(td.load_experiment(folder), among=TRIED)
+    return td.find_missing(td.load_experiment(folder), among=CANDIDATES)
 
 
 def named(diagnosis):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose.contract import violations
-from diagnose.own_cases import FEW
+from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, compare, find_missing
 from teleopdesign.diagnose.answer import (
@@ -56,12 +56,12 @@ def test_a_ladder_ends_before_a_rung_that_leaves_more(diagnosis):
     assert without_rise((*rungs, worse)) == rungs
 
 
-def test_the_error_seen_at_the_command_is_told_where_it_differs(diagnosis):
+def test_the_error_at_the_command_is_reported_where_it_differs(diagnosis):
     after = diagnosis.after
     assert command_error_text(after) is None  # nothing stands between command and force
     less = replace(after.at_command, error=2 * after.check_error, blind=0.1)
-    said = f"{200 * after.check_error:.2f} %, undefined in 10 % of the motion"
-    assert command_error_text(replace(after, at_command=less)).endswith(said)
+    note = f"{200 * after.check_error:.2f} %, undefined in 10 % of the motion"
+    assert command_error_text(replace(after, at_command=less)).endswith(note)
     last = diagnosis.last
     first = replace(
         last.ranked[0], refused="blind", fit=replace(after, check_error=0.5 * after.check_error)
@@ -71,7 +71,7 @@ def test_the_error_seen_at_the_command_is_told_where_it_differs(diagnosis):
     assert f"refused: {first.candidate}" in text and REFUSALS["blind"] in text
 
 
-def test_the_answer_says_what_the_diagnosis_found(written, diagnosis):
+def test_the_answer_states_the_result_of_the_diagnosis(written, diagnosis):
     assert written["verdict"] == "effects_missing"
     assert written["missing"][0] == {"effect": "stribeck", "at": "device"}
     assert written["check"] == "records"
@@ -83,17 +83,15 @@ def test_the_answer_says_what_the_diagnosis_found(written, diagnosis):
     assert set(written["model_parameters"]) == set(diagnosis.before.model.parameters)
 
 
-def test_every_effect_tried_is_a_candidate(written, diagnosis):
-    tried = {
-        r.candidate.key for g in (diagnosis.rungs[1].ranking, diagnosis.last) for r in g.ranked
-    }
-    assert {(c["effect"], c["at"]) for c in written["candidates"]} == tried
+def test_every_effect_of_the_search_is_a_candidate(written, diagnosis):
+    keys = {r.candidate.key for g in (diagnosis.rungs[1].ranking, diagnosis.last) for r in g.ranked}
+    assert {(c["effect"], c["at"]) for c in written["candidates"]} == keys
 
 
 def test_shares_of_a_ranking_sum_to_one(diagnosis):
-    found = shares(diagnosis.rungs[1].ranking, diagnosis.rungs[1])
-    assert sum(found.values()) == pytest.approx(1.0)
-    assert max(found, key=found.get) == ("stribeck", "device")
+    portions = shares(diagnosis.rungs[1].ranking, diagnosis.rungs[1])
+    assert sum(portions.values()) == pytest.approx(1.0)
+    assert max(portions, key=portions.get) == ("stribeck", "device")
 
 
 def test_predictions_hold_every_sample_and_add_up(diagnosis, experiment, tmp_path):
@@ -134,19 +132,21 @@ def test_the_ladder_is_a_table_with_parameters_floor_and_verdict(diagnosis):
 def test_a_diagnosis_without_check_record_says_so(experiment):
     only = replace(experiment, records=experiment.fit_records)
     few = {n: FEW[n] for n in ("coulomb", "viscous", "stribeck")}
-    found = answer(find_missing(only, Model.from_experiment(only, few)))
-    assert found["check"] == "blocks of fit"
-    assert violations(found) == []
-    assert found["missing"] == [{"effect": "stribeck", "at": "device"}]
+    diagnosis = answer(find_missing(only, Model.from_experiment(only, few)))
+    assert diagnosis["check"] == "blocks of fit"
+    assert violations(diagnosis) == []
+    assert diagnosis["missing"] == [{"effect": "stribeck", "at": "device"}]
 
 
 def test_a_comparison_holds_the_figures_and_the_labelled_forces(experiment, diagnosis):
-    found = compare(diagnosis.before.model, experiment)
-    assert found.fit_error == pytest.approx(diagnosis.before.fit_error)
-    assert found.check_error == pytest.approx(diagnosis.before.check_error)
-    assert found.data.sizes["sample"] == sum(len(r.time) for r in experiment.records)
+    comparison = compare(diagnosis.before.model, experiment)
+    assert comparison.fit_error == pytest.approx(diagnosis.before.fit_error)
+    assert comparison.check_error == pytest.approx(diagnosis.before.check_error)
+    assert comparison.data.sizes["sample"] == sum(len(r.time) for r in experiment.records)
     np.testing.assert_allclose(
-        found.data["model"] + found.data["residual"], found.data["measured"], atol=1e-12
+        comparison.data["model"] + comparison.data["residual"],
+        comparison.data["measured"],
+        atol=1e-12,
     )
-    assert found.data["measured"].attrs["units"] == "N*m"
-    assert "check error" in repr(found) and "%" in repr(found)
+    assert comparison.data["measured"].attrs["units"] == "N*m"
+    assert "check error" in repr(comparison) and "%" in repr(comparison)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.own_cases import truth_of, write_own
+from diagnose.simulated_cases import truth_of, write_simulated
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.error import force_error
@@ -17,13 +17,13 @@ from teleopdesign.effects import EFFECTS
 from teleopdesign.realise import ode_scan
 
 BACKLASH = EFFECTS["backlash"]
-OWN = tuple(f"device.backlash.{n}" for n in BACKLASH.parameters)
+GAP_PARAMETERS = tuple(f"device.backlash.{n}" for n in BACKLASH.parameters)
 
 
 @pytest.fixture(scope="module")
 def case(tmp_path_factory):
     """Prepared records, the user's model, the true model with its gap, and the truth."""
-    folder = write_own(tmp_path_factory.mktemp("backlash") / "case", "backlash", seed=3)
+    folder = write_simulated(tmp_path_factory.mktemp("backlash") / "case", "backlash", seed=3)
     experiment, truth = load_experiment(folder), truth_of(folder)
     stated = Model.from_experiment(experiment)
     true = stated.with_values(truth["model_parameters"])
@@ -64,10 +64,10 @@ def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
         for w in widths
         for m in inertias
     ]
-    tried = _vary_starts(new, ordered)[: PLAN.corrected_predicted]
+    starts = _vary_starts(new, ordered)[: PLAN.corrected_predicted]
     values = [
         [start.parameters[f"device.backlash.{n}"].value for n in ("gap", "tip_inertia")]
-        for start in tried
+        for start in starts
     ]
     assert values == [[w, inertias[0]] for w in widths] + [[widths[0], inertias[1]]]
 
@@ -76,7 +76,7 @@ def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatc
     monkeypatch.setattr(ode_scan, "GROWTH", np.inf)  # whatever they grow to
     _, prepared, _, true = case
     stretches = prepared.of("check")[:1]
-    names = ("device.inertia", "device.coulomb.level", *OWN)
+    names = ("device.inertia", "device.coulomb.level", *GAP_PARAMETERS)
     ((_, tangents),) = residuals(true, stretches, names)
     for name, tangent in zip(names, tangents, strict=True):
         value = true.parameters[name].value
@@ -102,8 +102,8 @@ def test_tangents_say_what_a_change_that_could_be_made_does(case, monkeypatch):
 
     def largest():
         """Force by a change of each parameter by its own size, over the actuator's force."""
-        ((_, tangents),) = residuals(rattling, [stretch], OWN)
-        sizes = [abs(rattling.parameters[n].value) for n in OWN]
+        ((_, tangents),) = residuals(rattling, [stretch], GAP_PARAMETERS)
+        sizes = [abs(rattling.parameters[n].value) for n in GAP_PARAMETERS]
         return max(s * np.abs(t).max() for s, t in zip(sizes, tangents, strict=True)) / acting
 
     kept = largest()
@@ -120,26 +120,26 @@ def test_a_tip_without_inertia_follows_nothing():
 
 
 @pytest.mark.slow
-def test_a_gap_is_found_with_its_width(case):
+def test_a_gap_is_detected_with_its_width(case):
     experiment, _, stated, true = case
     known = {n: EFFECTS[n] for n in ("backlash", "transmission_compliance", "added_inertia")}
     known |= {n: EFFECTS[n] for n, _ in stated.effects}
-    found = find_missing(experiment, Model.from_experiment(experiment, known))
-    assert [c.effect.name for c in found.missing] == ["backlash"]
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in diagnosis.missing] == ["backlash"]
     for name in ("tip_inertia", "stiffness", "gap"):
         full = f"device.backlash.{name}"
         expected = true.parameters[full].value
-        assert found.model.parameters[full].value == pytest.approx(expected, rel=0.1)
+        assert diagnosis.model.parameters[full].value == pytest.approx(expected, rel=0.1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", ["transmission_compliance", "spring", None])
 def test_no_gap_is_named_where_there_is_none(effect, tmp_path):
     """Beside noise a gap may look determined; what counts is that no record supports it."""
-    experiment = load_experiment(write_own(tmp_path / "case", effect, seed=5))
+    experiment = load_experiment(write_simulated(tmp_path / "case", effect, seed=5))
     stated = Model.from_experiment(experiment)
     known = {n: EFFECTS[n] for n in ("backlash", "transmission_compliance", "spring")}
     known |= {n: EFFECTS[n] for n, _ in stated.effects}
-    found = find_missing(experiment, Model.from_experiment(experiment, known))
-    assert [c.effect.name for c in found.missing] == [effect] * (effect is not None)
-    assert not any("backlash" in (c.effect.name for c in group) for group in found.groups)
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in diagnosis.missing] == [effect] * (effect is not None)
+    assert not any("backlash" in (c.effect.name for c in group) for group in diagnosis.groups)

@@ -99,8 +99,8 @@ def test_what_a_slow_log_cannot_hold_is_no_missing_physics(runs, tmp_path):
     assert last.source == f"{first.source}, and a command that changes within a row"
     assert last.value == fit.check_error <= 1.3 * last.drawn
     assert fit.model.parameters["device.inertia"].value == pytest.approx(INERTIA, rel=0.02)
-    seen = command_scatter(experiment, {"device"})
-    assert seen["device.actuator_force"] == pytest.approx(SCATTER, rel=0.15)
+    scatter = command_scatter(experiment, {"device"})
+    assert scatter["device.actuator_force"] == pytest.approx(SCATTER, rel=0.15)
 
 
 def test_what_a_black_box_learns_from_the_motion_is_no_scatter(runs, tmp_path):

@@ -22,9 +22,9 @@ def recorded(rows_late=0):
     decay = np.exp(-DAMPING / MASS * STEP)
     position, velocity = np.zeros(len(time)), np.zeros(len(time))
     for k in range(len(time) - 1):
-        settled = force[k] / DAMPING
-        velocity[k + 1] = settled + (velocity[k] - settled) * decay
-        moved = settled * STEP + (velocity[k] - settled) * (1 - decay) * MASS / DAMPING
+        speed = force[k] / DAMPING
+        velocity[k + 1] = speed + (velocity[k] - speed) * decay
+        moved = speed * STEP + (velocity[k] - speed) * (1 - decay) * MASS / DAMPING
         position[k + 1] = position[k] + moved
     data = {"t": time, "x": position, "u": np.roll(force, rows_late)}
     return td.experiment(
@@ -95,7 +95,7 @@ def test_a_command_that_is_logged_late_drives_the_model_in_time():
     assert right.of_travel < 1e-3 < 0.2 * wrong.of_travel
 
 
-def test_a_zero_of_a_records_own_does_not_count_as_an_error(experiment):
+def test_a_zero_of_one_record_does_not_count_as_an_error(experiment):
     model = model_of(experiment)
     moved = tuple(replace(r, offset_names=frozenset({"position_zero"})) for r in experiment.records)
     other = replace(experiment, records=moved)
@@ -103,7 +103,7 @@ def test_a_zero_of_a_records_own_does_not_count_as_an_error(experiment):
     assert two.error(np.inf).position == pytest.approx(one.error(np.inf).position)
 
 
-def test_what_is_asked_for_wrongly_is_said_in_one_line(experiment):
+def test_what_is_asked_for_wrongly_is_reported_in_one_line(experiment):
     model = model_of(experiment)
     with pytest.raises(td.ModelError, match="a loop is simulated"):
         td.compare(model, experiment, loop=RecordedLoop(1.0))

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.own_cases import FEW
+from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import bodies_with_measured_force, candidates, make_starts
@@ -128,16 +128,16 @@ def test_a_second_shape_of_friction_is_no_candidate(model):
 
 def test_every_body_is_a_place(model):
     pair = replace(model, bodies={"master": model.body("device"), "slave": model.body("device")})
-    found = candidates(pair)
-    assert {c.at for c in found} == {"master", "slave"}
-    assert len(found) == 2 * len(candidates(model))
-    assert str(found[0]).endswith(" at master")
+    entries = candidates(pair)
+    assert {c.at for c in entries} == {"master", "slave"}
+    assert len(entries) == 2 * len(candidates(model))
+    assert str(entries[0]).endswith(" at master")
 
 
 def needs_of(name):
     """What an effect needs, and what that needs, in the order in which it can be added."""
-    own = sorted(EFFECTS[name].needs)
-    return list(dict.fromkeys([*(n for need in own for n in needs_of(need)), *own]))
+    needs = sorted(EFFECTS[name].needs)
+    return list(dict.fromkeys([*(n for need in needs for n in needs_of(need)), *needs]))
 
 
 @pytest.mark.parametrize(
@@ -193,11 +193,11 @@ def test_no_period_lies_far_from_where_its_search_starts(name, model, prepared):
 def test_a_fixed_parameter_stays(experiment, model, prepared):
     inertia = model.parameters["device.inertia"]
     fixed = model.with_values({"device.inertia": replace(inertia, fixed=True)})
-    found = estimate(fixed, prepared)
+    fit = estimate(fixed, prepared)
     assert "device.inertia" not in free_parameters(fixed)
-    assert found.model.parameters["device.inertia"].value == inertia.value
+    assert fit.model.parameters["device.inertia"].value == inertia.value
     assert (
-        found.model.parameters["device.coulomb.level"].value
+        fit.model.parameters["device.coulomb.level"].value
         != model.parameters["device.coulomb.level"].value
     )
 
@@ -209,26 +209,26 @@ def test_an_effect_that_is_not_there_ends_at_its_bound_and_says_so(model, prepar
         replace(s, motion=replace(s.motion, direction=-s.motion.direction))
         for s in prepared.stretches
     ]
-    found = estimate(
+    fit = estimate(
         truth.model.without_effect("viscous"), replace(prepared, stretches=tuple(reversed_force))
     )
-    assert found.at_bound == ("device.coulomb.level",)
-    assert found.model.parameters["device.coulomb.level"].value == pytest.approx(0.0, abs=1e-6)
+    assert fit.at_bound == ("device.coulomb.level",)
+    assert fit.model.parameters["device.coulomb.level"].value == pytest.approx(0.0, abs=1e-6)
 
 
 def test_where_a_body_only_goes_on_what_does_not_repeat_is_no_candidate(model, prepared):
     there_and_back = [s.motion for s in prepared.of("fit")]
     onward = [replace(m, position=np.linspace(0.0, 1.0, len(m.time))) for m in there_and_back]
     of_place = {"spring", "hardening_spring"}
-    found = {c.effect.name for c in candidates(replace(model, known=EFFECTS), there_and_back)}
-    assert of_place <= found
+    names = {c.effect.name for c in candidates(replace(model, known=EFFECTS), there_and_back)}
+    assert of_place <= names
     left = {c.effect.name for c in candidates(replace(model, known=EFFECTS), onward)}
     assert not of_place & left
     # what repeats comes back to the same place of its period; stretch does not depend on the place
     assert {"quadratic_drag", "cogging", "torque_ripple", "transmission_compliance"} <= left
 
 
-def test_inertia_beside_a_free_inertia_cannot_be_told(model, prepared):
+def test_inertia_beside_a_free_inertia_cannot_be_determined(model, prepared):
     base = estimate(model, prepared)
     twice = estimate(base.model.with_effect("added_inertia", values={"inertia": 1e-4}), prepared)
     assert not is_identifiable(twice, base)
@@ -241,11 +241,11 @@ def test_inertia_beside_a_free_inertia_cannot_be_told(model, prepared):
 
 def test_without_check_records_blocks_are_held_out(experiment, model):
     only = prepare(replace(experiment, records=experiment.fit_records))
-    found = estimate(model, only)
-    assert np.isfinite(found.check_error)
+    fit = estimate(model, only)
+    assert np.isfinite(fit.check_error)
     # blocks that a fit has not seen are fitted a little worse than those it has
-    assert found.fit_error < found.check_error < 1.5 * found.fit_error
-    assert len(found.check_residual) == len(found.check_blocks) == len(found.fit_residual)
+    assert fit.fit_error < fit.check_error < 1.5 * fit.fit_error
+    assert len(fit.check_residual) == len(fit.check_blocks) == len(fit.fit_residual)
 
 
 def test_few_is_part_of_the_catalogue():

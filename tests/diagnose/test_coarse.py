@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.own_cases import FEW, truth_of, write_own
+from diagnose.simulated_cases import FEW, truth_of, write_simulated
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.error import force_error
@@ -20,7 +20,7 @@ from teleopdesign.realise import compiled, scan, shape_scan
 @pytest.fixture(scope="module")
 def case(tmp_path_factory):
     """Prepared records of a body with a late actuator, the user's model, and the true one."""
-    folder = write_own(tmp_path_factory.mktemp("coarse") / "case", "actuator_lag")
+    folder = write_simulated(tmp_path_factory.mktemp("coarse") / "case", "actuator_lag")
     experiment, truth = load_experiment(folder), truth_of(folder)
     stated = Model.from_experiment(experiment, FEW).with_values(truth["model_parameters"])
     (hidden,) = truth["effects"]
@@ -62,7 +62,7 @@ def test_rows_of_a_record_stay_what_they_are_on_few_samples(case):
         assert one.measured == pytest.approx(other.measured, rel=0.01)
 
 
-def test_a_base_has_its_optimum_on_few_samples_next_to_its_own(case):
+def test_the_optimum_of_a_base_on_few_samples_is_next_to_that_on_all(case):
     prepared, stated, _ = case
     fit = estimate(stated, prepared)
     base = base_of(fit, prepared)

@@ -56,7 +56,7 @@ def names(state):
 
 
 @pytest.mark.parametrize("added", [("spring",), ("spring", "bias"), ("bias", "spring")])
-def test_gravity_takes_the_place_of_a_spring_that_is_hardly_told_from_it(use, added):
+def test_gravity_takes_the_place_of_a_spring_that_is_hardly_distinguished_from_it(use, added):
     table = use()
     moved = compare_look_alikes(table.search(), table.state(table.rungs(*added)))
     assert set(names(moved)) == {"gravity", *added} - {"spring"}
@@ -97,10 +97,10 @@ def test_a_spring_stays_where_the_records_tell_it_from_gravity(use):
     )
 
 
-@pytest.mark.parametrize("said", ["is_identifiable", "refused", "implausible", "instead_of"])
-def test_a_spring_stays_where_gravity_is_no_candidate(use, said):
+@pytest.mark.parametrize("message", ["is_identifiable", "refused", "implausible", "instead_of"])
+def test_a_spring_stays_where_gravity_is_no_candidate(use, message):
     values = {"is_identifiable": False, "refused": "blind", "implausible": "it stands for a spring"}
-    table = use(ranked={"gravity": {said: values.get(said, BIAS)}})
+    table = use(ranked={"gravity": {message: values.get(message, BIAS)}})
     assert compare_look_alikes(table.search(), table.state(table.rungs("spring"))) is None
 
 
@@ -129,7 +129,7 @@ def test_no_exchange_takes_gravity_back_for_being_less_simple(use):
 
 
 @pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.commoner))
-def test_an_effect_that_has_a_commoner_one_says_where_the_two_are_hardly_told_apart(name):
+def test_an_effect_that_has_a_commoner_one_says_where_the_two_are_hardly_distinguished(name):
     effect = EFFECTS[name]
     assert effect.commoner in EFFECTS and effect.undetermined is not None
     assert EFFECTS[effect.commoner].role == effect.role
@@ -154,9 +154,9 @@ def look_alikes(undetermined, *there, arm=False):
     body = SimpleNamespace(has=there.__contains__, axis="revolute")
     model = SimpleNamespace(known=EFFECTS, body=lambda at: body)
     prepared = SimpleNamespace(is_of_an_arm=arm)
-    said = tuple(Undetermined(candidate(n), "over a travel of 1 rad") for n in undetermined)
+    entries = tuple(Undetermined(candidate(n), "over a travel of 1 rad") for n in undetermined)
     return Diagnosis.look_alikes.fget(
-        SimpleNamespace(model=model, undetermined=said, prepared=prepared)
+        SimpleNamespace(model=model, undetermined=entries, prepared=prepared)
     )
 
 

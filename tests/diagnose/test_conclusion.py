@@ -174,8 +174,8 @@ def test_what_is_not_named_says_what_else_would_do_half_as_much():
     assert unnamed(rung, [best.candidate]) is rung
     group = replace(rung, alternatives=(good.candidate,))
     assert unnamed(group) is group
-    said = replace(rung, could_be=())
-    assert unnamed(said) is said
+    last_rung = replace(rung, could_be=())
+    assert unnamed(last_rung) is last_rung
     model = Rung(None, base)
     assert unnamed(model) is model
     without = replace(rung, ranking=None)

@@ -170,7 +170,7 @@ def test_one_check_bars_a_candidate_however_much_it_explains():
     assert objection(base, ranked(0.1), floor(0.3)) == ""
 
 
-def test_what_is_barred_is_said_only_of_what_helps():
+def test_what_bars_an_effect_is_reported_only_where_the_effect_helps():
     base, bar = fit(0.5), "stands for a spring"
     assert helps_but_is_barred(base, ranked(0.5 * 0.96**0.5, implausible=bar), floor()) == bar
     assert helps_but_is_barred(base, ranked(0.5 * 0.98**0.5, implausible=bar), floor()) == ""

@@ -70,17 +70,17 @@ def test_what_drives_an_effect_of_the_model_to_its_bound_is_barred_if_that_is_su
     low = floor(0.01)
     for error, barred in [(0.66, True), (0.67, False)]:  # three standard errors of 2
         base = model("coulomb", "viscous", damping=(2.0, error))
-        said = objection(of(base), candidate_at(base, "spring", DAMPING), low)
+        sentence = objection(of(base), candidate_at(base, "spring", DAMPING), low)
         assert (
-            said == f"drives to a bound what the model needs without this effect: {DAMPING}"
+            sentence == f"drives to a bound what the model needs without this effect: {DAMPING}"
         ) == barred
-        assert bool(said) == barred
+        assert bool(sentence) == barred
     both = model("coulomb", "viscous", "bias")
     drives = candidate_at(both, "spring", "device.bias.force", DAMPING)
     assert "device.bias.force, device.viscous.damping" in objection(of(both), drives, low)
 
 
-def test_what_needs_a_parameter_of_its_own_at_a_bound_is_another_effect_unless_noise_is_left():
+def test_an_effect_with_a_parameter_at_a_bound_is_another_effect_unless_noise_is_left():
     base, at = model("coulomb"), "device.presliding.stiffness"
     bound = candidate_at(base, "presliding", at)
     assert (
@@ -119,9 +119,9 @@ def test_what_is_barred_helps_by_its_error_or_by_its_squares(size):
     """The one is relative to what was recorded, the other to what acts by the model."""
     bar, less, much = "a bristle", size * 0.96**0.5, size * 0.98**0.5
     base = fit(size)
-    for error, squares, said in [(less, size, bar), (size, less, bar), (much, much, "")]:
+    for error, squares, reason in [(less, size, bar), (size, less, bar), (much, much, "")]:
         one = ranked(error, implausible=bar, residual=squares * SHAPE)
-        assert helps_but_is_barred(base, one, floor(0.01 * size)) == said
+        assert helps_but_is_barred(base, one, floor(0.01 * size)) == reason
 
 
 def superfluous(base, *at_bound, new="spring", **changed):
@@ -160,8 +160,8 @@ def test_a_bound_where_an_effect_is_not_absent_makes_it_not_superfluous():
 def test_what_was_surely_there_and_may_be_absent_now_is_superfluous(before, after, gives_way):
     """In standard errors from absence."""
     base = model("coulomb", "viscous", damping=(2.0, 2.0 / before))
-    said = superfluous(base, damping=(0.3, 0.3 / after))
-    assert said == (("viscous", "device") if gives_way else None)
+    sentence = superfluous(base, damping=(0.3, 0.3 / after))
+    assert sentence == (("viscous", "device") if gives_way else None)
 
 
 def test_what_ends_at_its_bound_comes_before_what_is_only_open_now():
@@ -181,8 +181,8 @@ def test_none_gives_way_where_another_that_is_surely_there_is_driven_to_a_bound(
     """To its largest drift: half of that, and 2.5 standard errors of it, were there before."""
     base = model("coulomb", "viscous", "friction_drift", fraction=(0.5, error))
     at_bound = (DAMPING, "device.friction_drift.fraction")
-    said = superfluous(base, *at_bound, fraction=(1.0, 0.1), damping=(0.0, 0.1))
-    assert said == (("viscous", "device") if gives_way else None)
+    sentence = superfluous(base, *at_bound, fraction=(1.0, 0.1), damping=(0.0, 0.1))
+    assert sentence == (("viscous", "device") if gives_way else None)
 
 
 def test_what_its_user_holds_fixed_never_gives_way():

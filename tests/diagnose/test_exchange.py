@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagnose.own_cases import write_own
+from diagnose.simulated_cases import write_simulated
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import Candidate
@@ -22,7 +22,7 @@ def candidate(name):
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     """Prepared records of a machine with a spring, the user's model, and its noise floor."""
-    folder = write_own(tmp_path_factory.mktemp("spring") / "case", "spring", seed=3)
+    folder = write_simulated(tmp_path_factory.mktemp("spring") / "case", "spring", seed=3)
     experiment = load_experiment(folder)
     prepared, stated = prepare(experiment), Model.from_experiment(experiment)
     base = estimate(stated, prepared)
@@ -40,22 +40,22 @@ def fitted(base, prepared, *names):
 
 def test_a_stand_in_gives_way_to_the_spring_that_it_stood_for(scene):
     search, base, floor = scene
-    found = fitted(base, search.prepared, "hardening_spring", "quadratic_drag")
+    fit = fitted(base, search.prepared, "hardening_spring", "quadratic_drag")
     rivals = {candidate("hardening_spring"): [candidate("spring"), candidate("added_inertia")]}
-    exchange = best_exchange(search, found, rivals, floor)
+    exchange = best_exchange(search, fit, rivals, floor)
     assert exchange is not None
     assert exchange.dropped.key == ("hardening_spring", "device")
     assert exchange.replacement.candidate.key == ("spring", "device")
-    assert exchange.replacement.fit.check_error < 0.5 * found.check_error
+    assert exchange.replacement.fit.check_error < 0.5 * fit.check_error
 
 
 def test_the_spring_gives_way_to_nothing(scene):
     search, base, floor = scene
-    found = fitted(base, search.prepared, "spring")
+    fit = fitted(base, search.prepared, "spring")
     rivals = {candidate("spring"): [candidate("hardening_spring"), candidate("quadratic_drag")]}
-    assert best_exchange(search, found, rivals, floor) is None
+    assert best_exchange(search, fit, rivals, floor) is None
 
 
-def test_where_nothing_was_a_rival_nothing_is_tried(scene):
+def test_where_nothing_was_a_rival_no_exchange_is_made(scene):
     search, base, floor = scene
     assert best_exchange(search, base, {candidate("spring"): []}, floor) is None

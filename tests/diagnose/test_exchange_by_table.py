@@ -130,14 +130,14 @@ def test_the_exchange_that_leaves_least_is_made(use):
         candidate, ("spring", "cogging", "gravity", "bias", "viscous")
     )
     low = floor(0.01)
-    for rivals, dropped, taken in [
+    for rivals, dropped, replacement in [
         ({bias: [cogging, spring], viscous: [gravity]}, bias, spring),
         ({bias: [spring, cogging], viscous: [gravity]}, bias, spring),
         ({bias: [cogging], viscous: [cogging]}, bias, cogging),
         ({viscous: [gravity], bias: []}, viscous, gravity),
     ]:
         best = best_exchange(table.search(), present, rivals, low)
-        assert (best.dropped, best.replacement.candidate) == (dropped, taken)
+        assert (best.dropped, best.replacement.candidate) == (dropped, replacement)
         assert best.without.model.names == {"bias", "viscous"} - {dropped.effect.name}
         assert best.ranking.base is best.without
     assert best_exchange(table.search(), table.fit("spring"), {spring: [cogging]}, low) is None

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.own_cases import truth_of, write_own
+from diagnose.simulated_cases import truth_of, write_simulated
 from measurement.rod_example import write_rod
 from shared_data import shared_folder
 
@@ -57,12 +57,12 @@ def test_the_error_can_be_recomputed_from_the_predictions(scorer, diagnosis, tmp
         spec = importlib.util.spec_from_file_location("score", path)
         score = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(score)
-        found, problem = score.recompute(file, diagnosis.prepared.bandwidth)
+        error, problem = score.recompute(file, diagnosis.prepared.bandwidth)
         assert problem is None
     else:
-        found = recomputed(file, diagnosis)
+        error = recomputed(file, diagnosis)
     # thinning and the half sample of the held command
-    assert found == pytest.approx(diagnosis.after.check_error, rel=0.01)
+    assert error == pytest.approx(diagnosis.after.check_error, rel=0.01)
 
 
 def recomputed(file, diagnosis):
@@ -106,9 +106,9 @@ def test_the_true_parameters_leave_the_error_that_the_simulation_says(
     known = model.with_effect(
         "stribeck", values={n: v["value"] for n, v in hidden["parameters"].items()}
     ).with_values(values)
-    found = force_error(known, prepared.of("check"))
+    error = force_error(known, prepared.of("check"))
     # the reference knows where a motion reverses; measured along an encoder it is a little more
-    assert 0.9 * truth["check_error_true"] < found < 1.5 * truth["check_error_true"]
+    assert 0.9 * truth["check_error_true"] < error < 1.5 * truth["check_error_true"]
     base = estimate(model, prepared)
     assert base.check_error == pytest.approx(truth["check_error_base"], rel=0.1)
     assert base.fit_error == pytest.approx(truth["fit_error_base"], rel=0.1)
@@ -127,7 +127,7 @@ def test_the_true_parameters_leave_the_error_that_the_simulation_says(
 )
 def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed, tmp_path):
     """Within 30 % of the floor that the simulator finds by drawing errors onto its true motion."""
-    folder = write_own(tmp_path / "case", effect, seed=seed)
+    folder = write_simulated(tmp_path / "case", effect, seed=seed)
     truth = truth_of(folder)
     prepared = prepare(load_experiment(folder))
     model = Model.from_experiment(prepared.experiment)
@@ -144,13 +144,13 @@ def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed,
 
 @pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
 def test_a_right_model_lies_at_its_floor(seed, tmp_path):
-    folder = write_own(tmp_path / "case", None, seed=seed)
+    folder = write_simulated(tmp_path / "case", None, seed=seed)
     experiment = load_experiment(folder)
     prepared = prepare(experiment)
-    found = estimate_from_starts(Model.from_experiment(experiment), prepared)
-    floor = noise_floor(found.model, prepared, np.random.default_rng(0))
+    fit = estimate_from_starts(Model.from_experiment(experiment), prepared)
+    floor = noise_floor(fit.model, prepared, np.random.default_rng(0))
     # on 268 other records: 0.97 to 1.22, the middle nine tenths
-    assert 0.75 < found.check_error / floor.value < 1.4
+    assert 0.75 < fit.check_error / floor.value < 1.4
 
 
 def test_the_floor_hardly_depends_on_the_draws(prepared, model):
@@ -164,10 +164,10 @@ def test_a_floor_from_the_readings_says_so_and_is_near_the_stated_one(experiment
     channels = {n: replace(c, resolution=None, noise=None) for n, c in experiment.channels.items()}
     blind = prepare(replace(experiment, channels=channels))
     stated = noise_floor(model, prepared, np.random.default_rng(0))
-    seen = noise_floor(model, blind, np.random.default_rng(0))
-    assert seen.source == "step and noise estimated from the readings"
+    reading_floor = noise_floor(model, blind, np.random.default_rng(0))
+    assert reading_floor.source == "step and noise estimated from the readings"
     # the command of a controller that differentiates an encoder looks noisier than it is read
-    assert 0.5 * stated.value < seen.value < 3.0 * stated.value
+    assert 0.5 * stated.value < reading_floor.value < 3.0 * stated.value
 
 
 def test_a_hands_force_of_unstated_noise_raises_the_floor_by_what_its_readings_scatter(
@@ -191,11 +191,11 @@ def test_a_hands_force_of_unstated_noise_raises_the_floor_by_what_its_readings_s
         hand = Channel("interaction_force", "device", "f_h", "N", None, noise)
         touched = replace(experiment, records=records, channels={**experiment.channels, name: hand})
         floors.append(noise_floor(model, prepare(touched), np.random.default_rng(0)))
-    stated, seen = floors
-    assert seen.source == "stated resolution, noise of forces estimated from the readings"
-    assert seen.value == pytest.approx(stated.value, rel=0.15)
+    stated, from_readings = floors
+    assert from_readings.source == "stated resolution, noise of forces estimated from the readings"
+    assert from_readings.value == pytest.approx(stated.value, rel=0.15)
     untouched = noise_floor(model, prepared, np.random.default_rng(0))
-    assert seen.value > 1.5 * untouched.value
+    assert from_readings.value > 1.5 * untouched.value
 
 
 # what is compared
@@ -225,7 +225,7 @@ def test_a_record_without_a_stretch_long_enough_is_one_line(experiment):
         prepare(replace(experiment, records=(record,)))
 
 
-def test_segments_are_stretches_of_their_own(experiment, model):
+def test_segments_are_separate_stretches(experiment, model):
     """Cut in three, what remains of the record leaves the same error but for its ends."""
     whole = experiment.fit_records[0]
     n = len(whole.time)
@@ -249,13 +249,15 @@ def test_held_out_blocks_cover_every_row_once(prepared):
     for i, s in enumerate(stretches):
         held = np.concatenate([unseen[i].keep for _, unseen in pairs])
         np.testing.assert_array_equal(np.sort(held), s.keep)
-        for seen, unseen in pairs:
-            assert not set(seen[i].keep) & set(unseen[i].keep)
+        for inner, unseen in pairs:
+            assert not set(inner[i].keep) & set(unseen[i].keep)
     whole = sum(s.measured for s in stretches)
     assert sum(u.measured for _, un in pairs for u in un) == pytest.approx(whole)
 
 
-def test_an_own_encoder_zero_costs_nothing_where_a_spring_knows_the_position(experiment, model):
+def test_an_encoder_zero_of_one_record_costs_nothing_where_a_spring_knows_the_position(
+    experiment, model
+):
     """Shifted by an unknown zero, a record with its own zero leaves the same residual.
 
     Exactly so for a linear model: a friction at rest balances up to its level, which bends.
@@ -265,11 +267,11 @@ def test_an_own_encoder_zero_costs_nothing_where_a_spring_knows_the_position(exp
     x = record.signals["device.position"]
     shifted = replace(record, signals={**record.signals, "device.position": x + 0.3 * np.ptp(x)})
     fit_records = experiment.fit_records
-    found, plain = (
+    residual, plain = (
         residuals(sprung, prepare(replace(experiment, records=(*fit_records, r))).of("check"))[0][0]
         for r in (shifted, record)
     )
-    np.testing.assert_allclose(found, plain, rtol=0, atol=1e-6 * np.abs(plain).max())
+    np.testing.assert_allclose(residual, plain, rtol=0, atol=1e-6 * np.abs(plain).max())
     common = prepare(
         replace(experiment, records=(*fit_records, replace(shifted, offset_names=frozenset())))
     ).of("check")
@@ -281,8 +283,8 @@ def test_an_own_encoder_zero_costs_nothing_where_a_spring_knows_the_position(exp
 def test_an_experiment_that_is_no_machine_is_still_compared(tmp_path):
     """Signals that no model explains have an error, not a failure."""
     experiment = load_experiment(write_rod(tmp_path / "rod"))
-    found = estimate(Model.from_experiment(experiment), prepare(experiment))
-    assert 0.0 <= found.check_error < 10.0
+    fit = estimate(Model.from_experiment(experiment), prepare(experiment))
+    assert 0.0 <= fit.check_error < 10.0
 
 
 @pytest.mark.parametrize("beside", [{}, {"friction_memory": {"time_constant": 0.01}}])

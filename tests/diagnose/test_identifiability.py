@@ -39,16 +39,16 @@ def test_what_was_added_differs_from_absence_by_so_many_standard_errors(
 ):
     monkeypatch.setattr(identifiability, "product_of", lambda fit, effect: None)
     value, _ = BY_EFFECT[effect][name]
-    for error, told in [(0.99 * value / errors, True), (1.01 * value / errors, False)]:
-        assert identifiable(effect, **{name: (value, error)}) == told
+    for error, is_known in [(0.99 * value / errors, True), (1.01 * value / errors, False)]:
+        assert identifiable(effect, **{name: (value, error)}) == is_known
     assert not identifiable(effect, **{name: (value, float("nan"))}), "nothing is known of it"
 
 
 def test_absence_of_a_gain_is_one_and_an_angle_is_open_from_half_a_turn():
-    for error, told in [(0.24, True), (0.26, False)]:
-        assert identifiable("actuator_gain", gain=(1.5, error)) == told
-    for error, told in [(3.1, True), (3.2, False)]:
-        assert identifiable("cogging", phase=(0.01, error)) == told
+    for error, is_known in [(0.24, True), (0.26, False)]:
+        assert identifiable("actuator_gain", gain=(1.5, error)) == is_known
+    for error, is_known in [(3.1, True), (3.2, False)]:
+        assert identifiable("cogging", phase=(0.01, error)) == is_known
 
 
 @pytest.mark.parametrize(
@@ -69,8 +69,8 @@ def test_what_takes_away_half_of_the_squares_of_both_uses_may_be_open(
     expected = most and is_known and effect != "backlash"
     assert is_identifiable(after, BASE) == expected
     if effect == "stribeck":  # its strength, the level, is no part of the product
-        said = doubt(after, Candidate(EFFECTS[effect], "device"), most=after if most else None)
-        assert bool(said) == (not expected)
+        sentence = doubt(after, Candidate(EFFECTS[effect], "device"), most=after if most else None)
+        assert bool(sentence) == (not expected)
     after.check_residual = np.ones(ROWS)
     assert not is_identifiable(after, BASE)
 
@@ -101,8 +101,8 @@ def test_what_is_known_in_a_product_may_be_open_alone_unless_it_is_essential(mon
 
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize(("share", "told"), [(0.019, False), (0.021, True)])
-def test_one_column_must_lie_outside_of_what_the_model_has(size, share, told):
+@pytest.mark.parametrize(("share", "is_known"), [(0.019, False), (0.021, True)])
+def test_one_column_must_lie_outside_of_what_the_model_has(size, share, is_known):
     rng = np.random.default_rng(1)
     old = rng.standard_normal((ROWS, 2))
     span, _ = np.linalg.qr(old)
@@ -115,7 +115,7 @@ def test_one_column_must_lie_outside_of_what_the_model_has(size, share, told):
     known = model("coulomb", "bias", "viscous")
     columns = np.column_stack([old, new])
     fit = fitted(known, "coulomb", "bias", "viscous", columns=columns)
-    assert is_identifiable(fit, base) == told
+    assert is_identifiable(fit, base) == is_known
 
 
 def test_without_other_parameters_any_column_tells_and_one_of_nothing_never():
@@ -151,8 +151,8 @@ def doubted(effect, free=None, **changed):
 def test_a_strength_or_what_is_essential_is_doubted_below_two_standard_errors(effect, name):
     value, _ = BY_EFFECT[effect][name]
     assert doubted(effect, **{name: (value, 0.49 * value)}) == ""
-    said = doubted(effect, **{name: (value, 0.51 * value)})
-    assert said.startswith(f"{name} = ") and "the effect may be absent" in said
+    sentence = doubted(effect, **{name: (value, 0.51 * value)})
+    assert sentence.startswith(f"{name} = ") and "the effect may be absent" in sentence
     assert doubted(effect, free=(), **{name: (value, value)}) == "", "it is fixed"
     assert doubted(effect, **{name: (value, float("nan"))}) != ""
 

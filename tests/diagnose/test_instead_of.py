@@ -66,14 +66,14 @@ def write_bristle(folder, viscous=0.0):
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
+def search(tmp_path_factory):
     folder = write_bristle(tmp_path_factory.mktemp("bristle") / "case")
     experiment = load_experiment(folder)
     return experiment, find_missing(experiment, Model.from_experiment(experiment, KNOWN))
 
 
-def test_a_damper_that_stood_in_for_hysteresis_gives_way_to_the_bristle(found):
-    _, diagnosis = found
+def test_a_damper_that_stood_in_for_hysteresis_gives_way_to_the_bristle(search):
+    _, diagnosis = search
     before = diagnosis.before.model.parameters["device.viscous.damping"]
     assert before.value > 5 * before.stderr, "the damper of the user's model is surely there"
     assert [str(c) for c in diagnosis.missing] == ["presliding at device"]
@@ -84,8 +84,8 @@ def test_a_damper_that_stood_in_for_hysteresis_gives_way_to_the_bristle(found):
     assert stiffness.value == pytest.approx(4e3, rel=0.1)
 
 
-def test_the_table_of_parameters_holds_what_gave_way(found):
-    _, diagnosis = found
+def test_the_table_of_parameters_holds_what_gave_way(search):
+    _, diagnosis = search
     rows = {r.name: r for r in parameter_rows(diagnosis)}
     assert set(diagnosis.before.model.parameters) <= set(rows)
     gone = rows["device.viscous.damping"]
@@ -94,9 +94,9 @@ def test_the_table_of_parameters_holds_what_gave_way(found):
     assert [r.name for r in rows.values() if r.gave_way_to] == ["device.viscous.damping"]
 
 
-def test_a_rival_of_what_took_another_place_has_that_other_back(found):
+def test_a_rival_of_what_took_another_place_has_that_other_back(search):
     """Unless the rival, too, was compared without it."""
-    _, diagnosis = found
+    _, diagnosis = search
     rung = diagnosis.rungs[1]
     spring = next(r for r in rung.ranking.ranked if r.candidate.effect.name == "spring")
     assert spring.fit.model.body("device").has("viscous")
@@ -108,20 +108,22 @@ def test_a_rival_of_what_took_another_place_has_that_other_back(found):
     assert not fit.model.body("device").has("viscous")
 
 
-def test_the_answer_says_what_it_takes_the_place_of(found):
-    _, diagnosis = found
-    said = answer(diagnosis)
-    assert said["missing"] == [{"effect": "presliding", "at": "device", "instead_of": "viscous"}]
-    assert [row["instead_of"] for row in said["ladder"]] == [None, "viscous"]
-    assert not [n for n in said["model_parameters"] if "viscous" in n]
-    assert not violations(said)
+def test_the_answer_says_what_it_takes_the_place_of(search):
+    _, diagnosis = search
+    document = answer(diagnosis)
+    assert document["missing"] == [
+        {"effect": "presliding", "at": "device", "instead_of": "viscous"}
+    ]
+    assert [row["instead_of"] for row in document["ladder"]] == [None, "viscous"]
+    assert not [n for n in document["model_parameters"] if "viscous" in n]
+    assert not violations(document)
     text = ladder_text(diagnosis)
     assert "+ presliding at device instead of viscous" in text
     assert "effects_missing: presliding at device instead of viscous." in text
 
 
-def test_an_answer_read_back_knows_it_too(found, tmp_path):
-    experiment, diagnosis = found
+def test_an_answer_read_back_knows_it_too(search, tmp_path):
+    experiment, diagnosis = search
     write_answer(diagnosis, tmp_path / "answer.json")
     back = restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment, KNOWN)
     assert back.rungs[1].replaced == diagnosis.rungs[1].replaced
@@ -140,8 +142,8 @@ def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     assert damping.value == pytest.approx(300.0, rel=0.1)
 
 
-def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_there(found):
-    experiment, diagnosis = found
+def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_there(search):
+    experiment, diagnosis = search
     stated = Model.from_experiment(experiment, KNOWN)
     again = reset_to_stated(diagnosis.model, stated)
     assert not again.body("device").has("viscous")
@@ -152,29 +154,29 @@ def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_the
     )
 
 
-def driven_to_its_bound(found, relative):
+def driven_to_its_bound(search, relative):
     """The model's damping at its bound beside a candidate; before, with such a relative error."""
-    fit, name = found[1].before, "device.viscous.damping"
+    fit, name = search[1].before, "device.viscous.damping"
     value = fit.model.parameters[name]
     sure = replace(value, stderr=relative * abs(value.value))
     model = fit.model.with_values({name: sure})
-    candidate = next(r for r in found[1].rungs[1].ranking.ranked if r.counts)
+    candidate = next(r for r in search[1].rungs[1].ranking.ranked if r.counts)
     there = replace(candidate.fit, at_bound=(name,))
     return replace(fit, model=model, at_bound=()), replace(candidate, fit=there)
 
 
-def test_a_parameter_that_hardly_differs_from_absence_bars_no_candidate(found):
-    base, candidate = driven_to_its_bound(found, 0.1)
-    said = objection(base, candidate, found[1].floor)
-    assert said.startswith("drives to a bound") and said.endswith("viscous.damping")
-    base, candidate = driven_to_its_bound(found, 0.7)
-    assert "to a bound" not in objection(base, candidate, found[1].floor)
+def test_a_parameter_that_hardly_differs_from_absence_bars_no_candidate(search):
+    base, candidate = driven_to_its_bound(search, 0.1)
+    sentence = objection(base, candidate, search[1].floor)
+    assert sentence.startswith("drives to a bound") and sentence.endswith("viscous.damping")
+    base, candidate = driven_to_its_bound(search, 0.7)
+    assert "to a bound" not in objection(base, candidate, search[1].floor)
 
 
-def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(found):
+def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(search):
     """Two are no longer told beside a candidate; one of them is gone."""
     names = ("device.coulomb.level", "device.viscous.damping")
-    fit, candidate = found[1].before, found[1].rungs[1].added
+    fit, candidate = search[1].before, search[1].rungs[1].added
     sure, unsure = (
         fit.model.with_values(
             {n: replace(fit.model.parameters[n], value=1.0, stderr=e) for n in names}
@@ -193,9 +195,9 @@ def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(found):
 rank = import_module("teleopdesign.diagnose.rank")
 
 
-def ranked_beside_discredited(found, monkeypatch, name):
+def ranked_beside_discredited(search, monkeypatch, name):
     """The bristle as a candidate, where an effect of the model loses its name beside it."""
-    experiment, diagnosis = found
+    experiment, diagnosis = search
     monkeypatch.setattr(rank, "find_superfluous_effect", lambda *_, **__: None)
     monkeypatch.setattr(
         rank,
@@ -213,15 +215,15 @@ def ranked_beside_discredited(found, monkeypatch, name):
     return rank._ranked_best(base, (candidate, fit), OpenWidths(records, CRITERIA))
 
 
-def test_what_loses_its_name_beside_a_candidate_gives_way_to_it(found, monkeypatch):
+def test_what_loses_its_name_beside_a_candidate_gives_way_to_it(search, monkeypatch):
     """It stood in for the candidate; to refuse that for it would keep the stand-in."""
-    ranked = ranked_beside_discredited(found, monkeypatch, "viscous")
+    ranked = ranked_beside_discredited(search, monkeypatch, "viscous")
     assert ranked.instead_of.effect.name == "viscous"
     assert ranked.counts and not ranked.fit.model.body("device").has("viscous")
 
 
-def test_a_candidate_that_needs_what_loses_its_name_is_refused(found, monkeypatch):
-    ranked = ranked_beside_discredited(found, monkeypatch, "coulomb")
+def test_a_candidate_that_needs_what_loses_its_name_is_refused(search, monkeypatch):
+    ranked = ranked_beside_discredited(search, monkeypatch, "coulomb")
     assert ranked.instead_of is None
     assert ranked.implausible == "with it, coulomb is implausible: it stands for something else"
 

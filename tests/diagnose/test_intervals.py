@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagnose.own_cases import truth_of, write_own
+from diagnose.simulated_cases import truth_of, write_simulated
 from diagnose.test_record_shift import shifted
 
 import teleopdesign as td
@@ -17,7 +17,7 @@ ROWS = (0.0, 1.0, 0.0, -1.0)
 def test_ninety_five_percent_intervals_hold_nearly_that_part_of_the_truth(tmp_path):
     misses, widths = [], []
     for k in range(CASES):
-        folder = write_own(tmp_path / str(k), None, seed=SEED + k)
+        folder = write_simulated(tmp_path / str(k), None, seed=SEED + k)
         experiment = td.load_experiment(folder)
         if ROWS[k % len(ROWS)]:
             experiment = shifted(experiment, ROWS[k % len(ROWS)])

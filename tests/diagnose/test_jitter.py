@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose.made_records import jittered
-from diagnose.own_cases import write_own
+from diagnose.simulated_cases import write_simulated
 
 from teleopdesign import load_experiment
 from teleopdesign.diagnose.candidates import Candidate
@@ -21,20 +21,22 @@ from teleopdesign.model import Model
 
 @pytest.fixture(scope="module")
 def adequate(tmp_path_factory):
-    return load_experiment(write_own(tmp_path_factory.mktemp("jitter") / "case", None, seed=1))
+    return load_experiment(
+        write_simulated(tmp_path_factory.mktemp("jitter") / "case", None, seed=1)
+    )
 
 
 @pytest.mark.parametrize("rows", [0.1, 0.3])
 def test_a_right_model_lies_at_its_floor_though_the_clock_jitters(adequate, rows):
     prepared = prepare(jittered(adequate, rows))
     model = Model.from_experiment(adequate)
-    found = estimate_from_starts(model, prepared)
-    floor = noise_floor(found.model, prepared, np.random.default_rng(0))
-    still = noise_floor(found.model, prepare(adequate), np.random.default_rng(0))
+    fit = estimate_from_starts(model, prepared)
+    floor = noise_floor(fit.model, prepared, np.random.default_rng(0))
+    still = noise_floor(fit.model, prepare(adequate), np.random.default_rng(0))
     assert floor.jitters and not still.jitters
     assert floor.value > 2.0 * still.value
     # the jitter is known to a fifth; noise in the acceleration makes the inertia look smaller
-    assert 0.7 < found.check_error / floor.value < 1.4
+    assert 0.7 < fit.check_error / floor.value < 1.4
 
 
 def test_what_leaves_less_than_the_jitter_makes_is_refused(adequate):

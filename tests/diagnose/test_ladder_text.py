@@ -10,9 +10,9 @@ from teleopdesign.diagnose.ladder_text import constant_force_line, say_floors
 from teleopdesign.report.words import _floors
 
 
-@pytest.mark.parametrize(("left", "said"), [(0.94, "0.9"), (45.34, "45.3"), (1000.0, "1000.0")])
-def test_an_error_is_a_number_of_noise_floors(left, said):
-    assert say_floors(left) == said
+@pytest.mark.parametrize(("left", "message"), [(0.94, "0.9"), (45.34, "45.3"), (1000.0, "1000.0")])
+def test_an_error_is_a_number_of_noise_floors(left, message):
+    assert say_floors(left) == message
 
 
 @pytest.mark.parametrize("left", [1000.1, 744440815.1, float("inf")])
@@ -21,15 +21,13 @@ def test_a_floor_next_to_zero_is_no_measure(left):
     assert say_floors(left) == _floors(left) == "more than 1000"
 
 
-@pytest.mark.parametrize(("varies", "said"), [(0.0, True), (0.009, True), (0.02, False)])
-def test_a_force_that_hardly_varies_is_said_to_be_explained_by_any_friction(
-    monkeypatch, varies, said
-):
+@pytest.mark.parametrize(("varies", "message"), [(0.0, True), (0.009, True), (0.02, False)])
+def test_any_friction_explains_a_force_that_hardly_varies(monkeypatch, varies, message):
     """A motor that spun up under one torque left 0.00 % with an inertia of zero."""
     monkeypatch.setattr(ladder_text, "measured_force", lambda s: s.force)
     sine = np.sqrt(2.0) * varies * np.sin(np.linspace(0.0, 20.0 * np.pi, 2000, endpoint=False))
     stretches = [SimpleNamespace(force=0.05 * (1.0 + s * sine)) for s in (1.0, 0.0)]
     line = constant_force_line(stretches)
-    assert (line is not None) == said
-    if said:
+    assert (line is not None) == message
+    if message:
         assert "a constant friction explains it along any motion" in line

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.own_cases import FEW, write_own
+from diagnose.simulated_cases import FEW, write_simulated
 from scipy.signal import lfilter
 
 import teleopdesign as td
@@ -45,7 +45,7 @@ def filtered(experiment, seconds):
 def adequate(tmp_path_factory):
     """A simulated device whose model is right, with a hand whose force is measured."""
     experiment = td.load_experiment(
-        write_own(tmp_path_factory.mktemp("own") / "null", None, seed=SEED)
+        write_simulated(tmp_path_factory.mktemp("own") / "null", None, seed=SEED)
     )
     assert HAND in experiment.channels
     return experiment
@@ -61,11 +61,11 @@ def diagnosis(late):
     return td.find_missing(late, td.Model.from_experiment(late, KNOWN))
 
 
-def test_the_filter_of_the_hands_sensor_is_told_and_nothing_is_missing(adequate, diagnosis):
+def test_the_filter_of_the_hands_sensor_is_reported_and_nothing_is_missing(adequate, diagnosis):
     assert diagnosis.verdict == "model_adequate"
-    told = answer(diagnosis)["record_shift"][HAND]
-    assert told["value"] == pytest.approx(5e-3, rel=0.15)
-    assert told["stderr"] < 1e-3
+    shift = answer(diagnosis)["record_shift"][HAND]
+    assert shift["value"] == pytest.approx(5e-3, rel=0.15)
+    assert shift["stderr"] < 1e-3
     assert "force of the hand at device" in ladder_text(diagnosis)
     right = estimate(td.Model.from_experiment(adequate), prepare(adequate))
     assert diagnosis.after.check_error < 1.5 * right.check_error
@@ -126,7 +126,7 @@ def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
 @pytest.mark.parametrize("effect", ["actuator_lag", "stribeck"])
 def test_what_is_missing_keeps_its_name_beside_a_hand_in_time_or_late(tmp_path, effect):
     """A lag of the command is no lag of the sensor: the motion tells which force is late."""
-    experiment = td.load_experiment(write_own(tmp_path / "case", effect, seed=SEED))
+    experiment = td.load_experiment(write_simulated(tmp_path / "case", effect, seed=SEED))
     for logged in (experiment, filtered(experiment, 5e-3)):
         diagnosis = td.find_missing(logged, td.Model.from_experiment(logged, KNOWN))
         assert [c.effect.name for c in diagnosis.missing] == [effect]

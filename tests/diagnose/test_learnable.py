@@ -111,10 +111,10 @@ def test_an_answer_holds_what_could_be_learned_and_gives_it_back(diagnosis, expe
     assert str(diagnosis.learnable) in ladder_text(back)
 
 
-def test_what_is_said_adds_up():
+def test_the_shares_of_the_sentence_add_up():
     learned = Learnable(left=0.094, error=0.054, alone=0.2, where="below 0.005 m/s")
-    said = "9.4 % left; 4 % follows from the motion, below 0.005 m/s; 5.4 % does not repeat"
-    assert str(learned) == said
+    sentence = "9.4 % left; 4 % follows from the motion, below 0.005 m/s; 5.4 % does not repeat"
+    assert str(learned) == sentence
     nothing = Learnable(left=0.05, error=0.06, alone=0.2)
     assert nothing.part == 0.0 and "no part of it" in str(nothing)
     assert learnable_from(learnable_data(learned, None)) == learned
@@ -132,11 +132,11 @@ def test_the_error_near_reversals_is_that_of_the_rows_there(diagnosis, prepared)
 
 @given(st.lists(st.sampled_from([-1, 0, 1]), min_size=1, max_size=60), st.integers(0, 8))
 def test_samples_near_a_reversal_are_those_that_have_one_within_reach(direction, within):
-    found = mark_reversals(np.array(direction, dtype=np.int8), within=within)
+    reversals = mark_reversals(np.array(direction, dtype=np.int8), within=within)
     last, turned = 0, []
     for i, d in enumerate(direction):
         if d and last and d != last:
             turned.append(i)
         last = d or last
     expected = [any(abs(i - t) <= within for t in turned) for i in range(len(direction))]
-    assert found.tolist() == expected
+    assert reversals.tolist() == expected

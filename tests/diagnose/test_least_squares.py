@@ -16,13 +16,13 @@ def test_a_linear_problem_with_bounds_is_solved_exactly(seed):
     a, b = rng.normal(size=(12, 4)), rng.normal(size=12)
     lower = np.where(rng.random(4) < 0.3, -np.inf, rng.uniform(-0.5, 0.0, 4))
     upper = np.where(rng.random(4) < 0.3, np.inf, rng.uniform(0.0, 0.5, 4))
-    found = minimise(
+    optimum = minimise(
         lambda x: (a @ x - b, a), np.zeros(4), lower, upper, tolerance=1e-12, evaluations=200
     ).values
     known = lsq_linear(a, b, (lower, upper), tol=1e-14).x
-    assert np.all((found >= lower) & (found <= upper))
+    assert np.all((optimum >= lower) & (optimum <= upper))
     # the same sum of squares; the point itself may be flat
-    assert np.sum((a @ found - b) ** 2) <= np.sum((a @ known - b) ** 2) * (1 + 1e-6)
+    assert np.sum((a @ optimum - b) ** 2) <= np.sum((a @ known - b) ** 2) * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("start", [(-1.2, 1.0), (2.0, -1.0), (0.0, 0.5)])
@@ -34,8 +34,8 @@ def test_a_curved_valley_is_followed_to_its_end(start):
         )
 
     free = np.full(2, np.inf)
-    found = minimise(rosenbrock, np.array(start), -free, free, tolerance=1e-12, evaluations=200)
-    np.testing.assert_allclose(found.values, [1.0, 1.0], atol=1e-4)
+    optimum = minimise(rosenbrock, np.array(start), -free, free, tolerance=1e-12, evaluations=200)
+    np.testing.assert_allclose(optimum.values, [1.0, 1.0], atol=1e-4)
     bounded = minimise(
         rosenbrock,
         np.array(start),
@@ -53,11 +53,11 @@ def test_a_curved_valley_is_followed_to_its_end(start):
 def test_a_parameter_without_effect_stays_where_it_was():
     jacobian = np.column_stack([np.ones(5), np.zeros(5)])
     free = np.full(2, np.inf)
-    found = minimise(
+    optimum = minimise(
         lambda x: (jacobian @ x - 3.0, jacobian), np.array([0.0, 7.0]), -free, free,
         tolerance=1e-10, evaluations=50,
     )  # fmt: skip
-    np.testing.assert_allclose(found.values, [3.0, 7.0], rtol=1e-6)
+    np.testing.assert_allclose(optimum.values, [3.0, 7.0], rtol=1e-6)
 
 
 def test_steps_that_fail_one_after_another_cost_no_derivatives():

@@ -43,7 +43,7 @@ def base(cogged):
 
 
 @pytest.mark.slow
-def test_a_fine_period_is_found_among_a_hundred(cogged, base):
+def test_a_fine_period_is_detected_among_a_hundred(cogged, base):
     prepared = prepare(cogged)
     model = base.model.with_effect("cogging")
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
@@ -53,11 +53,11 @@ def test_a_fine_period_is_found_among_a_hundred(cogged, base):
     assert best["device.cogging.period"].value == pytest.approx(PERIOD, rel=0.03)
     assert starts[0].promised < fit_squares(base)
     assert [s.promised for s in starts] == sorted(s.promised for s in starts)
-    found = estimate_from_starts(model, prepared).model.parameters
-    assert found["device.cogging.period"].value == pytest.approx(PERIOD, rel=1e-3)
+    fit = estimate_from_starts(model, prepared).model.parameters
+    assert fit["device.cogging.period"].value == pytest.approx(PERIOD, rel=1e-3)
     # encoder steps of 7 um turn the wave by 0.06 rad at most, which takes 1 % of its mean
-    assert found["device.cogging.amplitude"].value == pytest.approx(AMPLITUDE, rel=0.03)
-    assert found["device.cogging.phase"].value == pytest.approx(PHASE, abs=0.1)
+    assert fit["device.cogging.amplitude"].value == pytest.approx(AMPLITUDE, rel=0.03)
+    assert fit["device.cogging.phase"].value == pytest.approx(PHASE, abs=0.1)
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ def needed_by_voltage(t, x, v):
 
 
 @pytest.mark.slow
-def test_a_motor_driven_by_a_voltage_is_told_to_rub_with_the_load_at_its_output(tmp_path):
+def test_a_motor_driven_by_a_voltage_has_load_dependent_friction_at_its_output(tmp_path):
     """The acting force contains the back-EMF there, and is the wrong load."""
     user = "".join(line + "\n" for line in USER.splitlines() if not line.startswith("load"))
     records = {

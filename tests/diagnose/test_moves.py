@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from diagnose.made_records import jittered
-from diagnose.own_cases import write_own
+from diagnose.simulated_cases import write_simulated
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import ladder as climbing
@@ -30,7 +30,7 @@ KNOWN = ("spring", "hardening_spring", "bias", "quadratic_drag", "viscous", "cou
 @pytest.fixture(scope="module")
 def ladder(tmp_path_factory):
     """The search on a machine whose model lacks a spring and a bias, and its first state."""
-    folder = write_own(tmp_path_factory.mktemp("moves") / "case", "bias+spring")
+    folder = write_simulated(tmp_path_factory.mktemp("moves") / "case", "bias+spring")
     experiment = load_experiment(folder)
     known = {name: EFFECTS[name] for name in KNOWN}
     search = search_for(experiment, Model.from_experiment(experiment, known))
@@ -153,17 +153,17 @@ def test_a_stand_in_is_exchanged_for_what_it_stood_for(ladder):
     assert exchange(search, spent) is None
 
 
-def test_alternatives_are_told_apart_by_what_followed_them(ladder):
+def test_alternatives_are_distinguished_by_what_followed_them(ladder):
     search, state = ladder
     drag, bias = (Candidate(EFFECTS[n], "device") for n in ("quadratic_drag", "bias"))
-    taken = with_effects(search, state, "quadratic_drag", "spring")
-    undecided = replace(taken.rungs[1], alternatives=(bias,))
+    model = with_effects(search, state, "quadratic_drag", "spring")
+    undecided = replace(model.rungs[1], alternatives=(bias,))
     moved = compare_alternatives(
-        search, taken.with_rungs((taken.rungs[0], undecided, taken.rungs[2]))
+        search, model.with_rungs((model.rungs[0], undecided, model.rungs[2]))
     )
     assert set(added(moved)) == {"bias", "spring"}
     assert not any(rung.alternatives for rung in moved.rungs)
-    assert moved.fit.check_error < taken.fit.check_error
+    assert moved.fit.check_error < model.fit.check_error
     assert compare_alternatives(search, moved) is None
     # the right one stays, and loses its alternative
     right = with_effects(search, state, "bias", "spring")
@@ -172,7 +172,7 @@ def test_alternatives_are_told_apart_by_what_followed_them(ladder):
     moved = compare_alternatives(search, right)
     assert added(moved) == ["bias", "spring"] and not moved.rungs[1].alternatives
     # the last was ranked beside all others: nothing followed it
-    last = right.with_rungs((*taken.rungs[:1], undecided))
+    last = right.with_rungs((*model.rungs[:1], undecided))
     assert compare_alternatives(search, last) is None
     assert compare_alternatives(search, state) is None and exchange(search, state) is None
 
@@ -251,7 +251,9 @@ def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
 
 @pytest.mark.slow
 def test_what_only_weakens_the_jitter_of_a_clock_goes_when_the_missing_effect_is_there(tmp_path):
-    experiment = jittered(load_experiment(write_own(tmp_path / "case", "quadratic_drag")), 0.3)
+    experiment = jittered(
+        load_experiment(write_simulated(tmp_path / "case", "quadratic_drag")), 0.3
+    )
     known = {name: EFFECTS[name] for name in (*KNOWN, "transmission_compliance")}
     search = search_for(experiment, Model.from_experiment(experiment, known))
     state = begin(search)

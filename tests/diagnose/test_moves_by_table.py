@@ -56,7 +56,7 @@ def test_the_simplest_of_those_that_explain_as_well_is_added_with_its_alternativ
     assert moved.rungs[-1].instead_of is None
 
 
-def test_beside_a_model_that_leaves_noise_what_else_helps_is_said(use):
+def test_beside_a_model_that_leaves_noise_what_else_helps_is_reported(use):
     table = use(shares(spring=0.5, bias=0.4, quadratic_drag=0.1))
     state = looked(table, table.state(table.rungs()), SPRING, BIAS, DRAG)
     noise = replace(state.floors, allowed=floor(0.6))

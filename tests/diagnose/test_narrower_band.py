@@ -40,7 +40,7 @@ def filtered(experiment):
     return Model.from_experiment(spoiled), prepare(spoiled)
 
 
-def test_a_coarse_and_filtered_position_is_said_to_ask_for_forces_that_nothing_shows(filtered):
+def test_a_coarse_and_filtered_position_is_reported_to_need_forces_that_nothing_shows(filtered):
     model, prepared = filtered
     narrower = narrower_band(model, prepared)
     assert narrower is not None and narrower.chosen == prepared.bandwidth

@@ -35,26 +35,26 @@ def left(blocks, loud, *, size=10.0, floor=0.5, at_command=1.0):
 
 
 @pytest.mark.parametrize(("at", "file", "begin"), [(5, 0, 5), (12, 0, 12), (17, 1, 3)])
-def test_two_neighbouring_blocks_with_most_of_it_are_found_with_what_is_left_without(
+def test_two_neighbouring_blocks_with_most_of_it_are_detected_with_what_is_left_without(
     at, file, begin
 ):
     fit, prepared, floor = left((14, 16), (at, at + 1), at_command=0.8)
-    found = worst_moment(fit, prepared, floor)
-    assert (found.file, found.body) == (f"check_{file}.csv", "device")
+    moment = worst_moment(fit, prepared, floor)
+    assert (moment.file, moment.body) == (f"check_{file}.csv", "device")
     first = 50.0 + (10 + begin * PER_BLOCK) / RATE
-    assert found.begin == pytest.approx(first)
-    assert found.end == pytest.approx(first + (2 * PER_BLOCK - 1) / RATE)
+    assert moment.begin == pytest.approx(first)
+    assert moment.end == pytest.approx(first + (2 * PER_BLOCK - 1) / RATE)
     # all other rows leave one: over the floor at the command
-    assert found.without == pytest.approx(1.0 / (0.5 * 0.8))
-    assert str(found) == f"device in {found.file}, {found.begin:.2f} to {found.end:.2f} s"
+    assert moment.without == pytest.approx(1.0 / (0.5 * 0.8))
+    assert str(moment) == f"device in {moment.file}, {moment.begin:.2f} to {moment.end:.2f} s"
 
 
 def test_blocks_of_two_stretches_are_no_moment():
     """The last of one record and the first of the next are far apart, however loud both are."""
     fit, prepared, floor = left((14, 16), (13, 14))
-    found = worst_moment(fit, prepared, floor)
-    assert found.end - found.begin < 2.0 * BLOCK
-    assert found.without > 1.0 / 0.5
+    moment = worst_moment(fit, prepared, floor)
+    assert moment.end - moment.begin < 2.0 * BLOCK
+    assert moment.without > 1.0 / 0.5
 
 
 def test_of_fewer_than_ten_moments_none_is_left_out():

@@ -77,7 +77,7 @@ def test_no_question_is_asked_where_nothing_else_would_do():
     assert [q.added for q in two] == [group.added, group.added]
 
 
-def test_a_question_holds_as_many_as_can_be_told_apart_at_once():
+def test_a_question_holds_as_many_as_can_be_distinguished_at_once():
     many = [ranked(0.3 + 1e-4 * k, n) for k, n in enumerate(OTHERS)]
     (question,) = open_questions(diagnosis(rungs=[rung(ranked(0.3), *many, base=1.0)]))
     assert names(question) == list(OTHERS[: PLAN.rivals - 1])

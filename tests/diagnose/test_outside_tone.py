@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
-from diagnose.own_cases import write_own
+from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
 from teleopdesign.diagnose import ladder, ladder_state
@@ -29,22 +29,22 @@ def rod():
     return prepared, estimate_from_starts(td.Model.from_experiment(experiment), prepared)
 
 
-def with_residual(found, prepared, force):
+def with_residual(fit, prepared, force):
     """The fit with force(time) as what it leaves, N."""
 
     def left(use):
         stretches = prepared.of(use)
         return weigh_residuals(stretches, [force(s.motion.time[s.keep]) for s in stretches])
 
-    return replace(found, fit_residual=left("fit"), check_residual=left("check"))
+    return replace(fit, fit_residual=left("fit"), check_residual=left("check"))
 
 
 @pytest.mark.parametrize("frequency", [17.0, 23.0])
 def test_a_tone_is_taken_away_whatever_its_phase_on_each_record(rod, frequency):
-    prepared, found = rod
+    prepared, fit = rod
     noise = np.random.default_rng(1)
     hum = with_residual(
-        found,
+        fit,
         prepared,
         lambda t: np.sin(2 * np.pi * frequency * t + t[0]) + 0.1 * noise.standard_normal(len(t)),
     )
@@ -53,19 +53,19 @@ def test_a_tone_is_taken_away_whatever_its_phase_on_each_record(rod, frequency):
 
 
 def test_noise_is_no_tone(rod):
-    prepared, found = rod
+    prepared, fit = rod
     noise = np.random.default_rng(2)
-    plain = with_residual(found, prepared, lambda t: noise.standard_normal(len(t)))
+    plain = with_residual(fit, prepared, lambda t: noise.standard_normal(len(t)))
     assert best_tone(plain, prepared).squares > 0.98 * check_squares(plain)
 
 
 def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
     """The motion's own strongest frequency."""
-    prepared, found = rod
+    prepared, fit = rod
     motion = prepared.of("fit")[0].motion
     power = np.abs(np.fft.rfft(motion.velocity))
-    own = np.fft.rfftfreq(len(motion.velocity), motion.sample_time)[int(np.argmax(power))]
-    swing = with_residual(found, prepared, lambda t: np.sin(2 * np.pi * own * t))
+    frequency = np.fft.rfftfreq(len(motion.velocity), motion.sample_time)[int(np.argmax(power))]
+    swing = with_residual(fit, prepared, lambda t: np.sin(2 * np.pi * frequency * t))
     assert best_tone(swing, prepared).squares == float("inf")
 
 
@@ -89,14 +89,14 @@ def test_harmonics_of_a_periodic_motion_are_no_tone_from_outside(tmp_path, harmo
 
 
 def test_the_effect_that_is_missing_leaves_less_than_a_tone(rod):
-    prepared, found = rod
-    assert best_tone(found, prepared).squares > 0.9 * check_squares(found)
+    prepared, fit = rod
+    assert best_tone(fit, prepared).squares > 0.9 * check_squares(fit)
 
 
 def test_a_tone_on_a_body_that_often_sticks_is_taken_as_the_force_it_is(rod):
     """Off the residual alone it leaves what friction balances while the body sticks."""
-    prepared, found = rod
-    level = found.model.parameters["device.coulomb.level"].value
+    prepared, fit = rod
+    level = fit.model.parameters["device.coulomb.level"].value
 
     def driven(stretch):
         motion = stretch.motion
@@ -105,19 +105,19 @@ def test_a_tone_on_a_body_that_often_sticks_is_taken_as_the_force_it_is(rod):
 
     stretches = tuple(driven(s) for s in prepared.stretches)
     hummed = replace(prepared, stretches=stretches)
-    before = estimate(found.model, hummed)
+    before = estimate(fit.model, hummed)
     off = _off_the_residual(before, hummed)
-    assert best_tone(before, hummed).squares == pytest.approx(check_squares(found), rel=0.05)
-    assert off > 1.5 * check_squares(found)
+    assert best_tone(before, hummed).squares == pytest.approx(check_squares(fit), rel=0.05)
+    assert off > 1.5 * check_squares(fit)
 
 
 @pytest.mark.parametrize("bandwidth", [18.0, 60.0])
 def test_a_tone_above_the_band_is_as_strong_as_what_the_band_shows_of_it_says(rod, bandwidth):
     """At 23 Hz a band of 18 Hz shows an eighth of the force."""
-    prepared, found = rod
+    prepared, fit = rod
     prepared = prepare(prepared.experiment, bandwidth=bandwidth)
-    found = estimate(found.model, prepared)
-    size = 0.8 * found.model.parameters["device.coulomb.level"].value
+    fit = estimate(fit.model, prepared)
+    size = 0.8 * fit.model.parameters["device.coulomb.level"].value
 
     def driven(stretch):
         motion = stretch.motion
@@ -125,11 +125,11 @@ def test_a_tone_above_the_band_is_as_strong_as_what_the_band_shows_of_it_says(ro
         return replace(stretch, motion=replace(motion, interaction=motion.interaction + wave))
 
     hummed = replace(prepared, stretches=tuple(driven(s) for s in prepared.stretches))
-    before = estimate(found.model, hummed)
-    assert best_tone(before, hummed).squares == pytest.approx(check_squares(found), rel=0.05)
+    before = estimate(fit.model, hummed)
+    assert best_tone(before, hummed).squares == pytest.approx(check_squares(fit), rel=0.05)
 
 
-def test_frequencies_of_the_mains_are_told_from_those_beside_them():
+def test_frequencies_of_the_mains_are_distinguished_from_those_beside_them():
     assert all(is_of_mains(f) for f in (49.95, 50.0, 60.1, 100.0, 120.2))
     assert not any(is_of_mains(f) for f in (0.0, 25.0, 47.9, 51.0, 58.8, 150.0))
 
@@ -137,25 +137,25 @@ def test_frequencies_of_the_mains_are_told_from_those_beside_them():
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, 6])
 def test_a_hum_that_moves_the_machine_is_no_tip_that_rings(tmp_path, seed):
-    folder = write_own(tmp_path / "case", "outside_hum", seed=seed, level="outside")
+    folder = write_simulated(tmp_path / "case", "outside_hum", seed=seed, level="outside")
     among = ["transmission_compliance", "backlash"]
     assert not td.find_missing(td.load_experiment(folder), among=among).missing
 
 
 def test_what_leaves_as_much_as_a_tone_does_not_beat_it(rod):
-    prepared, found = rod
-    noise = np.random.default_rng(3).standard_normal(len(found.check_residual))
-    tone = Tone(found.check_residual + 0.1 * np.std(found.check_residual) * noise)
-    assert not tone.is_beaten_by(found)
-    assert Tone(3.0 * found.check_residual).is_beaten_by(found)
-    assert Tone().is_beaten_by(found)
+    prepared, fit = rod
+    noise = np.random.default_rng(3).standard_normal(len(fit.check_residual))
+    tone = Tone(fit.check_residual + 0.1 * np.std(fit.check_residual) * noise)
+    assert not tone.is_beaten_by(fit)
+    assert Tone(3.0 * fit.check_residual).is_beaten_by(fit)
+    assert Tone().is_beaten_by(fit)
 
 
-def _off_the_residual(found, prepared):
+def _off_the_residual(fit, prepared):
     stretches = prepared.of("check")
-    parts = np.split(found.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
-    taken = sum(_tone_squares(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
-    return check_squares(found) - taken
+    parts = np.split(fit.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
+    squares = sum(_tone_squares(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
+    return check_squares(fit) - squares
 
 
 def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
@@ -166,14 +166,14 @@ def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
 
 @pytest.mark.slow
 def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
-    prepared, found = rod
+    prepared, fit = rod
     floor = NoiseFloor(0.01, "stated", drawn=0.01)
-    squares = check_squares(found) * (floor.value / found.check_error) ** 2
-    noise = Tone(found.check_residual * floor.value / found.check_error)
+    squares = check_squares(fit) * (floor.value / fit.check_error) ** 2
+    noise = Tone(fit.check_residual * floor.value / fit.check_error)
     assert noise.squares == pytest.approx(squares)
-    assert is_a_tone(found, Tone(1.5 * noise.residual), floor)
-    assert not is_a_tone(found, Tone(2.5 * noise.residual), floor)
-    assert not is_a_tone(found, Tone(), floor)
+    assert is_a_tone(fit, Tone(1.5 * noise.residual), floor)
+    assert not is_a_tone(fit, Tone(2.5 * noise.residual), floor)
+    assert not is_a_tone(fit, Tone(), floor)
 
     def searched(*_, **__):
         raise AssertionError("a pair was sought")

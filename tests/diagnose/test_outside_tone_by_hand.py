@@ -103,7 +103,7 @@ def test_what_a_tone_leaves_has_nothing_of_its_frequency():
     assert np.sum(_remove_tone(three, noise[:3], 8.0) ** 2) < np.sum(noise[:3] ** 2)
 
 
-def test_a_motion_holds_its_own_frequency_and_harmonics_of_its_direction_and_size():
+def test_a_motion_holds_its_frequency_and_harmonics_of_its_direction_and_size():
     one = stretch(40.0, velocity=sine(0.5))
     line = 1.0 / 40.0
     assert _share(one, 0.5) > 0.99 and _share(one, 0.5 + 2 * line) > 0.9
@@ -150,14 +150,14 @@ def tone_of(monkeypatch):
         one = SimpleNamespace(
             fit_residual=np.concatenate(left["fit"]), check_residual=np.concatenate(left["check"])
         )
-        asked = []
+        calls = []
 
         def fitted(fit, prepared, body, frequency):
-            asked.append((body, frequency))
+            calls.append((body, frequency))
             return one.check_residual if beside is None else beside
 
         monkeypatch.setattr(outside_tone, "_fit_beside_tone", fitted)
-        return best_tone(one, SimpleNamespace(of=records.__getitem__)), left["check"], asked
+        return best_tone(one, SimpleNamespace(of=records.__getitem__)), left["check"], calls
 
     return find
 
@@ -176,8 +176,8 @@ def test_a_tone_is_taken_off_the_body_on_which_it_acts(tone_of):
             return noise
         return both(noise, sine(9.0, rng.uniform(1, 2), rng.uniform(0, 6)))
 
-    tone, left, asked = tone_of(records, force)
-    assert [body for body, _ in asked] == ["slave"] and asked[0][1] == pytest.approx(9.0, abs=0.01)
+    tone, left, calls = tone_of(records, force)
+    assert [body for body, _ in calls] == ["slave"] and calls[0][1] == pytest.approx(9.0, abs=0.01)
     np.testing.assert_allclose(tone.residual[: len(left[0])], left[0])
     assert tone.squares == pytest.approx(0.01 * len(tone.residual), rel=0.15)
 
@@ -193,10 +193,10 @@ def test_a_tone_is_fitted_as_a_force_where_it_explains_enough_to_matter(tone_of,
     noise /= np.sqrt(np.mean(noise**2))
     size = (2 * part / (1 - part)) ** 0.5
     nothing = np.zeros(len(noise))
-    tone, left, asked = tone_of(
+    tone, left, calls = tone_of(
         records, lambda s: lambda t: noise + sine(9.0, size)(t), beside=nothing
     )
-    assert bool(asked) == fitted
+    assert bool(calls) == fitted
     assert tone.squares == (0.0 if fitted else pytest.approx((1 - part) * squares(left), rel=0.01))
     # as a force it may leave more: then it is taken off the residual
     tone, *_ = tone_of(records, lambda s: lambda t: noise + sine(9.0, size)(t), beside=9 + nothing)

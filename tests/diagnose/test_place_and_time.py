@@ -151,17 +151,21 @@ def test_a_pendulum_at_constant_speeds_shows_its_gravity(tmp_path):
     (tmp_path / "pendulum.py").write_text(GRAVITY)
     gravity = load_effect(tmp_path / "pendulum.py")
     experiment = load_experiment(write_pendulum(tmp_path / "case"))
-    found = find_missing(experiment, Model.from_experiment(experiment, known(gravity)))
-    assert [str(c) for c in found.missing] == ["pendulum at device"]
-    assert found.model.parameters["device.pendulum.amplitude"].value == pytest.approx(8.0, rel=0.02)
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known(gravity)))
+    assert [str(c) for c in diagnosis.missing] == ["pendulum at device"]
+    assert diagnosis.model.parameters["device.pendulum.amplitude"].value == pytest.approx(
+        8.0, rel=0.02
+    )
 
 
 @pytest.mark.slow
 def test_gravity_that_the_catalogue_lacks_is_called_no_cogging(tmp_path):
     experiment = load_experiment(write_pendulum(tmp_path / "case"))
-    found = find_missing(experiment, Model.from_experiment(experiment, known()))
-    assert "cogging" not in {c.effect.name for c in found.missing}
-    (cogging,) = [r for r in found.rungs[1].ranking.ranked if r.candidate.effect.name == "cogging"]
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known()))
+    assert "cogging" not in {c.effect.name for c in diagnosis.missing}
+    (cogging,) = [
+        r for r in diagnosis.rungs[1].ranking.ranked if r.candidate.effect.name == "cogging"
+    ]
     assert "does not repeat within the travel" in cogging.implausible
 
 
@@ -187,10 +191,10 @@ def test_eight_turns_of_a_motor_show_its_cogging(tmp_path):
     one_way = [s.motion for s in prepare(experiment).stretches]
     assert all((np.diff(m.position) > -1e-3).all() for m in one_way)
     assert "cogging" in {c.effect.name for c in candidates(model, one_way)}
-    found = find_missing(experiment, model)
-    assert [str(c) for c in found.missing] == ["cogging at device"]
-    period_found = found.model.parameters["device.cogging.period"].value
-    assert period_found == pytest.approx(TURN / 6, rel=0.01)
+    diagnosis = find_missing(experiment, model)
+    assert [str(c) for c in diagnosis.missing] == ["cogging at device"]
+    period = diagnosis.model.parameters["device.cogging.period"].value
+    assert period == pytest.approx(TURN / 6, rel=0.01)
 
 
 # speed and time

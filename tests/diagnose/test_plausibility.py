@@ -44,7 +44,7 @@ FACTS = RecordFacts(
 )
 ELEMENTS = {"level_2": 0.1, "level_3": 0.1, "level_4": 0.0, "stiffness_3": 3e6, "stiffness_4": 1.0}
 #: effect -> (parameters that deserve its name, those that do not, what these stand for)
-SAID = {
+MISFITS = {
     "cogging": ({"period": 0.6}, {"period": 0.8}, "gravity"),
     "torque_ripple": ({"period": 0.6}, {"period": 3.0}, "friction that varies"),
     "presliding": ({"stiffness": 50.0}, {"stiffness": 0.03}, "a spring"),
@@ -93,20 +93,20 @@ SAID = {
 }
 
 
-@pytest.mark.parametrize("name", sorted(SAID))
-def test_parameters_that_do_not_fit_a_name_are_told_what_they_stand_for(name):
-    right, wrong, stands_for = SAID[name]
+@pytest.mark.parametrize("name", sorted(MISFITS))
+def test_parameters_that_do_not_fit_a_name_are_reported_with_what_they_stand_for(name):
+    right, wrong, stands_for = MISFITS[name]
     plausible = EFFECTS[name].plausible
     assert plausible(SimpleNamespace(**right), FACTS) is None
-    said = plausible(SimpleNamespace(**wrong), FACTS)
-    assert stands_for in said and "\n" not in said
+    sentence = plausible(SimpleNamespace(**wrong), FACTS)
+    assert stands_for in sentence and "\n" not in sentence
 
 
-def test_a_gap_is_not_told_where_the_motion_never_turns_round():
+def test_a_gap_is_not_reported_where_the_motion_never_reverses():
     gap = SimpleNamespace(tip_inertia=0.05, stiffness=10.0, damping=0.1, gap=0.3)
     assert EFFECTS["backlash"].plausible(gap, FACTS) is None
-    said = EFFECTS["backlash"].plausible(gap, replace(FACTS, stroke=float("inf")))
-    assert "crossed once at most where the motion never reverses" in said
+    sentence = EFFECTS["backlash"].plausible(gap, replace(FACTS, stroke=float("inf")))
+    assert "crossed once at most where the motion never reverses" in sentence
 
 
 @pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.plausible))
@@ -117,8 +117,8 @@ def test_every_check_answers_for_values_of_any_size(name):
     for size in (1e-12, 1e-3, 1.0, 1e6):
         for stroke in (0.5, float("inf")):
             p = SimpleNamespace(**dict.fromkeys(effect.parameters, size))
-            said = effect.plausible(p, replace(facts, stroke=stroke))
-            assert said is None or (isinstance(said, str) and said.strip())
+            sentence = effect.plausible(p, replace(facts, stroke=stroke))
+            assert sentence is None or (isinstance(sentence, str) and sentence.strip())
 
 
 #: effect -> (parameters that the records tell, those that they do not, what is known of these)
@@ -152,24 +152,24 @@ UNTOLD = {
 
 
 @pytest.mark.parametrize(
-    ("hertz", "ratio", "is_said"),
+    ("hertz", "ratio", "is_reported"),
     [(59.0, 0.02, True), (59.0, 0.2, False), (40.0, 0.02, False), (51.0, 0.05, True)],
 )
-def test_a_ringing_tip_beside_the_mains_may_be_a_hum(hertz, ratio, is_said):
+def test_a_ringing_tip_beside_the_mains_may_be_a_hum(hertz, ratio, is_reported):
     natural, inertia = 2 * np.pi * hertz, 0.05
     tip = SimpleNamespace(
         tip_inertia=inertia, stiffness=inertia * natural**2, damping=2 * ratio * inertia * natural
     )
-    assert bool(EFFECTS["transmission_compliance"].undetermined(tip, FACTS)) == is_said
+    assert bool(EFFECTS["transmission_compliance"].undetermined(tip, FACTS)) == is_reported
 
 
 @pytest.mark.parametrize("name", sorted(UNTOLD))
-def test_what_records_never_carried_is_said_to_be_undetermined(name):
-    told, beyond, known = UNTOLD[name]
+def test_what_records_never_carried_is_undetermined(name):
+    within, beyond, known = UNTOLD[name]
     effect, facts = EFFECTS[name], replace(FACTS, duration=60.0)
-    assert effect.undetermined(SimpleNamespace(**told), facts) is None
-    said = effect.undetermined(SimpleNamespace(**beyond), facts)
-    assert known in said and "\n" not in said
+    assert effect.undetermined(SimpleNamespace(**within), facts) is None
+    sentence = effect.undetermined(SimpleNamespace(**beyond), facts)
+    assert known in sentence and "\n" not in sentence
     assert effect.plausible is None or effect.plausible(SimpleNamespace(**beyond), facts) is None
 
 
@@ -178,8 +178,8 @@ def test_every_effect_that_has_a_rule_on_undetermined_values_is_checked_on_both_
     assert {n for n, e in EFFECTS.items() if e.undetermined} == set(UNTOLD) | by_travel
 
 
-def test_every_effect_with_a_check_is_tried_on_both_sides():
-    assert {n for n, e in EFFECTS.items() if e.plausible} == set(SAID)
+def test_every_effect_with_a_check_is_tested_on_both_sides():
+    assert {n for n, e in EFFECTS.items() if e.plausible} == set(MISFITS)
 
 
 def test_a_slip_element_that_is_rigid_beside_one_that_gives_is_no_fault():
@@ -202,10 +202,10 @@ def test_an_element_that_slips_one_way_only_is_a_spring():
 
 
 def test_a_gap_that_changes_next_to_no_force_is_none():
-    said = EFFECTS["backlash"].plausible(
+    sentence = EFFECTS["backlash"].plausible(
         SimpleNamespace(tip_inertia=0.05, stiffness=10.0, gap=1e-4), FACTS
     )
-    assert "no linear spring" in said
+    assert "no linear spring" in sentence
 
 
 def test_tip_friction_that_never_lets_the_tip_go_is_a_spring():
@@ -229,8 +229,8 @@ def test_one_sine_tells_no_pattern_about_its_centre_from_a_speed(amplitude, cent
 
 
 def test_a_bristle_that_no_step_of_the_encoder_shows_is_coulomb_friction():
-    said = EFFECTS["presliding"].plausible(SimpleNamespace(stiffness=1e6), FACTS)
-    assert "sgn friction" in said
+    sentence = EFFECTS["presliding"].plausible(SimpleNamespace(stiffness=1e6), FACTS)
+    assert "sgn friction" in sentence
 
 
 # in a diagnosis, a user's own effect among them
@@ -251,7 +251,7 @@ EFFECT = Effect(
 '''
 
 
-def own(tmp_path, name, body):
+def users_effect(tmp_path, name, body):
     path = tmp_path / f"{name}.py"
     path.write_text(DAMPER.format(body=body))
     return load_effect(path)
@@ -290,11 +290,15 @@ def test_the_friction_of_speed_is_that_of_every_law_of_speed(case, friction):
     assert record_facts(other, "device", prepared).film == facts.film
 
 
-def test_an_effect_that_its_own_file_does_not_believe_is_not_supported(case, tmp_path):
+def test_an_effect_that_its_file_calls_implausible_is_not_supported(case, tmp_path):
     model, prepared = case
-    strict = own(tmp_path, "strict_damper", 'return "a brake" if p.damping < facts.force else None')
+    strict = users_effect(
+        tmp_path, "strict_damper", 'return "a brake" if p.damping < facts.force else None'
+    )
     # the same law, but what it says is far from what is found
-    never = own(tmp_path, "never", "return f\"{facts.text(p.damping, 'damping')} is a brake\"")
+    never = users_effect(
+        tmp_path, "never", "return f\"{facts.text(p.damping, 'damping')} is a brake\""
+    )
     base = estimate(replace(model, known={strict.name: strict, never.name: never}), prepared)
     ranking = rank_candidates(base, prepared)
     floor = NoiseFloor(0.0, "", 0.0)
@@ -309,18 +313,18 @@ def test_an_effect_that_its_own_file_does_not_believe_is_not_supported(case, tmp
 
 def test_the_answer_says_which_check_failed(experiment, case, tmp_path):
     model, _ = case
-    never = own(tmp_path, "never", 'return "it is a brake"')
-    found = find_missing(experiment, replace(model, known={never.name: never}))
-    assert not found.missing and found.verdict == "undecided"
-    (row,) = answer(found)["candidates"]
+    never = users_effect(tmp_path, "never", 'return "it is a brake"')
+    diagnosis = find_missing(experiment, replace(model, known={never.name: never}))
+    assert not diagnosis.missing and diagnosis.verdict == "undecided"
+    (row,) = answer(diagnosis)["candidates"]
     assert row["refused"] == "it is a brake"
-    assert "refused: never at device" in ladder_text(found)
+    assert "refused: never at device" in ladder_text(diagnosis)
 
 
 def test_a_check_that_fails_is_an_error_of_its_file(case, tmp_path):
     model, prepared = case
     for body, words in (("return 1 / 0", "ZeroDivisionError"), ("return False", "None or a")):
-        broken = own(tmp_path, f"broken_{words[:4].strip()}", body)
+        broken = users_effect(tmp_path, f"broken_{words[:4].strip()}", body)
         fitted = replace(model, known={broken.name: broken})
         fitted = fitted.with_effect(broken, values={"damping": 0.1})
         with pytest.raises(ModelError, match=words):

@@ -45,20 +45,26 @@ def test_it_is_a_probability(left, share, score):
 
 
 def test_it_falls_as_more_is_left_and_never_rises():
-    said = [
+    probabilities = [
         replace(EVIDENCE, left=x).probability() for x in (0.8, CRITERIA.adequate, 2.5, 4.0, 30.0)
     ]
-    assert said == sorted(said, reverse=True)
-    assert said[0] == said[1] > 0.9
-    assert said[3] < 0.5
-    assert said[4] < 0.01
+    assert probabilities == sorted(probabilities, reverse=True)
+    assert probabilities[0] == probabilities[1] > 0.9
+    assert probabilities[3] < 0.5
+    assert probabilities[4] < 0.01
 
 
 def test_what_outweighs_what_is_left_is_believed_though_more_than_noise_is_left():
     left = replace(EVIDENCE, left=8.0)
-    said = [replace(left, outweighs=x).probability() for x in (0.0, 0.5, 0.7, 0.8, 0.95, 1.0)]
-    assert said == sorted(said)
-    assert said[1] < 0.3 and said[2] < 0.5 < said[3] and said[4] > 0.85
+    probabilities = [
+        replace(left, outweighs=x).probability() for x in (0.0, 0.5, 0.7, 0.8, 0.95, 1.0)
+    ]
+    assert probabilities == sorted(probabilities)
+    assert (
+        probabilities[1] < 0.3
+        and probabilities[2] < 0.5 < probabilities[3]
+        and probabilities[4] > 0.85
+    )
     # what is accepted with noise left alone is believed no less
     assert replace(EVIDENCE, outweighs=0.1).probability() == EVIDENCE.probability()
 
@@ -91,7 +97,7 @@ def test_a_candidate_that_displaces_a_parameter_has_no_share(diagnosis):
     assert shares(spoilt, rung)[first.candidate.key] == 0.0
 
 
-def test_what_was_accepted_keeps_its_share_with_a_parameter_of_its_own_at_a_bound(diagnosis):
+def test_an_accepted_effect_keeps_its_share_with_a_parameter_at_a_bound(diagnosis):
     rung = diagnosis.rungs[1]
     first = rung.ranking.ranked[0]
     bound = replace(first.fit, at_bound=("device.stribeck.extra_static_level",))
@@ -101,19 +107,19 @@ def test_what_was_accepted_keeps_its_share_with_a_parameter_of_its_own_at_a_boun
 
 
 def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
-    found = evidence_of(diagnosis)
+    evidence = evidence_of(diagnosis)
     rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]
-    assert len(found) == sum(len(k.ranked) for k in rankings)
-    assert [e.ranked.candidate.key for e in found if e.accepted] == [("stribeck", "device")]
+    assert len(evidence) == sum(len(k.ranked) for k in rankings)
+    assert [e.ranked.candidate.key for e in evidence if e.accepted] == [("stribeck", "device")]
 
 
 def test_a_floor_that_holds_a_commands_scatter_makes_no_effect_more_likely(diagnosis):
-    def said(one):
+    def summary(one):
         return [(e.left, e.explained, e.outweighs, e.probability()) for e in evidence_of(one)]
 
     louder = replace(diagnosis.floor, value=3.0 * diagnosis.floor.value)
     by_scatter = replace(diagnosis, floor=louder, sensor_floor=diagnosis.floor)
-    assert said(by_scatter) == said(diagnosis) != said(replace(diagnosis, floor=louder))
+    assert summary(by_scatter) == summary(diagnosis) != summary(replace(diagnosis, floor=louder))
     assert by_scatter.left == pytest.approx(diagnosis.left / 3.0)
 
 
@@ -129,21 +135,21 @@ def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosi
 
 def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(diagnosis):
     floor = 0.9 * diagnosis.after.check_error
-    found = evidence_of(replace(diagnosis, floor=replace(diagnosis.floor, value=floor)))
+    evidence = evidence_of(replace(diagnosis, floor=replace(diagnosis.floor, value=floor)))
     bases = [r.ranking.base for r in diagnosis.rungs if r.ranking for _ in r.ranking.ranked]
     bases += [diagnosis.last.base for _ in diagnosis.last.ranked]
-    for one, base in zip(found, bases, strict=True):
+    for one, base in zip(evidence, bases, strict=True):
         before, after = base.check_error, one.ranked.fit.check_error
         above = before**2 - min(floor, after) ** 2
         part = (before**2 - after**2) / above if above > 0 else 0.0
         assert one.explained == pytest.approx(min(max(part, 0.0), 1.0))
-    assert max(one.explained for one in found) > 0.5
+    assert max(one.explained for one in evidence) > 0.5
 
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize(("share", "is_told"), [(0.0, False), (0.019, False), (0.021, True)])
-def test_a_new_parameter_is_told_by_the_part_that_no_other_imitates_whatever_its_unit(
-    diagnosis, size, share, is_told
+@pytest.mark.parametrize(("share", "is_determined"), [(0.0, False), (0.019, False), (0.021, True)])
+def test_a_new_parameter_is_determined_by_the_part_that_no_other_imitates_whatever_its_unit(
+    diagnosis, size, share, is_determined
 ):
     fit, base = diagnosis.after, diagnosis.before
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
@@ -156,7 +162,7 @@ def test_a_new_parameter_is_told_by_the_part_that_no_other_imitates_whatever_its
     alone /= np.linalg.norm(alone)
     alike = columns[:, old[0]] / np.linalg.norm(columns[:, old[0]])
     columns[:, new] = size * ((1 - share**2) ** 0.5 * alike + share * alone)[:, None]
-    assert is_identifiable(replace(fit, jacobian=columns), base) == is_told
+    assert is_identifiable(replace(fit, jacobian=columns), base) == is_determined
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
@@ -196,9 +202,9 @@ def with_box(diagnosis, *, alone, learned):
 def test_what_a_black_box_sees_and_cannot_learn_is_open_to_no_other_effect(
     diagnosis, alone, learned, part
 ):
-    seen = with_box(diagnosis, alone=alone, learned=learned)
-    assert open_to_others(seen) == pytest.approx(part, abs=1e-9)
-    assert open_to_others(replace(seen, learnable=None)) == 1.0
+    assessment = with_box(diagnosis, alone=alone, learned=learned)
+    assert open_to_others(assessment) == pytest.approx(part, abs=1e-9)
+    assert open_to_others(replace(assessment, learnable=None)) == 1.0
 
 
 def test_an_effect_is_believed_more_the_less_of_what_is_left_follows_the_motion(diagnosis):

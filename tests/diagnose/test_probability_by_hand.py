@@ -24,10 +24,10 @@ from teleopdesign.diagnose.rung import Rung
 def entry(name, error, **more):
     """A candidate with its fit; behind, score, at_command, at_bound and what else is to be said."""
     bound = more.pop("at_bound", ())
-    said = {k: more.pop(k) for k in ("behind", "score") if k in more}
+    extras = {k: more.pop(k) for k in ("behind", "score") if k in more}
     one = ranked(error, name, **more)
     one.fit.at_bound = bound
-    return replace(one, **said)
+    return replace(one, **extras)
 
 
 def diagnosis(steps, *, last=(), first=0.5, noise=0.1, needs=(), **more):
@@ -55,47 +55,47 @@ def test_what_a_step_takes_away_by_hand():
     """0.25 of squares to 0.09, of which 0.01 are noise: 0.08 are left."""
     spring, viscous = entry("spring", 0.3), entry("viscous", 0.4)
     bias = entry("bias", 0.29)
-    found = evidence_of(diagnosis([(spring, [], [viscous])], last=[bias]))
-    of = {e.ranked.candidate.effect.name: e for e in found}
-    assert [e.accepted for e in found] == [True, False, False]
+    evidence = evidence_of(diagnosis([(spring, [], [viscous])], last=[bias]))
+    of = {e.ranked.candidate.effect.name: e for e in evidence}
+    assert [e.accepted for e in evidence] == [True, False, False]
     assert of["spring"].explained == pytest.approx(0.16 / 0.24)
     assert of["viscous"].explained == pytest.approx(0.09 / 0.24)
     assert of["bias"].explained == pytest.approx((0.09 - 0.0841) / 0.08)
     assert of["spring"].outweighs == pytest.approx(0.16 / (0.16 + 0.08))
     assert of["viscous"].outweighs == pytest.approx(0.09 / (0.09 + 0.08))
     assert of["bias"].outweighs == pytest.approx(0.0059 / (0.0059 + 0.08))
-    assert [e.left for e in found] == pytest.approx([3.0] * 3)
-    assert not any(e.from_noise for e in found)
+    assert [e.left for e in evidence] == pytest.approx([3.0] * 3)
+    assert not any(e.from_noise for e in evidence)
 
 
 def test_what_outweighs_is_the_smaller_of_the_force_and_at_the_command():
     spring = entry("spring", 0.3, at_command=0.4)
-    (found,) = evidence_of(diagnosis([(spring, [], [])]))
+    (finding,) = evidence_of(diagnosis([(spring, [], [])]))
     # at the command 0.25 to 0.16, of which 0.15 are left
-    assert found.outweighs == pytest.approx(0.09 / (0.09 + 0.15))
+    assert finding.outweighs == pytest.approx(0.09 / (0.09 + 0.15))
     spring.fit.at_command.error = math.nan
-    (found,) = evidence_of(diagnosis([(spring, [], [])]))
-    assert found.outweighs == 0.0, "blind everywhere"
+    (finding,) = evidence_of(diagnosis([(spring, [], [])]))
+    assert finding.outweighs == 0.0, "blind everywhere"
 
 
 def test_what_leaves_more_takes_nothing_away():
     worse = entry("viscous", 0.6)
-    (found,) = evidence_of(diagnosis([], last=[worse]))
-    assert (found.explained, found.outweighs, found.accepted) == (0.0, 0.0, False)
+    (finding,) = evidence_of(diagnosis([], last=[worse]))
+    assert (finding.explained, finding.outweighs, finding.accepted) == (0.0, 0.0, False)
 
 
 def test_beside_a_base_that_leaves_no_more_than_the_floor_nothing_is_explained():
-    (found,) = evidence_of(diagnosis([], first=0.1, last=[entry("viscous", 0.1)]))
-    assert found.explained == 0.0 and found.from_noise
+    (finding,) = evidence_of(diagnosis([], first=0.1, last=[entry("viscous", 0.1)]))
+    assert finding.explained == 0.0 and finding.from_noise
     # where a candidate leaves less than the floor, that is what sensors leave
-    (found,) = evidence_of(diagnosis([], first=0.1, last=[entry("viscous", 0.05)]))
-    assert found.explained == 1.0
+    (finding,) = evidence_of(diagnosis([], first=0.1, last=[entry("viscous", 0.05)]))
+    assert finding.explained == 1.0
 
 
 @pytest.mark.parametrize(("first", "noise"), [(0.179, True), (0.181, False)])
 def test_a_step_begins_at_noise_where_its_base_leaves_less_than_nearly_two_floors(first, noise):
-    (found,) = evidence_of(diagnosis([(entry("spring", 0.11), [], [])], first=first))
-    assert found.from_noise == noise
+    (finding,) = evidence_of(diagnosis([(entry("spring", 0.11), [], [])], first=first))
+    assert finding.from_noise == noise
 
 
 def test_what_a_black_box_cannot_learn_stands_against_no_effect():
@@ -134,25 +134,25 @@ def test_what_is_open_by_squares_alone_and_squares_learned(size, alone, learned,
     assert open_to_others(replace(there, learnable=box)) == pytest.approx(part)
 
 
-def test_those_that_explain_as_well_are_said_to_be_as_good():
+def test_candidates_that_explain_as_well_are_reported_as_equally_good():
     first, equal, other = (
         entry(n, e) for n, e in (("spring", 0.3), ("bias", 0.3), ("viscous", 0.4))
     )
-    found = evidence_of(diagnosis([(first, [equal], [other])], last=[entry("bias", 0.29)]))
-    assert [(e.accepted, e.as_good) for e in found] == [
+    evidence = evidence_of(diagnosis([(first, [equal], [other])], last=[entry("bias", 0.29)]))
+    assert [(e.accepted, e.as_good) for e in evidence] == [
         (True, False), (False, True), (False, False), (False, False),
     ]  # fmt: skip
 
 
-def test_what_bars_a_candidate_is_said_of_those_that_help_and_are_not_accepted():
+def test_what_bars_a_candidate_is_reported_for_those_that_help_and_are_not_accepted():
     spring = entry("spring", 0.3)
     helps, hardly = (
         entry(n, e, implausible="a bristle") for n, e in (("bias", 0.3), ("viscous", 0.499))
     )
     gone = entry("cogging", 0.499)
     aside = (SetAside(gone.candidate, 0.3, "not told from absence"),)
-    found = evidence_of(diagnosis([(spring, [], [helps, hardly, gone])], set_aside=aside))
-    assert [e.barred for e in found] == ["", "a bristle", "", "not told from absence"]
+    evidence = evidence_of(diagnosis([(spring, [], [helps, hardly, gone])], set_aside=aside))
+    assert [e.barred for e in evidence] == ["", "a bristle", "", "not told from absence"]
 
 
 def test_those_that_a_step_cannot_tell_apart_share_by_how_far_they_are_behind():
@@ -160,16 +160,18 @@ def test_those_that_a_step_cannot_tell_apart_share_by_how_far_they_are_behind():
     other = entry("bias", 0.3, behind=0.0)
     ranking = Ranking(fit(0.5), (first, equal, other))
     rung = Rung(first.candidate, first.fit, ranking, (equal.candidate,))
-    found = shares(ranking, rung)
+    portions = shares(ranking, rung)
     part = 1.0 / (1.0 + math.exp(-0.5))
-    assert [found[r.candidate.key] for r in ranking.ranked] == pytest.approx([part, 1 - part, 0.0])
+    assert [portions[r.candidate.key] for r in ranking.ranked] == pytest.approx(
+        [part, 1 - part, 0.0]
+    )
     # the accepted one may be the simplest, not the best: others are measured from it
     behind = replace(first, behind=2.0), replace(equal, behind=3.0), replace(other, behind=0.0)
     moved = Ranking(fit(0.5), behind)
     rung = replace(rung, alternatives=(equal.candidate, other.candidate))
-    found = [shares(moved, rung)[r.candidate.key] for r in moved.ranked]
+    portions = [shares(moved, rung)[r.candidate.key] for r in moved.ranked]
     whole = 2.0 + math.exp(-0.5)
-    assert found == pytest.approx([1 / whole, math.exp(-0.5) / whole, 1 / whole])
+    assert portions == pytest.approx([1 / whole, math.exp(-0.5) / whole, 1 / whole])
 
 
 def test_of_a_last_step_all_share_that_count_and_drive_nothing_to_a_bound():
@@ -183,8 +185,10 @@ def test_of_a_last_step_all_share_that_count_and_drive_nothing_to_a_bound():
     ranking = Ranking(fit(0.5), tuple(rows))
     part = 1.0 / (1.0 + math.exp(-2.0))
     for rung in (None, Rung(None, ranking.base, ranking)):
-        found = shares(ranking, rung)
-        assert [found[r.candidate.key] for r in rows] == pytest.approx([part, 1 - part, 0.0, 0.0])
+        portions = shares(ranking, rung)
+        assert [portions[r.candidate.key] for r in rows] == pytest.approx(
+            [part, 1 - part, 0.0, 0.0]
+        )
     # what the base has at a bound itself was driven there by none of them
     ranking.base.at_bound = (bound,)
     assert shares(ranking, None)["bias", "device"] == pytest.approx(

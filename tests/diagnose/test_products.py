@@ -42,7 +42,7 @@ OPEN = {"extra_static_level": (0.5, 0.6), "stribeck_velocity": (0.1, 0.24)}
 
 
 @pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (5.0, 1e3, 1e-3)])
-def test_the_product_of_a_valley_is_found_whatever_the_units(scale):
+def test_the_product_of_a_valley_is_estimated_whatever_the_units(scale):
     product = product_of(valley(scale=scale, **OPEN), "device.stribeck")
     assert product.names == (
         "device.stribeck.extra_static_level",

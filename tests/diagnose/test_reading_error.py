@@ -51,9 +51,9 @@ def rod():
 
 
 def test_the_simulated_body_goes_about_where_the_device_did(rod):
-    found, prepared = rod
+    fit, prepared = rod
     motion = prepared.of("fit")[0].motion
-    course = simulated_course(found.model.body("device"), motion, deflection=0.1)
+    course = simulated_course(fit.model.body("device"), motion, deflection=0.1)
     assert np.std(course.position - motion.position) < 0.02 * np.std(motion.position)
     # what leads it is a small part of the command
     led = motion.lowpassed(motion.at_rows(course.command - motion.command))
@@ -66,42 +66,42 @@ def test_the_simulated_body_goes_about_where_the_device_did(rod):
     [pytest.param("transmission_compliance", marks=pytest.mark.slow), "backlash", "actuator_lag"],
 )
 def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
-    found, prepared = rod
+    fit, prepared = rod
     motion = prepared.of("fit")[0].motion
     values = {
         "transmission_compliance": {"tip_inertia": 0.05, "stiffness": 4000.0, "damping": 2.0},
         "backlash": {"tip_inertia": 0.05, "stiffness": 4000.0, "damping": 2.0, "gap": 1e-4},
         "actuator_lag": {"time_constant": 0.004},
     }[effect]
-    model = found.model.with_effect(effect, values=values)
+    model = fit.model.with_effect(effect, values=values)
     course = simulated_course(model.body("device"), motion, deflection=0.1)
     # a tip that began elsewhere would fling the body off
     assert np.max(np.abs(course.position - motion.position)) < 0.2 * np.ptp(motion.position)
 
 
 def test_a_dead_time_must_lie_on_the_grid(rod):
-    found, prepared = rod
+    fit, prepared = rod
     motion = prepared.of("fit")[0].motion
-    body: Body = found.model.body("device").with_effect(
+    body: Body = fit.model.body("device").with_effect(
         EFFECTS["actuation_delay"], {"delay": 1.4 * grid(motion)}
     )
     assert dead_times(body) == ("actuation_delay.delay",)
     with pytest.raises(ModelError, match="no whole number of steps"):
         simulated_course(body, motion, deflection=0.1)
-    late = found.model.with_effect("actuation_delay", values={"delay": 1.4 * grid(motion)})
+    late = fit.model.with_effect("actuation_delay", values={"delay": 1.4 * grid(motion)})
     assert reading_error(estimate(late, prepared), prepared, np.random.default_rng(1)) is not None
 
 
 def test_a_coarse_encoder_makes_friction_look_higher_and_damping_lower(rod):
-    found, prepared = rod
-    error = reading_error(found, prepared, np.random.default_rng(1))
-    shift = dict(zip(found.free, error.shift, strict=True))
-    spread = dict(zip(found.free, error.spread, strict=True))
+    fit, prepared = rod
+    error = reading_error(fit, prepared, np.random.default_rng(1))
+    shift = dict(zip(fit.free, error.shift, strict=True))
+    spread = dict(zip(fit.free, error.spread, strict=True))
     assert shift["device.coulomb.level"] > 0
     assert shift["device.viscous.damping"] < 0
-    for name in found.free:
+    for name in fit.free:
         # a reading of 7 um of a travel of centimetres: small against every value
-        value = found.model.parameters[name].value
+        value = fit.model.parameters[name].value
         assert abs(shift[name]) + spread[name] < 0.03 * (1.0 if name in LOG else abs(value))
 
 
@@ -112,32 +112,32 @@ LOG = {"device.inertia", "device.stribeck.stribeck_velocity"}
 @pytest.mark.slow
 def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
     """Records of a simulated rod, its truth known, each corrected by a simulation of its own."""
-    found, prepared = rod
+    rod_fit, prepared = rod
     fit = prepared.of("fit")[0]
     exact = replace(
         fit,
         motion=as_led(
-            fit.motion, simulated_course(found.model.body("device"), fit.motion, deflection=0.1)
+            fit.motion, simulated_course(rod_fit.model.body("device"), fit.motion, deflection=0.1)
         ),
     )
     # but the inertia, which misses by less than a thousandth before and after
-    names = [n for n in found.free if n != "device.inertia"]
+    names = [n for n in rod_fit.free if n != "device.inertia"]
     misses, left, errors = [], [], []
     for seed in range(3):
         read = as_read(exact, prepared, np.random.default_rng(seed))
         known = replace(prepared, stretches=(read,))
-        again = estimate(found.model, known)
+        again = estimate(rod_fit.model, known)
         drawn = np.random.default_rng(50 + seed)
         better = with_reading_error(again, known, drawn, adequate=always)
         for kept, fitted in ((misses, again), (left, better)):
             kept.append(
                 [
-                    fitted.model.parameters[n].value / found.model.parameters[n].value - 1.0
+                    fitted.model.parameters[n].value / rod_fit.model.parameters[n].value - 1.0
                     for n in names
                 ]
             )
-        own = [better.model.parameters[n] for n in names]
-        errors.append([v.stderr / abs(v.value) for v in own])
+        values = [better.model.parameters[n] for n in names]
+        errors.append([v.stderr / abs(v.value) for v in values])
     # what is within its own error may miss by chance
     chance = np.mean(errors, axis=0) / np.sqrt(len(errors))
     misses, left = (np.abs(np.mean(rows, axis=0)) for rows in (misses, left))
@@ -146,90 +146,90 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
 
 
 def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
-    found, prepared = rod
-    wide = with_reading_error(found, prepared, np.random.default_rng(1), adequate=never)
-    for name in found.free:
-        before, after = found.model.parameters[name], wide.model.parameters[name]
+    fit, prepared = rod
+    wide = with_reading_error(fit, prepared, np.random.default_rng(1), adequate=never)
+    for name in fit.free:
+        before, after = fit.model.parameters[name], wide.model.parameters[name]
         assert after.value == before.value
         assert before.stderr < after.stderr < 20 * before.stderr
 
 
 @pytest.mark.slow
 def test_a_correction_is_the_same_each_time_and_costs_next_to_no_fit(rod):
-    found, prepared = rod
+    fit, prepared = rod
     first, second = (
-        with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
+        with_reading_error(fit, prepared, np.random.default_rng(1), adequate=always)
         for _ in range(2)
     )
     assert first.model.parameters == second.model.parameters
-    assert first.model.parameters != found.model.parameters
-    assert first.check_error == pytest.approx(found.check_error, rel=0.02)
+    assert first.model.parameters != fit.model.parameters
+    assert first.check_error == pytest.approx(fit.check_error, rel=0.02)
 
 
 def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypatch):
-    found, prepared = rod
-    far = np.where(np.arange(len(found.free)) == 0, 5.0, 0.01)  # the inertia, on a log scale
-    error = ReadingError(shift=far, spread=0.001 * np.ones(len(found.free)))
+    rod_fit, prepared = rod
+    far = np.where(np.arange(len(rod_fit.free)) == 0, 5.0, 0.01)  # the inertia, on a log scale
+    error = ReadingError(shift=far, spread=0.001 * np.ones(len(rod_fit.free)))
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.reading_error", lambda *_: error)
-    after = with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
-    inertia, level = (found.model.parameters[n] for n in found.free[:2])
+    after = with_reading_error(rod_fit, prepared, np.random.default_rng(1), adequate=always)
+    inertia, level = (rod_fit.model.parameters[n] for n in rod_fit.free[:2])
     assert after.model.parameters["device.inertia"].value == inertia.value
     assert after.model.parameters["device.inertia"].stderr > 4.0 * inertia.value
     assert after.model.parameters["device.coulomb.level"].value == pytest.approx(level.value - 0.01)
     # and nothing where the corrected model would leave more than noise
     refused = with_reading_error(
-        found, prepared, np.random.default_rng(1), adequate=lambda fit: fit is found
+        rod_fit, prepared, np.random.default_rng(1), adequate=lambda fit: fit is rod_fit
     )
     assert refused.model.parameters["device.coulomb.level"].value == level.value
 
 
-def test_a_shift_that_depends_on_the_values_is_found_where_it_leads(rod, monkeypatch):
+def test_a_shift_that_depends_on_the_values_is_followed_to_its_end(rod, monkeypatch):
     """An estimate half way from the truth to 2: 1.5 where the truth is 1."""
-    found, prepared = rod
+    fit, prepared = rod
     name = "device.viscous.damping"
-    i = found.free.index(name)
-    model = found.model.with_values({name: Value(1.5, False, 0.01)})
+    i = fit.free.index(name)
+    model = fit.model.with_values({name: Value(1.5, False, 0.01)})
 
     def shifted(there, *_):
-        off = np.zeros(len(found.free))
+        off = np.zeros(len(fit.free))
         off[i] = 0.5 * (2.0 - there.model.parameters[name].value)
         return ReadingError(shift=off, spread=0.01 + 0 * off)
 
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.reading_error", shifted)
-    given = replace(found, model=model)
-    after = with_reading_error(given, prepared, np.random.default_rng(1), adequate=always)
+    start = replace(fit, model=model)
+    after = with_reading_error(start, prepared, np.random.default_rng(1), adequate=always)
     # 1.5 -> 1.25 -> 1.125 -> 1.06 -> 1.03: four simulations
     assert after.model.parameters[name].value == pytest.approx(1.0, abs=0.04)
 
 
 def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):
-    found, prepared = rod
+    fit, prepared = rod
 
     def refused(*_, **__):
         raise ModelError("no equations")
 
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", refused)
-    same = with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
-    assert same is found
+    same = with_reading_error(fit, prepared, np.random.default_rng(1), adequate=always)
+    assert same is fit
 
 
 @pytest.mark.parametrize("times", [1e3, 1e200, np.nan])
 def test_a_course_that_runs_away_says_nothing_of_readings(rod, monkeypatch, times):
-    found, prepared = rod
+    fit, prepared = rod
 
     def runs_away(body, motion, **_):
         return Course(times * motion.position, times * motion.velocity, motion.command)
 
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", runs_away)
-    assert with_reading_error(found, prepared, np.random.default_rng(1), adequate=always) is found
+    assert with_reading_error(fit, prepared, np.random.default_rng(1), adequate=always) is fit
 
 
 @pytest.mark.parametrize("effects", [(), ("tip_friction",)])
 def test_what_is_simulated_is_what_the_residual_knows(rod, effects):
     """Dry friction of a tip held by a bristle of 10 um was a spring beside the transmission."""
-    found, prepared = rod
+    rod_fit, prepared = rod
     fit = prepared.of("fit")[0]
-    model = found.model.with_effect(
+    model = rod_fit.model.with_effect(
         "transmission_compliance", values={"tip_inertia": 0.05, "stiffness": 4e3, "damping": 2.0}
     )
     for name in effects:
@@ -248,48 +248,48 @@ def test_what_is_simulated_is_what_the_residual_knows(rod, effects):
 @pytest.mark.parametrize(("times", "is_taken"), [(1.22, True), (1.23, False)])
 def test_a_correction_that_leaves_clearly_more_is_not_taken(rod, monkeypatch, times, is_taken):
     """Half more of the squares, and no more: 1.2247 squared."""
-    found, prepared = rod
-    worse = replace(found, check_residual=times * found.check_residual)
-    asked = []
+    rod_fit, prepared = rod
+    worse = replace(rod_fit, check_residual=times * rod_fit.check_residual)
+    calls = []
 
     def ask(fit, *_, adequate):
-        asked.append(adequate(worse))
+        calls.append(adequate(worse))
         return fit
 
     # the folder has a function of the module's name
     module = import_module("teleopdesign.diagnose.corrected_fit")
     monkeypatch.setattr(module, "with_reading_error", ask)
-    search = LadderSearch(prepared.experiment, prepared, prepared, found.model)
-    floor = noise_floor(found.model, prepared, np.random.default_rng(0))
-    correct_fit(search, found, floor)
-    assert asked == [is_taken]
+    search = LadderSearch(prepared.experiment, prepared, prepared, rod_fit.model)
+    floor = noise_floor(rod_fit.model, prepared, np.random.default_rng(0))
+    correct_fit(search, rod_fit, floor)
+    assert calls == [is_taken]
 
 
 def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     """Friction that balances is found where it counts: the simulated truth leaves no more."""
-    found, prepared = rod
+    rod_fit, prepared = rod
     fit = prepared.of("fit")[0]
-    body = found.model.body("device")
+    body = rod_fit.model.body("device")
     course = simulated_course(body, fit.motion, deflection=0.1)
     read = as_read(
         replace(fit, motion=as_led(fit.motion, course)), prepared, np.random.default_rng(3)
     )
     left = read.motion.lowpassed(residual_along(body, read.motion).residual.value)[read.keep]
-    told = read.motion.direction[read.keep] != 0
+    moving = read.motion.direction[read.keep] != 0
     turns = np.flatnonzero(np.diff(read.motion.direction) != 0)
     far = np.min(np.abs(read.keep[:, None] - turns[None, :]), axis=1) > 30
     # next to a turn less than twice of what is left far from one (4 with too few steps)
-    assert np.std(left[told & ~far]) < 2.0 * np.std(left[told & far])
+    assert np.std(left[moving & ~far]) < 2.0 * np.std(left[moving & far])
 
 
 @pytest.mark.slow
 def test_a_body_that_sticks_where_the_record_moved_says_nothing_of_its_readings(rod):
     """Friction at rest above all forces, as a Stribeck fall far below the slowest motion has."""
-    found, prepared = rod
-    body = found.model.body("device").with_values({"coulomb.level": 1e3})
+    fit, prepared = rod
+    body = fit.model.body("device").with_values({"coulomb.level": 1e3})
     motion = prepared.of("fit")[0].motion
     course = simulated_course(body, motion, deflection=0.1)
     assert np.ptp(course.position) < 0.01 * np.ptp(motion.position)
     assert not course.stays_near(motion)
-    stuck = replace(found, model=found.model.with_values({"device.coulomb.level": 1e3}))
+    stuck = replace(fit, model=fit.model.with_values({"device.coulomb.level": 1e3}))
     assert reading_error(stuck, prepared, np.random.default_rng(0)) is None

@@ -32,7 +32,7 @@ def model(rod):
     return estimate(model, prepare(rod)).model
 
 
-def changed(rod, own, *, bias=0.0, factor=1.0, model=None):
+def changed(rod, offset_names, *, bias=0.0, factor=1.0, model=None):
     """The rod whose check record has another bias, or another friction level, in its command."""
     (record,) = rod.check_records
     force = record.signals["device.actuator_force"] + bias
@@ -42,32 +42,32 @@ def changed(rod, own, *, bias=0.0, factor=1.0, model=None):
         force = force.copy()
         force[motion.rows] += (factor - 1) * level * motion.direction
     signals = {**record.signals, "device.actuator_force": force}
-    own_record = replace(record, signals=signals, offset_names=frozenset(own))
-    return replace(rod, records=(*rod.fit_records, own_record))
+    changed_record = replace(record, signals=signals, offset_names=frozenset(offset_names))
+    return replace(rod, records=(*rod.fit_records, changed_record))
 
 
 def values(experiment, model):
     prepared = prepare(experiment)
-    ((_, own),) = offset_groups(model, prepared.stretches)
-    return own.values, force_error(model, prepared.of("check"))
+    ((_, groups),) = offset_groups(model, prepared.stretches)
+    return groups.values, force_error(model, prepared.of("check"))
 
 
-def test_an_own_bias_is_found_and_costs_nothing(rod, model):
-    found, error = values(changed(rod, {"bias"}, bias=BIAS), model)
+def test_a_bias_of_one_record_is_estimated_and_costs_nothing(rod, model):
+    offset, error = values(changed(rod, {"bias"}, bias=BIAS), model)
     before, plain = values(changed(rod, {"bias"}), model)
     # a force more in the command is a force that acts against the one that is found
-    assert before["bias"] - found["bias"] == pytest.approx(BIAS, rel=0.02)
+    assert before["bias"] - offset["bias"] == pytest.approx(BIAS, rel=0.02)
     # where the body rests the residual is not linear in a bias
     assert error == pytest.approx(plain, rel=0.05)
     common = changed(rod, (), bias=BIAS)
     assert force_error(model, prepare(common).of("check")) > 3 * plain
 
 
-def test_an_own_friction_level_is_found(rod, model):
+def test_a_friction_level_of_one_record_is_estimated(rod, model):
     made = changed(rod, {"friction_level"}, factor=LEVEL, model=model)
-    found, error = values(made, model)
+    offset, error = values(made, model)
     # where no direction is told the made command keeps the old level
-    assert found["friction_level"] == pytest.approx(LEVEL, rel=0.03)
+    assert offset["friction_level"] == pytest.approx(LEVEL, rel=0.03)
     common = changed(rod, (), factor=LEVEL, model=model)
     assert error < 0.5 * force_error(model, prepare(common).of("check"))
 
@@ -94,7 +94,7 @@ def test_the_error_at_the_command_is_the_same_from_what_other_errors_computed(ro
         )
 
 
-def test_what_is_the_record_s_own_is_no_evidence_for_an_effect(rod, model):
+def test_what_belongs_to_one_record_is_no_evidence_for_an_effect(rod, model):
     """The columns of a bias and of the level are zero on a record that has its own."""
     biased = model.with_effect("bias", values={"force": 0.01})
     made = changed(rod, {"bias", "friction_level"})
@@ -110,20 +110,22 @@ def test_what_is_the_record_s_own_is_no_evidence_for_an_effect(rod, model):
 def test_the_file_says_it_and_the_answer_gives_it_back(rod, tmp_path):
     made = changed(rod, {"bias"}, bias=BIAS)
     known = {n: td.EFFECTS[n] for n in ("coulomb", "viscous", "stribeck")}
-    found = td.find_missing(made, td.Model.from_experiment(made, known))
-    assert [c.effect.name for c in found.missing] == ["stribeck"]
-    (own,) = answer(found)["own"]
-    assert (own["record"], own["at"], own["of"], own["unit"]) == (
+    diagnosis = td.find_missing(made, td.Model.from_experiment(made, known))
+    assert [c.effect.name for c in diagnosis.missing] == ["stribeck"]
+    (offset,) = answer(diagnosis)["own"]
+    assert (offset["record"], offset["at"], offset["of"], offset["unit"]) == (
         rod.check_records[0].file,
         "device",
         "bias",
         "N",
     )
-    assert f"offset of {own['record']} alone: bias {own['value']:.4g} N" in ladder_text(found)
-    json.dumps(answer(found))
-    write_predictions(found, tmp_path / "predictions.csv")
+    assert f"offset of {offset['record']} alone: bias {offset['value']:.4g} N" in ladder_text(
+        diagnosis
+    )
+    json.dumps(answer(diagnosis))
+    write_predictions(diagnosis, tmp_path / "predictions.csv")
     rows = np.genfromtxt(tmp_path / "predictions.csv", delimiter=",", names=True, dtype=None)
-    last = rows[rows["record"] == own["record"]]
+    last = rows[rows["record"] == offset["record"]]
     # the bias is part of the model's force: what is left has no mean
     assert abs(last["deviceresidual_after"].mean()) < 0.05 * BIAS
 
@@ -137,6 +139,6 @@ def test_experiment_files_declare_it(tmp_path):
     (tmp_path / "experiment.toml").write_text(
         text.replace('use = "check"', 'use = "check"\nbias = "own"\nfriction_level = "own"')
     )
-    found = td.load_experiment(tmp_path)
-    assert found.check_records[0].offset_names == {"bias", "friction_level"}
-    assert found.fit_records[0].offset_names == frozenset()
+    experiment = td.load_experiment(tmp_path)
+    assert experiment.check_records[0].offset_names == {"bias", "friction_level"}
+    assert experiment.fit_records[0].offset_names == frozenset()

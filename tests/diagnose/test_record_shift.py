@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.own_cases import FEW, truth_of, write_own
+from diagnose.simulated_cases import FEW, truth_of, write_simulated
 from scipy.signal import lfilter
 
 import teleopdesign as td
@@ -61,7 +61,7 @@ def rows_late(fit, experiment):
 @pytest.fixture(scope="module")
 def adequate(tmp_path_factory):
     """A simulated device whose model is right."""
-    return td.load_experiment(write_own(tmp_path_factory.mktemp("own") / "null", None))
+    return td.load_experiment(write_simulated(tmp_path_factory.mktemp("own") / "null", None))
 
 
 @pytest.fixture(scope="module")
@@ -76,21 +76,21 @@ def a_row_late(adequate):
     return fitted(shifted(adequate, 1.0))
 
 
-def test_a_shift_of_a_row_is_found_and_costs_nothing(adequate, plain, a_row_late):
-    check_shift_is_found(adequate, plain, a_row_late, 1.0)
+def test_a_shift_of_a_row_is_detected_and_costs_nothing(adequate, plain, a_row_late):
+    check_shift(adequate, plain, a_row_late, 1.0)
 
 
 @pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3])
-def test_a_shift_of_less_than_a_row_or_the_other_way_is_found(adequate, plain, rows):
-    check_shift_is_found(adequate, plain, fitted(shifted(adequate, rows)), rows)
+def test_a_shift_of_less_than_a_row_or_the_other_way_is_detected(adequate, plain, rows):
+    check_shift(adequate, plain, fitted(shifted(adequate, rows)), rows)
 
 
-def check_shift_is_found(adequate, plain, late, rows):
-    found, error = rows_late(late, adequate)
+def check_shift(adequate, plain, late, rows):
+    lateness, error = rows_late(late, adequate)
     before, _ = rows_late(plain, adequate)
     # the simulated actuator holds its command without any delay, so the clock is right
     assert abs(before) < 0.05
-    assert found - before == pytest.approx(rows, abs=0.03)
+    assert lateness - before == pytest.approx(rows, abs=0.03)
     assert error < 0.05
     # a part of a row is logged as an average of two, which the model knows only in its first order
     assert late.check_error == pytest.approx(plain.check_error, rel=0.02)
@@ -126,8 +126,8 @@ def test_a_delay_of_several_rows_is_no_clock(adequate):
     late = shifted(shifted(adequate, -2.0), -2.0)
     row = late.records[0].sample_time
     without, with_delay = fitted(late), fitted(late, "actuation_delay")
-    found, _ = rows_late(without, late)
-    assert found == pytest.approx(-1.1, abs=1e-3)
+    lateness, _ = rows_late(without, late)
+    assert lateness == pytest.approx(-1.1, abs=1e-3)
     assert with_delay.check_error < 0.5 * without.check_error
     (place,) = with_delay.model.bodies
     delay = with_delay.model.parameters[f"{place}.actuation_delay.delay"]
@@ -172,14 +172,14 @@ def test_what_a_controller_makes_of_a_shift_is_left_open(adequate):
 
     experiment = replace(adequate, records=tuple(led(r) for r in adequate.records))
     fit = estimate(model, prepare(experiment))
-    found, error = rows_late(fit, experiment)
+    lateness, error = rows_late(fit, experiment)
     # half a row is what is known of a clock beforehand: no more is learned from such a record
-    assert abs(found) < 2 * error
+    assert abs(lateness) < 2 * error
     assert 0.3 < error < 0.6
-    told = fit.model.parameters[f"{place}.viscous.damping"]
-    assert told.value == pytest.approx(damping, abs=2 * told.stderr)
+    viscous_damping = fit.model.parameters[f"{place}.viscous.damping"]
+    assert viscous_damping.value == pytest.approx(damping, abs=2 * viscous_damping.stderr)
     # half a row of a spring's force is that much damping
-    assert told.stderr == pytest.approx(
+    assert viscous_damping.stderr == pytest.approx(
         0.5 * experiment.records[0].sample_time * stiffness, rel=0.4
     )
 
@@ -284,11 +284,11 @@ def test_a_log_that_is_many_rows_late_is_no_physics(adequate, plain, rows):
 @pytest.mark.slow
 @pytest.mark.parametrize(("effect", "rows"), [(None, 2), (None, 7), ("stribeck", 4)])
 def test_what_is_missing_keeps_its_name_where_the_log_is_late(tmp_path, effect, rows):
-    experiment = logged_late(td.load_experiment(write_own(tmp_path / "late", effect)), rows)
+    experiment = logged_late(td.load_experiment(write_simulated(tmp_path / "late", effect)), rows)
     diagnosis = td.find_missing(experiment)
     assert [c.effect.name for c in diagnosis.missing] == ([effect] if effect else [])
-    (told,) = answer(diagnosis)["record_shift"].values()
-    assert told["rows"] == pytest.approx(rows, abs=0.2)
+    (shift,) = answer(diagnosis)["record_shift"].values()
+    assert shift["rows"] == pytest.approx(rows, abs=0.2)
 
 
 def sensed(experiment, seconds):
@@ -314,9 +314,9 @@ def sensed(experiment, seconds):
 def test_the_filter_of_a_force_sensor_is_no_physics(adequate, plain, rows):
     experiment = sensed(adequate, rows * adequate.records[0].sample_time)
     fit = fitted(experiment)
-    found, _ = rows_late(fit, experiment)
+    lateness, _ = rows_late(fit, experiment)
     # what a low-pass does to slow signals is a delay by its time constant
-    assert found == pytest.approx(rows, rel=0.25)
+    assert lateness == pytest.approx(rows, rel=0.25)
     (shift,) = shifts_of(fit.model, prepare(experiment).stretches)
     assert "filter of its sensor" in str(shift) and not shift.at_bound
     (place,) = fit.model.bodies
@@ -337,18 +337,18 @@ def test_the_answer_tells_the_shift_and_its_error(adequate):
     late = shifted(adequate, 1.0)
     diagnosis = td.find_missing(late, td.Model.from_experiment(late, FEW))
     assert diagnosis.verdict == "model_adequate"
-    (told,) = answer(diagnosis)["record_shift"].values()
+    (shift,) = answer(diagnosis)["record_shift"].values()
     row = late.records[0].sample_time
-    assert told["value"] == pytest.approx(row, abs=0.05 * row)
-    assert told["stderr"] < 0.05 * row
-    assert told["unit"] == "s"
+    assert shift["value"] == pytest.approx(row, abs=0.05 * row)
+    assert shift["stderr"] < 0.05 * row
+    assert shift["unit"] == "s"
     assert "rows late" in ladder_text(diagnosis)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("seed", "rows"), [(11, -1.0), (12, 1.0), (13, 0.3)])
 def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows):
-    experiment = td.load_experiment(write_own(tmp_path / "null", None, seed=seed))
+    experiment = td.load_experiment(write_simulated(tmp_path / "null", None, seed=seed))
     assert not td.find_missing(shifted(experiment, rows)).missing
 
 
@@ -357,7 +357,7 @@ def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows):
     ("effect", "rows"), [("stribeck", 1.0), ("cogging", -1.0), ("presliding", 1.0)]
 )
 def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
-    folder = write_own(tmp_path / effect, effect)
+    folder = write_simulated(tmp_path / effect, effect)
     late = shifted(td.load_experiment(folder), rows)
     known = FEW if effect in FEW else EFFECTS  # among ten, or all
     diagnosis = td.find_missing(late, td.Model.from_experiment(late, known))
@@ -366,7 +366,7 @@ def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
 
 
 def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
-    found = check_experiment(shifted(adequate, 1.0))
-    (shift,) = [f for f in found if f.topic == "time shift"]
+    findings = check_experiment(shifted(adequate, 1.0))
+    (shift,) = [f for f in findings if f.topic == "time shift"]
     assert shift.concern == "note"
     assert "delay of the logger" in shift.sentence

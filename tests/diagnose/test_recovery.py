@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cases import make_case, write_case
-from diagnose.own_cases import FEW, truth_of, write_own
+from diagnose.simulated_cases import FEW, truth_of, write_simulated
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer
@@ -23,50 +23,50 @@ def diagnosed(folder, known):
     return find_missing(experiment, Model.from_experiment(experiment, known))
 
 
-def first_named(found):
+def first_named(diagnosis):
     """What the diagnosis names first: an effect, or the group that it cannot tell apart."""
-    if found.groups and not found.missing:
-        return {c.effect.name for c in found.groups[0]}
-    return {found.missing[0].effect.name} if found.missing else set()
+    if diagnosis.groups and not diagnosis.missing:
+        return {c.effect.name for c in diagnosis.groups[0]}
+    return {diagnosis.missing[0].effect.name} if diagnosis.missing else set()
 
 
-def test_a_planted_effect_is_found(diagnosis, stribeck_case):
-    check_what_is_found(diagnosis, stribeck_case, "stribeck")
+def test_a_planted_effect_is_detected(diagnosis, stribeck_case):
+    check_diagnosis(diagnosis, stribeck_case, "stribeck")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", ["coulomb", "presliding", "spring", "actuator_lag"])
-def test_a_planted_effect_of_another_kind_is_found(effect, tmp_path):
-    folder = write_own(tmp_path / effect, effect)
-    check_what_is_found(diagnosed(folder, FEW), folder, effect)
+def test_a_planted_effect_of_another_kind_is_detected(effect, tmp_path):
+    folder = write_simulated(tmp_path / effect, effect)
+    check_diagnosis(diagnosed(folder, FEW), folder, effect)
 
 
-def check_what_is_found(found, folder, effect):
+def check_diagnosis(diagnosis, folder, effect):
     """The effect that this case hides is named, with its values, and explains what was left."""
     truth = truth_of(folder)
-    assert effect in first_named(found)
-    assert found.after.check_error < 0.5 * found.before.check_error
+    assert effect in first_named(diagnosis)
+    assert diagnosis.after.check_error < 0.5 * diagnosis.before.check_error
     # a true model reaches the reference but for what reversals cost along an encoder
-    assert found.after.check_error < 1.6 * truth["check_error_true"]
+    assert diagnosis.after.check_error < 1.6 * truth["check_error_true"]
     for name, value in truth["effects"][0]["parameters"].items():
         # the clear level leaves four floors without it: a tenth is a generous band
-        fitted = found.model.parameters[f"device.{effect}.{name}"]
+        fitted = diagnosis.model.parameters[f"device.{effect}.{name}"]
         assert fitted.value == pytest.approx(
             value["value"], rel=0.1 if effect != "presliding" else 0.2
         )
 
 
 def test_where_nothing_is_missing_nothing_is_named(tmp_path):
-    found = diagnosed(write_own(tmp_path / "null", None, seed=4), FEW)
-    assert found.verdict == "model_adequate"
-    assert not found.missing and not found.groups
-    assert len(found.rungs) == 1
+    diagnosis = diagnosed(write_simulated(tmp_path / "null", None, seed=4), FEW)
+    assert diagnosis.verdict == "model_adequate"
+    assert not diagnosis.missing and not diagnosis.groups
+    assert len(diagnosis.rungs) == 1
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("pushes", [1, 4])
 def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
-    experiment = load_experiment(write_own(tmp_path / "null", None, seed=4))
+    experiment = load_experiment(write_simulated(tmp_path / "null", None, seed=4))
     (check,) = experiment.check_records
     command = check.signals["device.actuator_force"].copy()
     size = 0.3 * np.sqrt(np.mean(command**2))
@@ -75,23 +75,27 @@ def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
     pushed = replace(check, signals={**check.signals, "device.actuator_force": command})
     records = tuple(pushed if r is check else r for r in experiment.records)
     experiment = replace(experiment, records=records)
-    found = find_missing(experiment, Model.from_experiment(experiment, FEW))
-    assert not found.missing and found.left > 2.5
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, FEW))
+    assert not diagnosis.missing and diagnosis.left > 2.5
     if pushes > 1:
-        assert found.verdict == "undecided" and found.moment is None
+        assert diagnosis.verdict == "undecided" and diagnosis.moment is None
         return
-    assert found.verdict == "model_adequate" and not found.more_is_missing
-    assert found.moment.begin < 1.51 and found.moment.end > 1.55 and found.moment.without < 1.5
-    assert f"without one moment ({found.moment})" in ladder_text(found)
-    assert answer(found)["one_moment"]["record"] == check.file
+    assert diagnosis.verdict == "model_adequate" and not diagnosis.more_is_missing
+    assert (
+        diagnosis.moment.begin < 1.51
+        and diagnosis.moment.end > 1.55
+        and diagnosis.moment.without < 1.5
+    )
+    assert f"without one moment ({diagnosis.moment})" in ladder_text(diagnosis)
+    assert answer(diagnosis)["one_moment"]["record"] == check.file
 
 
 @pytest.mark.slow
 def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):
-    found = diagnosed(write_own(tmp_path / "bias", "bias"), FEW)
-    assert found.verdict == "undecided"
-    assert {c.effect.name for c in found.groups[0]} == LOOK_ALIKES
-    assert not found.missing
+    diagnosis = diagnosed(write_simulated(tmp_path / "bias", "bias"), FEW)
+    assert diagnosis.verdict == "undecided"
+    assert {c.effect.name for c in diagnosis.groups[0]} == LOOK_ALIKES
+    assert not diagnosis.missing
 
 
 @pytest.mark.slow
@@ -99,9 +103,9 @@ def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):
     "pair", ["actuator_gain+load_dependent_friction", "actuation_delay+friction_drift"]
 )
 def test_two_effects_are_both_named_though_each_masks_the_other(pair, tmp_path):
-    folder = write_own(tmp_path / pair, pair, seed=12, level="double")
-    found = diagnosed(folder, EFFECTS)
-    assert {c.effect.name for c in found.missing} == set(pair.split("+"))
+    folder = write_simulated(tmp_path / pair, pair, seed=12, level="double")
+    diagnosis = diagnosed(folder, EFFECTS)
+    assert {c.effect.name for c in diagnosis.missing} == set(pair.split("+"))
 
 
 @pytest.mark.slow
@@ -110,11 +114,11 @@ def test_a_parameter_led_astray_does_not_make_what_is_missing_pass_for_noise(tmp
     # noise would ask for five times the measured force
     case = make_case(np.random.default_rng([59183, 138]), "clear", ["cogging"])
     write_case(case, tmp_path / "case")
-    found = diagnosed(tmp_path / "case", {n: EFFECTS[n] for n in CATALOGUE})
-    alone = noise_floor(found.before.model, found.prepared, np.random.default_rng(0))
+    diagnosis = diagnosed(tmp_path / "case", {n: EFFECTS[n] for n in CATALOGUE})
+    alone = noise_floor(diagnosis.before.model, diagnosis.prepared, np.random.default_rng(0))
     assert alone.value > 3.0
-    assert [str(c) for c in found.missing] == ["cogging at device"]
-    assert found.floor.value < 0.02
+    assert [str(c) for c in diagnosis.missing] == ["cogging at device"]
+    assert diagnosis.floor.value < 0.02
 
 
 # the fit does not lean on the user's numbers
@@ -134,13 +138,13 @@ def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(factor, experiment,
 
 
 @pytest.mark.slow
-def test_an_effect_of_the_users_model_left_to_defaults_is_found_its_values(experiment, diagnosis):
+def test_an_effect_of_the_users_model_without_values_is_estimated(experiment, diagnosis):
     """`stribeck = {}` in a model: the fit finds what a diagnosis finds that adds it."""
     from teleopdesign import compare, fit
 
-    given = Model.from_experiment(experiment).with_effect("stribeck")
-    found = compare(fit(given, experiment), experiment)
-    assert found.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
+    model = Model.from_experiment(experiment).with_effect("stribeck")
+    comparison = compare(fit(model, experiment), experiment)
+    assert comparison.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
 
 
 @pytest.mark.slow
@@ -158,9 +162,9 @@ def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
 
 
 def test_a_model_has_one_error_in_the_ladder_and_among_the_candidates(diagnosis):
-    said = answer(diagnosis)
-    candidates = {(c["effect"], c["at"]): c["check_error"] for c in said["candidates"]}
-    added = [row for row in said["ladder"] if row["added"]]
+    document = answer(diagnosis)
+    candidates = {(c["effect"], c["at"]): c["check_error"] for c in document["candidates"]}
+    added = [row for row in document["ladder"] if row["added"]]
     assert added
     for row in added:
         key = (row["added"]["effect"], row["added"]["at"])
@@ -182,10 +186,10 @@ def test_parameters_carry_standard_errors_that_fit_their_distance_to_the_truth(
         f"device.stribeck.{n}": v["value"] for n, v in truth["effects"][0]["parameters"].items()
     }
     for name, true in values.items():
-        found = diagnosis.model.parameters[name]
-        assert math.isfinite(found.stderr) and found.stderr > 0
+        parameter = diagnosis.model.parameters[name]
+        assert math.isfinite(parameter.stderr) and parameter.stderr > 0
         # the stated error is that of noise; the method's own bias is within 3 % here
-        assert abs(found.value - true) < 5 * found.stderr + 0.03 * abs(true)
+        assert abs(parameter.value - true) < 5 * parameter.stderr + 0.03 * abs(true)
 
 
 def test_errors_fall_along_the_ladder(diagnosis):

@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from diagnose.own_cases import FEW
+from diagnose.simulated_cases import FEW
 from effects.along import axis_of
 from hypothesis import given
 from hypothesis import strategies as st
@@ -77,24 +77,26 @@ def test_the_model_is_read_back_to_the_last_digit(path, diagnosis, experiment):
 
 
 def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
-    found = restore_diagnosis(load_answer(path), experiment, FEW)
-    assert ladder_text(found) == ladder_text(diagnosis)
-    for one, other in zip(found.rungs, diagnosis.rungs, strict=True):
+    answer = restore_diagnosis(load_answer(path), experiment, FEW)
+    assert ladder_text(answer) == ladder_text(diagnosis)
+    for one, other in zip(answer.rungs, diagnosis.rungs, strict=True):
         assert_same(one.fit.model, other.fit.model)
         assert one.added == other.added and one.alternatives == other.alternatives
         assert one.fit.free == other.fit.free
-    assert_same(found.estimated.model, diagnosis.estimated.model)
+    assert_same(answer.estimated.model, diagnosis.estimated.model)
     # a search ends a trifle inside its bounds (1e-7 of a scale), and so does what is evaluated
-    assert found.estimated.fit_residual == pytest.approx(diagnosis.estimated.fit_residual, abs=1e-6)
-    assert found.floor == diagnosis.floor and found.moment == diagnosis.moment
+    assert answer.estimated.fit_residual == pytest.approx(
+        diagnosis.estimated.fit_residual, abs=1e-6
+    )
+    assert answer.floor == diagnosis.floor and answer.moment == diagnosis.moment
 
 
 @pytest.mark.slow
 def test_what_is_described_is_the_same_from_the_answer(path, diagnosis, experiment):
-    found = restore_diagnosis(load_answer(path), experiment, FEW)
-    told = describe_residual(found.before, found.prepared, found.floor)
+    answer = restore_diagnosis(load_answer(path), experiment, FEW)
+    description = describe_residual(answer.before, answer.prepared, answer.floor)
     live = describe_residual(diagnosis.before, diagnosis.prepared, diagnosis.floor)
-    assert told.as_data() == live.as_data()
+    assert description.as_data() == live.as_data()
 
 
 def test_an_older_answer_is_read_with_what_its_experiment_says(changed, diagnosis, experiment):
@@ -120,9 +122,9 @@ def test_an_older_answer_without_an_axis_is_not_guessed_at(changed, content):
 def test_the_answer_to_another_experiment_is_refused(old, changed, experiment, diagnosis):
     file = changed(**dict.fromkeys(LATER, ...)) if old else changed()
     rod = td.load_experiment(td.example("rod"))
-    for taken in (lambda s: s.model(EFFECTS, rod), lambda s: restore_diagnosis(s, rod)):
+    for reader in (lambda s: s.model(EFFECTS, rod), lambda s: restore_diagnosis(s, rod)):
         with pytest.raises(ExperimentError, match="is not an answer to rod but to another") as why:
-            taken(load_answer(file))
+            reader(load_answer(file))
         assert str(why.value).startswith(f"{file}: ") and "\n" not in str(why.value)
 
 
@@ -143,17 +145,17 @@ def test_models_of_other_bodies_than_those_recorded_are_refused(changed, content
     models["ladder"][-1]["device"]["effects"] = {"coulomb": {}, "stribeck": {}}
     models["estimated"] = models["ladder"][-1]
     file = changed(models=models)
-    for taken in (
+    for reader in (
         lambda s: s.model(FEW, experiment),
         lambda s: restore_diagnosis(s, experiment, FEW),
     ):
         with pytest.raises(ExperimentError, match=r"models: found device \(prismatic\), expected"):
-            taken(load_answer(file))
+            reader(load_answer(file))
 
 
-def test_a_users_own_effect_is_asked_for_and_then_there(changed, content, experiment, tmp_path):
-    own = tmp_path / "magnet.py"
-    own.write_text(
+def test_an_effect_of_the_user_is_asked_for_and_then_there(changed, content, experiment, tmp_path):
+    path = tmp_path / "magnet.py"
+    path.write_text(
         '"""A magnet."""\n'
         "from teleopdesign.effects import Effect, Parameter\n"
         'EFFECT = Effect(role="force", law=lambda now, p: p.pull * now.position, linear=True,\n'
@@ -166,7 +168,7 @@ def test_a_users_own_effect_is_asked_for_and_then_there(changed, content, experi
     file = changed(models=models)
     with pytest.raises(ExperimentError, match='no effect "magnet".*give its file with --effect'):
         load_answer(file).model()
-    model = load_answer(file).model(catalogue([own]), experiment)
+    model = load_answer(file).model(catalogue([path]), experiment)
     assert model.parameters["device.magnet.pull"].value == 2.0
 
 
@@ -232,10 +234,10 @@ MISTAKES = {
 
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_file_that_is_no_answer_is_one_line(mistake, tmp_path):
-    text, said = MISTAKES[mistake]
+    text, message = MISTAKES[mistake]
     file = tmp_path / "answer.json"
     file.write_bytes(text if isinstance(text, bytes) else text.encode())
-    with pytest.raises(ExperimentError, match=said) as caught:
+    with pytest.raises(ExperimentError, match=message) as caught:
         load_answer(file)
     assert str(caught.value).startswith(f"{file}: ") and "\n" not in str(caught.value)
 
@@ -252,9 +254,9 @@ KEYS = {
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_a_wrong_key_is_named_with_what_was_found_and_expected(key, changed):
-    values, said = KEYS[key]
-    with pytest.raises(ExperimentError, match=said):
+def test_a_wrong_key_is_named_with_its_value_and_what_was_expected(key, changed):
+    values, message = KEYS[key]
+    with pytest.raises(ExperimentError, match=message):
         load_answer(changed(**values))
 
 
@@ -270,7 +272,7 @@ def paths_of(data, before=()):
 ANYTHING = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
     | st.sampled_from(("device", "stribeck", "coulomb", "viscous", "revolute", 10**400)),
-    lambda own: st.lists(own, max_size=3) | st.dictionaries(st.text(max_size=4), own, max_size=3),
+    lambda x: st.lists(x, max_size=3) | st.dictionaries(st.text(max_size=4), x, max_size=3),
     max_leaves=4,
 )  # fmt: skip
 
@@ -324,9 +326,9 @@ def test_every_command_refuses_the_answer_to_another_experiment(command, path, c
 @pytest.mark.slow
 def test_an_answer_in_the_place_of_a_folder_leads_to_its_experiment(path, stribeck_case, capsys):
     assert main(["check", str(stribeck_case)]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     assert main(["check", str(path)]) == 0
-    assert capsys.readouterr().out == said
+    assert capsys.readouterr().out == output
     assert main(["diagnose", str(path), "--quick", "--only", "stribeck"]) == 0
     assert "verdict: effects_missing: stribeck at device" in capsys.readouterr().out
 
@@ -346,8 +348,8 @@ def test_describe_takes_a_diagnosis_up_from_its_answer(path, stribeck_case, tmp_
     out = tmp_path / "left.json"
     arguments = ["describe", str(stribeck_case), "--answer", str(path), "--json", str(out)]
     assert main(arguments) == 0
-    said = capsys.readouterr().out
-    assert said.startswith("Your model with stribeck at device:\n")
+    output = capsys.readouterr().out
+    assert output.startswith("Your model with stribeck at device:\n")
     assert json.loads(out.read_text())["model"] == "Your model with stribeck at device:"
     assert main([*arguments, "--as-is"]) == 0
     assert capsys.readouterr().out.startswith("Your model, re-estimated:\n")

@@ -34,8 +34,8 @@ def test_the_noise_of_a_measured_force_of_which_none_is_stated_is_that_of_its_re
     """Beside the steps of its converter, which are drawn by themselves."""
     for quantity, measured in [("interaction_force", False), ("actuator_force", True)]:
         one = channel(quantity, resolution=step * noise or None, measured=measured)
-        seen = sensor(one, readings(noise, step=step * noise))
-        assert seen.noise == pytest.approx(noise, rel=0.15) and seen.step == step * noise
+        reading = sensor(one, readings(noise, step=step * noise))
+        assert reading.noise == pytest.approx(noise, rel=0.15) and reading.step == step * noise
 
 
 def test_noise_that_is_stated_is_believed():

@@ -28,8 +28,8 @@ def test_the_models_re_estimated_error_is_that_of_the_reference():
     far = {}
     for folder, truth in one_body_cases():
         experiment = load_experiment(folder)
-        found = estimate(Model.from_experiment(experiment), prepare(experiment)).check_error
-        ratio = found / truth["check_error_base"]
+        fit = estimate(Model.from_experiment(experiment), prepare(experiment)).check_error
+        ratio = fit / truth["check_error_base"]
         late = {e["effect"] for e in truth["effects"]} & {"actuation_delay", "actuator_lag"}
         least = 0.0 if late else 0.9
         if truth["level"] in ("clear", "weak") and not least < ratio < 1.05:
@@ -44,9 +44,9 @@ def test_nine_in_ten_single_effects_are_named_first():
         if truth["level"] not in ("clear", "weak") or truth["effects"][0]["effect"] not in TEN:
             continue
         true = truth["effects"][0]["effect"]
-        found = find_missing(load_experiment(folder))
-        group = {c.effect.name for g in found.groups[:1] for c in g}
-        first = {found.missing[0].effect.name} if found.missing else group
+        diagnosis = find_missing(load_experiment(folder))
+        group = {c.effect.name for g in diagnosis.groups[:1] for c in g}
+        first = {diagnosis.missing[0].effect.name} if diagnosis.missing else group
         right += true in first
         if true not in first:
             wrong[truth["case"]] = (true, first)
@@ -80,8 +80,8 @@ def test_a_real_recording_is_explained_as_well_as_known(name, bound, among):
 
     Among a few effects that a drive may have: how well they explain is asked, not which they are.
     """
-    found = find_missing(load_experiment(shared_folder("data") / name), among=among)
-    assert found.after.check_error <= bound
+    diagnosis = find_missing(load_experiment(shared_folder("data") / name), among=among)
+    assert diagnosis.after.check_error <= bound
 
 
 #: of friction and of a drive: a long record is searched for these alone, in half of the time
@@ -109,10 +109,10 @@ DRIVE = (
     ids=["dm8009", "ur10e_joint1"],
 )
 def test_a_real_recording_has_the_names_that_its_authors_give(name, among, documented, excluded):
-    found = find_missing(load_experiment(shared_folder("data") / name), among=among)
-    named = {c.effect.name for c in found.missing}
-    listed = {c.effect.name for group in found.groups for c in group}
+    diagnosis = find_missing(load_experiment(shared_folder("data") / name), among=among)
+    named = {c.effect.name for c in diagnosis.missing}
+    listed = {c.effect.name for group in diagnosis.groups for c in group}
     assert documented <= named | listed
-    assert not excluded & (named | {r.added.effect.name for r in found.rungs if r.added})
-    errors = [r.fit.check_error for r in found.rungs]
+    assert not excluded & (named | {r.added.effect.name for r in diagnosis.rungs if r.added})
+    errors = [r.fit.check_error for r in diagnosis.rungs]
     assert errors == sorted(errors, reverse=True)

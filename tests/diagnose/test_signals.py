@@ -55,9 +55,9 @@ def test_derivatives_of_a_sine_are_exact(frequency):
     s = spectrum(len(T), 1 / RATE)
     for order, expected in ((1, w * np.cos(w * T)), (2, -(w**2) * np.sin(w * T))):
         gain = s.derivative(order) * s.lowpass(300.0, order=8)
-        found = s.multiply(np.sin(w * T), gain)
+        derivative = s.multiply(np.sin(w * T), gain)
         # the continuation has a kink in curvature at either end, low-passed it dies out inside
-        np.testing.assert_allclose(found[INSIDE], expected[INSIDE], atol=1e-4 * w**order)
+        np.testing.assert_allclose(derivative[INSIDE], expected[INSIDE], atol=1e-4 * w**order)
 
 
 def test_a_held_command_acts_half_a_sample_late():
@@ -84,7 +84,7 @@ STEP = 1e-5
 PATIENCE = 20
 
 
-def told(position):
+def direction_from(position):
     return direction_of(position, STEP, STEP, PATIENCE)
 
 
@@ -92,31 +92,31 @@ def read(position):
     return STEP * np.round(position / STEP)
 
 
-def test_a_body_at_rest_is_told_no_direction():
-    assert not told(np.full(500, 3 * STEP)).any()
+def test_a_body_at_rest_has_no_direction():
+    assert not direction_from(np.full(500, 3 * STEP)).any()
 
 
 def test_an_encoder_that_dithers_between_two_steps_tells_no_motion():
     rng = np.random.default_rng(0)
-    assert not told(STEP * rng.integers(0, 2, 500).astype(float)).any()
+    assert not direction_from(STEP * rng.integers(0, 2, 500).astype(float)).any()
 
 
 def test_a_creep_slower_than_the_patience_tells_no_motion():
     slow = read(np.arange(2000) * STEP / (2 * PATIENCE))
-    assert not told(slow).any()
+    assert not direction_from(slow).any()
 
 
-def test_a_motion_is_told_from_its_first_step_to_its_last():
+def test_a_motion_is_known_from_its_first_step_to_its_last():
     x = read(np.concatenate([np.zeros(100), np.arange(200) * 2 * STEP, np.full(100, 400 * STEP)]))
-    direction = told(x)
+    direction = direction_from(x)
     assert np.all(direction[102:299] == 1)
     assert not direction[:100].any() and not direction[301:].any()
-    np.testing.assert_array_equal(told(-x), -direction)
+    np.testing.assert_array_equal(direction_from(-x), -direction)
 
 
 def test_a_give_of_less_than_the_travel_tells_no_motion():
     x = read(np.concatenate([np.zeros(50), np.linspace(0, (TRAVEL - 1) * STEP, 20), np.zeros(50)]))
-    assert not told(x).any()
+    assert not direction_from(x).any()
 
 
 @settings(max_examples=60)
@@ -126,7 +126,7 @@ def test_the_direction_never_contradicts_the_readings(seed, speed):
     rng = np.random.default_rng(seed)
     legs = np.repeat(rng.normal(size=60) * speed * STEP, rng.integers(1, 40, 60))
     x = read(np.cumsum(legs))
-    direction = told(x)
+    direction = direction_from(x)
     assert set(np.unique(direction)) <= {-1, 0, 1}
     change = np.diff(x)
     inside = (direction[1:] != 0) & (direction[:-1] == direction[1:])
@@ -149,7 +149,7 @@ def test_play_follows_within_half_its_width_and_ignores_less(seed, width):
     assert np.ptp(play(0.49 * width * np.sin(x), width)) <= 0.49 * width
 
 
-def test_noise_and_step_of_readings_are_seen_in_them():
+def test_noise_and_step_of_readings_are_estimated_from_the_readings():
     rng = np.random.default_rng(1)
     smooth = 0.01 * np.sin(2 * np.pi * 3 * T)
     noisy = smooth + 2e-5 * rng.standard_normal(len(T))
@@ -160,7 +160,7 @@ def test_noise_and_step_of_readings_are_seen_in_them():
 
 @pytest.mark.parametrize("digits", [6, 9, 15])
 @pytest.mark.parametrize("turns", [0.3, 1.1])
-def test_the_step_of_an_encoder_is_seen_though_the_body_rests_half_the_time(turns, digits):
+def test_the_step_of_an_encoder_is_estimated_though_the_body_rests_half_the_time(turns, digits):
     """Most fourth differences are then those of printed digits: no noise is seen, but a grid."""
     step, t = 2 * np.pi / 32768, np.arange(10_000) / 1000
     stop_and_go = np.clip(2.5 * np.sin(2 * np.pi * 0.4 * t), -1, 1) + 0.02 * t
@@ -207,10 +207,10 @@ def test_a_motion_within_the_band_keeps_position_velocity_and_acceleration():
     w = 2 * np.pi * 20
     m = motion(read(0.01 * np.sin(w * T)), resolution=STEP)
     quantities = ((m.position, 0.01 * np.sin(w * T)), (m.velocity, 0.01 * w * np.cos(w * T)))
-    for k, (found, expected) in enumerate(quantities):
+    for k, (signal, expected) in enumerate(quantities):
         # what an encoder step of 1e-3 of the amplitude leaves of its own, 0.3 of a step rms
         size = np.abs(expected).max()
-        assert np.std((found - expected)[INSIDE]) < (2e-4 + 1e-3 * k) * size
+        assert np.std((signal - expected)[INSIDE]) < (2e-4 + 1e-3 * k) * size
 
 
 def test_smoothing_leaves_the_band_of_the_comparison_untouched():

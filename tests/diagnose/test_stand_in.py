@@ -95,7 +95,7 @@ def test_all_records_are_estimated_on_and_the_check_records_compared_on(tmp_path
     assert together.of("check") == prepared.of("check")
 
 
-def said_of_readings(left, leaves, before=0.1, after=0.01):
+def sentence_on_readings(left, leaves, before=0.1, after=0.01):
     base, fit = (SimpleNamespace(check_error=x) for x in (left * before, leaves * after))
     rung = SimpleNamespace(added=Candidate(EFFECTS["viscous"], "device"), fit=fit)
     floors = [NoiseFloor(x, "made", x) for x in (before, after)]
@@ -104,23 +104,23 @@ def said_of_readings(left, leaves, before=0.1, after=0.01):
 
 def test_an_effect_that_weakens_readings_more_than_what_is_left_is_none():
     """A tip behind a spring passes on a tenth of the noise, and a fifth of what was left."""
-    said = said_of_readings(3.0, 6.0)
-    assert "6 noise floors, 3 without it" in said.reason
-    assert said_of_readings(3.0, 2.9) is None, "less in noise floors, too"
-    assert said_of_readings(3.0, 3.7) is None, "floors are known to a fifth"
-    assert said_of_readings(3.0, 3.8) is not None
-    assert said_of_readings(0.7, 1.5) is None, "noise only"
-    assert said_of_readings(2.0, 1.7) is None, "noise only, of a model that left more"
-    assert said_of_readings(6.0, 6.0, after=0.1) is None
-    assert said_of_readings(2.0, 3.0, before=0.0) is None, "no noise is stated"
+    sentence = sentence_on_readings(3.0, 6.0)
+    assert "6 noise floors, 3 without it" in sentence.reason
+    assert sentence_on_readings(3.0, 2.9) is None, "less in noise floors, too"
+    assert sentence_on_readings(3.0, 3.7) is None, "floors are known to a fifth"
+    assert sentence_on_readings(3.0, 3.8) is not None
+    assert sentence_on_readings(0.7, 1.5) is None, "noise only"
+    assert sentence_on_readings(2.0, 1.7) is None, "noise only, of a model that left more"
+    assert sentence_on_readings(6.0, 6.0, after=0.1) is None
+    assert sentence_on_readings(2.0, 3.0, before=0.0) is None, "no noise is stated"
 
 
 def test_where_the_readings_explain_what_is_left_an_effect_does_not_explain_it_by_weakening_them():
     """A tip of 11 Hz passed on a quarter of a coarse encoder's noise, and was named."""
-    said = said_of_readings(1.15, 1.6, before=0.025, after=0.0065)
-    assert said is not None and said.of_readings
-    assert said_of_readings(1.5, 1.1, before=0.025, after=0.0065) is None, "surely fewer floors"
-    assert said_of_readings(1.15, 1.6, after=0.09) is None, "the readings count for as much"
+    sentence = sentence_on_readings(1.15, 1.6, before=0.025, after=0.0065)
+    assert sentence is not None and sentence.of_readings
+    assert sentence_on_readings(1.5, 1.1, before=0.025, after=0.0065) is None, "surely fewer floors"
+    assert sentence_on_readings(1.15, 1.6, after=0.09) is None, "the readings count for as much"
 
 
 @pytest.mark.slow
@@ -143,7 +143,7 @@ def test_an_adequate_model_gets_no_tip_for_the_steps_of_its_encoder(tmp_path):
         inertia=2e-3,
         fixed=False,
     )
-    found = td.find_missing(td.load_experiment(made), among=["transmission_compliance"])
-    assert [r.added for r in found.rungs] == [None]
-    assert found.verdict == "model_adequate"
-    assert [one.candidate.effect.name for one in found.set_aside] == ["transmission_compliance"]
+    diagnosis = td.find_missing(td.load_experiment(made), among=["transmission_compliance"])
+    assert [r.added for r in diagnosis.rungs] == [None]
+    assert diagnosis.verdict == "model_adequate"
+    assert [one.candidate.effect.name for one in diagnosis.set_aside] == ["transmission_compliance"]

@@ -1,7 +1,7 @@
 """A fit of a model that is stated without values reaches the true values of its effects."""
 
 import pytest
-from diagnose.own_cases import write_own
+from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
 from teleopdesign.diagnose.fit import fit_squares
@@ -20,7 +20,7 @@ def anew(model, *names):
 @pytest.fixture(scope="module")
 def lacking(tmp_path_factory):
     """Records of a machine with Stribeck's fall, as they are compared, and the user's model."""
-    folder = write_own(tmp_path_factory.mktemp("stribeck") / "case", "stribeck")
+    folder = write_simulated(tmp_path_factory.mktemp("stribeck") / "case", "stribeck")
     experiment = td.load_experiment(folder)
     return prepare(experiment), td.Model.from_experiment(experiment)
 

@@ -30,14 +30,14 @@ def diagnosed(folder, place_force, user=USER):
     return td.find_missing(td.load_experiment(folder), among=AMONG)
 
 
-def test_bends_and_lines_are_told_by_their_laws():
+def test_bends_and_lines_are_recognised_by_their_laws():
     assert {n for n, e in EFFECTS.items() if is_straight(e)} == {"bias", "spring"}
     assert {n for n, e in EFFECTS.items() if is_bent(e)} == {"gravity", "hardening_spring"}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("stiffness", "neutral"), [(0.6, 0.35), (1.4, -0.5)])
-def test_a_spring_about_its_own_place_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
+def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
     diagnosis = diagnosed(tmp_path / "line", lambda x: stiffness * (x - neutral))
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
     errors = [r.fit.check_error for r in diagnosis.rungs]
@@ -47,7 +47,7 @@ def test_a_spring_about_its_own_place_is_a_spring_and_a_constant(tmp_path, stiff
 
 
 @pytest.mark.slow
-def test_a_pendulum_whose_bend_is_seen_stays_one(tmp_path):
+def test_a_pendulum_whose_bend_is_visible_stays_one(tmp_path):
     diagnosis = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4))
     assert [c.effect.name for c in diagnosis.missing] == ["gravity"]
 

@@ -26,7 +26,7 @@ from teleopdesign.effects import EFFECTS
 
 
 @given(power=st.floats(0.3, 3.0), noise=st.floats(1e-4, 1e-2))
-def test_the_product_that_a_record_tells_is_found(power, noise):
+def test_the_product_that_a_record_tells_is_detected(power, noise):
     """Columns that are alike up to a little: one combination is told, the other hardly."""
     rng = np.random.default_rng(1)
     one, little = rng.standard_normal(500), noise * rng.standard_normal(500)
@@ -199,9 +199,9 @@ def test_two_forces_that_take_each_other_away_are_neither_of_them(diagnosis, pre
             "device.hardening_spring.neutral": 0.0,
         }
     )
-    said = implausible_effects(much, prepared_case)
-    assert "only the sum of the two is known" in said["spring", "device"]
-    assert ("hardening_spring", "device") not in said or "neutral" in str(said)
+    sentence = implausible_effects(much, prepared_case)
+    assert "only the sum of the two is known" in sentence["spring", "device"]
+    assert ("hardening_spring", "device") not in sentence or "neutral" in str(sentence)
 
 
 def product(*errors, known):
@@ -210,7 +210,7 @@ def product(*errors, known):
 
 
 @pytest.mark.parametrize(
-    ("product", "said"),
+    ("product", "message"),
     [
         (
             product(0.51, 0.3, known=0.149),
@@ -226,23 +226,23 @@ def product(*errors, known):
         (None, ""),
     ],
 )
-def test_a_product_is_said_where_one_of_it_is_open_and_it_is_known_twice_as_well(
-    monkeypatch, product, said
+def test_a_product_is_reported_where_one_factor_is_open_and_the_product_is_known_twice_as_well(
+    monkeypatch, product, message
 ):
     monkeypatch.setattr(undetermined_module, "product_of", lambda fit, effect: product)
     sentence = known_together(None, Candidate(EFFECTS["stribeck"], "device"))
-    assert sentence.startswith(said) and bool(sentence) == bool(said)
+    assert sentence.startswith(message) and bool(sentence) == bool(message)
 
 
-def test_what_is_undetermined_is_said_of_each_effect_that_the_last_model_has_in_order(monkeypatch):
+def test_what_is_undetermined_is_reported_for_each_effect_of_the_last_model_in_order(monkeypatch):
     table = Table(lambda names: 1.0)
     rungs = table.rungs("bias", "spring", "viscous")
     by_effect = {"bias": "a level at rest", "viscous": None, "spring": None}
     together = {"bias": "", "spring": "a * b", "viscous": "a * c"}
-    asked = []
+    calls = []
 
     def of_effect(effect, at, model, prepared):
-        asked.append(model)
+        calls.append(model)
         return by_effect[effect.name]
 
     monkeypatch.setattr(undetermined_module, "undetermined_of", of_effect)
@@ -250,9 +250,11 @@ def test_what_is_undetermined_is_said_of_each_effect_that_the_last_model_has_in_
     monkeypatch.setattr(
         undetermined_module, "known_together", lambda fit, c: together[c.effect.name]
     )
-    said = [(one.candidate.effect.name, one.sentence) for one in find_undetermined(rungs, None)]
-    assert said == [("bias", "a level at rest"), ("spring", "a * b"), ("viscous", "a * c")]
-    assert all(model is rungs[-1].fit.model for model in asked)
+    sentences = [
+        (one.candidate.effect.name, one.sentence) for one in find_undetermined(rungs, None)
+    ]
+    assert sentences == [("bias", "a level at rest"), ("spring", "a * b"), ("viscous", "a * c")]
+    assert all(model is rungs[-1].fit.model for model in calls)
     together["bias"] = "b * c"
     assert [one.sentence for one in find_undetermined(rungs, None)][:2] == [
         "a level at rest",
@@ -283,15 +285,15 @@ LINE = {
 }
 
 
-def test_gravity_is_said_to_look_like_a_spring_with_its_rest_position(monkeypatch):
-    said = alike(monkeypatch, "gravity", errors=LINE)
-    assert "from `spring` and `bias`" in said and "25 %" in said
+def test_gravity_is_reported_to_look_like_a_spring_with_its_rest_position(monkeypatch):
+    sentence = alike(monkeypatch, "gravity", errors=LINE)
+    assert "from `spring` and `bias`" in sentence and "25 %" in sentence
     beside = alike(monkeypatch, "gravity", "bias", errors=LINE)
     assert "from `spring`, " in beside, "the constant is there already"
     assert "from `gravity`, " in alike(monkeypatch, "spring", errors=LINE)
 
 
-def test_effects_that_the_records_distinguish_are_not_said_to_look_alike(monkeypatch):
+def test_effects_that_the_records_distinguish_are_not_reported_to_look_alike(monkeypatch):
     far = {**LINE, frozenset({"spring", "bias"}): 0.4}
     assert alike(monkeypatch, "gravity", errors=far) == ""
     assert alike(monkeypatch, "cogging", errors={frozenset({"cogging"}): 0.25}) == ""

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagnose.own_cases import write_own
+from diagnose.simulated_cases import write_simulated
 from diagnose.unexplained_texture import CHEATS, HIDES_THE_HAND
 from diagnose.unexplained_texture import write_slide as write
 from truth_effects import PUBLIC
@@ -81,12 +81,12 @@ def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(nam
     floor = noise_floor(base.model, prepared, np.random.default_rng(0))
     plain = []
     for value in values:
-        found = lowest(base, effect, {first: value, **others}, prepared)
-        plain.append(found.check_error)
+        error = lowest(base, effect, {first: value, **others}, prepared)
+        plain.append(error.check_error)
         # a texture drawn anew is matched by chance to a few percent, as any model's is
-        lower = gain_at_command(base, found) > 2 * CRITERIA.relevant
-        assert refusal(base, found) in ("blind", "weak") or not lower, (value, found.at_command)
-        assert not is_better(base, found, floor)
+        lower = gain_at_command(base, error) > 2 * CRITERIA.relevant
+        assert refusal(base, error) in ("blind", "weak") or not lower, (value, error.at_command)
+        assert not is_better(base, error, floor)
     if name in ("actuator_saturation", "soft_limit", "feeds_back", "takes_up_what_acts"):
         assert min(plain) < 0.5 * base.check_error, "the plain error could be cheated"
 
@@ -133,7 +133,7 @@ def test_what_keeps_the_hand_from_the_body_explains_nothing(name, tmp_path):
 # a gain that falls along the stroke has records of its own: test_along_the_stroke.py
 @pytest.mark.parametrize("name", [n for n in (*ACTUATION, *FROM_ACTING) if n in PUBLIC])
 def test_a_machine_that_has_the_effect_is_still_believed(name, tmp_path):
-    experiment = load_experiment(write_own(tmp_path / name, name))
+    experiment = load_experiment(write_simulated(tmp_path / name, name))
     prepared, model = prepare(experiment), Model.from_experiment(experiment)
     base = estimate(model, prepared)
     floor = noise_floor(base.model, prepared, np.random.default_rng(0))

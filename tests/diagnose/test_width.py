@@ -60,10 +60,10 @@ def fit_at_truth(experiment):
 @pytest.mark.parametrize(("speed", "open_width"), [(1.5, False), (0.1, True)])
 def test_a_width_is_determined_by_motion_beyond_it(tmp_path, speed, open_width):
     fit, prepared = fit_at_truth(recorded(tmp_path, speed))
-    said = explain_open_width(fit, Candidate(EFFECT, "device"), prepared)
-    assert bool(said) == open_width
+    sentence = explain_open_width(fit, Candidate(EFFECT, "device"), prepared)
+    assert bool(sentence) == open_width
     if open_width:
-        assert "rad/s fits as well as" in said and "do not determine it" in said
+        assert "rad/s fits as well as" in sentence and "do not determine it" in sentence
 
 
 def test_only_what_is_essential_and_free_is_asked(tmp_path):
@@ -83,9 +83,9 @@ def test_a_candidate_of_any_width_does_not_count(tmp_path):
     base = estimate(fit.model.without_effect(EFFECT.name, at="device"), prepared)
     candidate = Candidate(EFFECT, "device")
     unasked = make_ranked(base, candidate, fit, prepared=prepared)
-    asked = make_ranked(base, candidate, fit, prepared=prepared, widths=OpenWidths(prepared))
+    entry = make_ranked(base, candidate, fit, prepared=prepared, widths=OpenWidths(prepared))
     assert "determine" not in unasked.implausible
-    assert "determine" in asked.note and not asked.counts
+    assert "determine" in entry.note and not entry.counts
 
 
 class ScoredFit:
@@ -96,7 +96,7 @@ class ScoredFit:
 
 
 @pytest.fixture
-def asked(monkeypatch):
+def ask_width(monkeypatch):
     """What is said of a width of 0.5 where other values leave more by these scores, and which."""
 
     def ask(scores, effect=EFFECT, free=(OF_WIDTH,)):
@@ -116,30 +116,30 @@ def asked(monkeypatch):
     return ask
 
 
-def test_a_width_is_held_at_a_quarter_and_at_four_times_its_value(asked):
-    said, values = asked({0.125: 9.0, 2.0: 9.0})
-    assert said == "" and [v.value for v in values] == [0.125, 2.0]
+def test_a_width_is_held_at_a_quarter_and_at_four_times_its_value(ask_width):
+    sentence, values = ask_width({0.125: 9.0, 2.0: 9.0})
+    assert sentence == "" and [v.value for v in values] == [0.125, 2.0]
     assert all(v.fixed for v in values)
     for scores, other in [((2.9, 9.0), "0.125"), ((9.0, 2.9), "2"), ((9.0, -9.0), "2")]:
-        said, _ = asked(dict(zip((0.125, 2.0), scores, strict=True)))
-        assert said.startswith(f"width = {other} rad/s fits as well as 0.5 rad/s")
-    assert asked({0.125: 3.1, 2.0: 3.1})[0] == ""
+        sentence, _ = ask_width(dict(zip((0.125, 2.0), scores, strict=True)))
+        assert sentence.startswith(f"width = {other} rad/s fits as well as 0.5 rad/s")
+    assert ask_width({0.125: 3.1, 2.0: 3.1})[0] == ""
 
 
-def test_a_width_beyond_its_bounds_is_not_asked(asked):
+def test_a_width_beyond_its_bounds_is_not_asked(ask_width):
     def within(lower, upper):
         declared = replace(EFFECT.parameters["width"], lower=lower, upper=upper)
         return replace(EFFECT, parameters={**EFFECT.parameters, "width": declared})
 
-    said, values = asked({2.0: 1.0}, within(0.2, 3.0))
-    assert said.startswith("width = 2 ") and [v.value for v in values] == [2.0]
-    said, values = asked({0.125: 9.0}, within(0.0, 1.0))
-    assert said == "" and [v.value for v in values] == [0.125]
-    assert asked({}, within(0.2, 1.0)) == ("", [])
-    assert asked({0.125: 1.0, 2.0: 1.0}, free=()) == ("", []), "it is fixed"
+    sentence, values = ask_width({2.0: 1.0}, within(0.2, 3.0))
+    assert sentence.startswith("width = 2 ") and [v.value for v in values] == [2.0]
+    sentence, values = ask_width({0.125: 9.0}, within(0.0, 1.0))
+    assert sentence == "" and [v.value for v in values] == [0.125]
+    assert ask_width({}, within(0.2, 1.0)) == ("", [])
+    assert ask_width({0.125: 1.0, 2.0: 1.0}, free=()) == ("", []), "it is fixed"
 
 
-def test_each_fit_is_asked_once(asked, monkeypatch):
+def test_each_fit_is_asked_once(ask_width, monkeypatch):
     monkeypatch.setattr(
         width, "explain_open_width", lambda fit, *_, **__: calls.append(fit) or "open"
     )

@@ -75,7 +75,7 @@ bandwidth = {{ value = {BANDWIDTH}, unit = "Hz" }}
     return load_experiment(folder)
 
 
-def _own(name, role, law, parameters, absent, **more):
+def _named_effect(name, role, law, parameters, absent, **more):
     return Effect(role=role, law=law, parameters=parameters, absent=absent, **more).named(name, "")
 
 
@@ -94,37 +94,37 @@ SLOW = {"time_constant": Parameter("time", "tau", upper=1e3, search=FitSearch(st
 CHEATS = {
     effect.name: effect
     for effect in (
-        _own(
+        _named_effect(
             "fades_when_large", "actuation",
             lambda now, p: now.command / (1 + p.part * now.command**2),
             {"part": Parameter("dimensionless", "k", search=FitSearch(starts=(0.3, 3.0, 1e3)))},
             {"part": 0.0},
         ),
-        _own(
+        _named_effect(
             "next_to_nothing", "actuation", lambda now, p: (1 - 0.99 * p.part) * now.command,
             PART, {"part": 0.0},
         ),
-        _own(
+        _named_effect(
             "soft_limit", "actuation", lambda now, p: p.limit * sp.tanh(now.command / p.limit),
             {"limit": Parameter("force", "l", search=FitSearch(starts=(0.3, 1.0)))},
             {"limit": float("inf")},
         ),
-        _own(
+        _named_effect(
             "very_slow", "actuation", lambda now, p: now.slow, SLOW, {"time_constant": 0.0},
             states={"slow": State("force", _lagging)},
         ),
-        _own(
+        _named_effect(
             "forgets_what_lasts", "actuation", lambda now, p: now.command - p.part * now.slow,
             {**PART, **SLOW}, {"part": 0.0}, states={"slow": State("force", _lagging)},
         ),
-        _own(
+        _named_effect(
             "takes_up_what_acts", "friction_level", lambda now, p: p.part * abs(now.acting_force),
             PART, {"part": 0.0},
         ),
-        _own(
+        _named_effect(
             "feeds_back", "force", lambda now, p: p.part * now.acting_force, PART, {"part": 0.0},
         ),
-        _own(
+        _named_effect(
             "feeds_back_late", "force", lambda now, p: p.part * now.slow, {**PART, **SLOW},
             {"part": 0.0}, states={"slow": State("force", _follows)},
         ),
@@ -135,11 +135,11 @@ CHEATS = {
 HIDES_THE_HAND = {
     effect.name: effect
     for effect in (
-        _own(
+        _named_effect(
             "takes_the_hand", "force", lambda now, p: p.part * now.interaction_force,
             PART, {"part": 0.0},
         ),
-        _own(
+        _named_effect(
             "stands_before_the_hand", "structure", lambda now, p: p.part * now.interaction_force,
             PART, {"part": 0.0},
         ),

@@ -62,18 +62,18 @@ def expressions(draw, signals):
         return pairs | powers | st.builds(lambda f, a: f(a), ones, inside)
 
     try:
-        found = draw(st.recursive(positions | numbers, larger, max_leaves=6))
+        expression = draw(st.recursive(positions | numbers, larger, max_leaves=6))
     except (ZeroDivisionError, TypeError):  # sympy on what has no value
         assume(False)
     allowed = (sp.Add, sp.Mul, sp.Pow, sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.exp)
     allowed += (sp.atan2, sp.Abs, sp.sign, sp.cot, sp.sec, sp.csc, sp.Symbol, sp.Number)
     allowed += (type(sp.pi), type(sp.E))
-    nodes = list(sp.preorder_traversal(found))
+    nodes = list(sp.preorder_traversal(expression))
     assume(all(isinstance(n, allowed) and not n.has(sp.zoo, sp.nan, sp.oo, sp.I) for n in nodes))
     assume(not any(n.is_number and n.is_real is False for n in nodes))
     assume(all(sp.Float(float(n)) == n for n in nodes if n.is_Float))  # 1e-442 is none of Python
     assume(all(math.isfinite(n) for n in nodes if n.is_number))  # 9e307 pi is none either
-    return found
+    return expression
 
 
 @st.composite

@@ -37,9 +37,9 @@ def felt(s, inertia, damping, stiffness):
 
 def test_what_the_hand_feels_is_derived_from_the_wiring():
     alone = load_shipped("admittance-device").without("Z_H")
-    found = transfer(alone, "F_h", ("X",), given="X")["X"]
+    poles = transfer(alone, "F_h", ("X",), given="X")["X"]
     device, loop, admittance = map(block_symbol, ("Z_d", "C", "Y"))
-    assert proved_equal(found, (1 + loop * admittance) ** -1 * (device + loop))
+    assert proved_equal(poles, (1 + loop * admittance) ** -1 * (device + loop))
 
 
 numbers = st.floats(0.05, 4.0).map(lambda x: round(x, 2))
@@ -77,12 +77,12 @@ def test_under_a_constant_force_the_device_moves_as_the_virtual_body(period):
     The loop holds 2000 N/m against friction, the device's own force and what it is late: 0.5 mm.
     """
     diagram = made(2.0, 4.0, device=body(0.5, viscous__damping=2.0, coulomb__level=0.3))
-    found = simulate(
+    simulation = simulate(
         diagram, duration=1.0, inputs={"F_u": 1.0}, computer=Sampling(period=period), jit=False,
         step=period,
     )  # fmt: skip
-    t = found["X"]["time"].values
+    t = simulation["X"]["time"].values
     expected = t / 4 - 2.0 / 16 * (1 - np.exp(-2 * t))
-    assert np.abs(found["X"].values - expected).max() < 5e-4
+    assert np.abs(simulation["X"].values - expected).max() < 5e-4
     # the force is held from the first sample on: exact there, whatever the period
-    assert found["X_d"].values[-1] == pytest.approx(expected[-1], rel=1e-9)
+    assert simulation["X_d"].values[-1] == pytest.approx(expected[-1], rel=1e-9)

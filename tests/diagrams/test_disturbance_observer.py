@@ -85,7 +85,7 @@ def test_a_computer_later_than_that_margin_makes_it_grow(share, grows):
     """g M_n/M = 126 rad/s: 12.5 ms, of which hold and difference take one period of 0.5 ms."""
     made = observed(body(0.5), inertia=0.5)
     late = round(share * np.pi / 2 / POLE / 5e-4) * 5e-4
-    found = simulate(
+    simulation = simulate(
         made,
         duration=1.0,
         inputs={"f": lambda t: 1.0 * (t < 0.01)},
@@ -93,7 +93,7 @@ def test_a_computer_later_than_that_margin_makes_it_grow(share, grows):
         jit=False,
         step=5e-4,
     )
-    speed = np.abs(found["x_velocity"].values)
+    speed = np.abs(simulation["x_velocity"].values)
     assert bool(speed[-400:].max() > speed[:400].max()) is grows
 
 
@@ -105,8 +105,8 @@ def test_friction_hardly_holds_a_body_back_that_has_one():
     made = body(0.3, coulomb__level=0.4)
     ways = {}
     for name, diagram in (("bare", axis(made)), ("observed", observed(made, inertia=0.3))):
-        found = simulate(diagram, duration=0.5, inputs={"w": 0.5}, jit=False, step=2.5e-4)
-        ways[name] = float(found["x"].values[-1])
+        simulation = simulate(diagram, duration=0.5, inputs={"w": 0.5}, jit=False, step=2.5e-4)
+        ways[name] = float(simulation["x"].values[-1])
     ideal = 0.5 * 0.5 / 0.3 * 0.5**2
     assert ways["bare"] == pytest.approx(0.2 * ideal, rel=0.1)
     assert ways["observed"] == pytest.approx(ideal, rel=0.1)

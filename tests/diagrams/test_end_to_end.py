@@ -75,8 +75,8 @@ def test_all_forms_of_a_diagram_from_a_file_agree(file):
     x = nonlinear.outputs[nonlinear.output_labels.index("x_m")]
     np.testing.assert_allclose(x, linear, atol=1e-9)  # the solver's tolerance on 5 mm
     run = simulate(diagram, duration=0.5, inputs={"f_h": 1.0, "u_m": 0.0}, jit=False)
-    own = np.interp(t, run["x_m"]["time"].values, run["x_m"].values)
-    np.testing.assert_allclose(own, linear, atol=1e-7)  # interpolation between steps
+    positions = np.interp(t, run["x_m"]["time"].values, run["x_m"].values)
+    np.testing.assert_allclose(positions, linear, atol=1e-7)  # interpolation between steps
 
 
 def test_the_command_prints_draws_and_writes(file, tmp_path, capsys):
@@ -96,7 +96,7 @@ def test_the_command_prints_latex_of_a_shipped_diagram(capsys):
     assert r"T_{H} &= Z_{H} \left(Z_{M} + \Gamma Z_{H} - C\right)^{-1} \Gamma" in out
 
 
-def test_what_has_no_linear_form_is_said(tmp_path, capsys):
+def test_what_has_no_linear_form_is_reported(tmp_path, capsys):
     file = tmp_path / "free.toml"
     file.write_text(FREE, encoding="utf-8")
     assert main(["derive", str(file)]) == 0  # one block is known by its name only: no numbers
@@ -112,7 +112,7 @@ def test_what_has_no_linear_form_is_said(tmp_path, capsys):
         ("none.toml", "none.toml: cannot be read"),
     ],
 )
-def test_a_diagram_that_is_not_there_is_told_in_one_line(name, words, capsys):
+def test_a_diagram_that_does_not_exist_is_reported_in_one_line(name, words, capsys):
     assert main(["derive", name]) == 2
     err = capsys.readouterr().err
     assert words in err and len(err.splitlines()) == 1

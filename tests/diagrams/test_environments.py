@@ -37,8 +37,8 @@ def run(made, **arguments):
 
 def felt(made, motion, duration, step=1e-4):
     """Time, position, velocity and force of a wall on a tip without inertia that is led."""
-    found = run(made(body(0.0)), motion={"L": motion}, duration=duration, step=step)
-    return (found[n].values for n in ("time", "L", "L_velocity", "R_V"))
+    result = run(made(body(0.0)), motion={"L": motion}, duration=duration, step=step)
+    return (result[n].values for n in ("time", "L", "L_velocity", "R_V"))
 
 
 @pytest.mark.parametrize("name", WALLS)
@@ -81,15 +81,15 @@ def test_hunt_crossley_is_k_d_n_and_c_d_n_v():
 @pytest.mark.parametrize("speed", [0.005, 0.02])
 def test_a_slow_impact_returns_at_one_less_alpha_v(speed):
     """alpha = 2/(3 v_0); 0.6 (alpha v)^2 is the next order of the restitution."""
-    found = run(
+    result = run(
         hunt_crossley(body(0.2), **HERTZ),
         initial={"L_velocity": speed},
         duration=0.1,
         step=1e-4,
     )
-    assert found["L"].values[-1] < 0
+    assert result["L"].values[-1] < 0
     alpha = 2 / (3 * 0.5)
-    ratio = -found["L_velocity"].values[-1] / speed
+    ratio = -result["L_velocity"].values[-1] / speed
     assert ratio == pytest.approx(1 - alpha * speed, abs=(alpha * speed) ** 2 + 1e-5)
 
 
@@ -162,9 +162,9 @@ def test_a_gripping_hand_moves_as_its_linear_form():
     """Order four at 0.1 ms: 1e-7."""
     diagram = haptic_interface(body(0.15), hand=hand(mass=0.1, damping=2.0, stiffness=400, arm=ARM))
     system, _ = transfer_function(diagram, output="L", input="R_D")
-    found = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False)
-    _, expected = control.step_response(system, found["time"].values)
-    assert np.abs(found["L"].values - expected).max() < 1e-7 * np.abs(expected).max()
+    simulation = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False)
+    _, expected = control.step_response(system, simulation["time"].values)
+    assert np.abs(simulation["L"].values - expected).max() < 1e-7 * np.abs(expected).max()
 
 
 def test_a_voluntary_motion_is_the_force_that_leads_the_free_hand_along_it():

@@ -61,7 +61,7 @@ def test_equal_rods_at_right_angles_are_felt_as_a_cube():
 
 
 @pytest.mark.parametrize(
-    ("geometry", "levels", "said"),
+    ("geometry", "levels", "message"),
     [
         (np.eye(2), [1.0], "expected"),
         (np.ones((2, 2)), [1.0, 1.0], "singular"),
@@ -69,6 +69,6 @@ def test_equal_rods_at_right_angles_are_felt_as_a_cube():
         (np.eye(17), [1.0] * 17, "up to 16"),
     ],
 )
-def test_wrong_input_is_named(geometry, levels, said):
-    with pytest.raises(ModelError, match=said):
+def test_wrong_input_is_named(geometry, levels, message):
+    with pytest.raises(ModelError, match=message):
         felt_friction(geometry, levels)

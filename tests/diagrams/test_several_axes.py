@@ -62,7 +62,7 @@ def test_the_formulas_of_one_axis_hold_for_matrices_that_do_not_commute():
         rods(), G, hand=a_hand(), cancellation=[SPRING] * 3, force_feedback=cross
     )
     names = [[f"{s}{n}" for n in (1, 2, 3)] for s in ("R_M", "R_D")]
-    found = matrix_response(diagram, *names, FREQUENCY).data.values
+    response = matrix_response(diagram, *names, FREQUENCY).data.values
     s = 2j * np.pi * FREQUENCY
     low_pass = 1 / (1 + s / (2 * np.pi * 20))
     shape = np.array([[1, 1, 0], [0, 1, 0], [0, 0, 1]])
@@ -77,7 +77,7 @@ def test_the_formulas_of_one_axis_hold_for_matrices_that_do_not_commute():
     form = haptic_interface(hand=ANY, cancellation=ANY, force_feedback=ANY)
     symbolic = transfer_functions(form)["T_H"]
     expected = values(symbolic, {block_symbol(n): z for n, z in blocks.items()})
-    np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(response, expected, rtol=1e-10, atol=1e-12)
 
 
 def test_the_impedance_felt_by_the_hand_is_that_of_the_rods_through_the_geometry():
@@ -85,12 +85,12 @@ def test_the_impedance_felt_by_the_hand_is_that_of_the_rods_through_the_geometry
     diagram = parallel_rods(rods(), G, hand=None)
     numbers = (1, 2, 3)
     lengths = [f"L{n}" for n in numbers]
-    found = matrix_response(
+    response = matrix_response(
         diagram, [f"F{n}" for n in numbers], lengths, FREQUENCY, given=lengths
     ).data.values
     s = 2j * np.pi * FREQUENCY[:, None, None]
     z = s**2 * np.diag(MASSES) + s * np.diag(DAMPINGS)
-    np.testing.assert_allclose(found @ G, G.T @ z @ G, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(response @ G, G.T @ z @ G, rtol=1e-10, atol=1e-12)
 
 
 @pytest.mark.slow
@@ -98,10 +98,10 @@ def test_simulated_rods_answer_as_the_matrix_response_says():
     diagram = parallel_rods(rods(), G, hand=a_hand(), force_feedback=[LOW_PASS] * 3)
     frequency = 4.0
     drive = lambda t: np.sin(2 * np.pi * frequency * t)  # noqa: E731
-    found = simulate(
+    simulation = simulate(
         diagram, duration=3.0, inputs={"R_D2": drive}, computer="continuous", step=2e-4
     )
-    time = found["R_M1"]["time"].values
+    time = simulation["R_M1"]["time"].values
     last = time >= 2.0 - 1e-9
     angle = 2 * np.pi * frequency * time[last]
     waves = np.column_stack([np.sin(angle), np.cos(angle)])
@@ -110,7 +110,7 @@ def test_simulated_rods_answer_as_the_matrix_response_says():
         0, :, 0
     ]
     for name, one in zip(outputs, expected, strict=True):
-        real, imaginary = np.linalg.lstsq(waves, found[name].values[last], rcond=None)[0]
+        real, imaginary = np.linalg.lstsq(waves, simulation[name].values[last], rcond=None)[0]
         # of the largest: a small one is what the others leave
         assert abs(real + 1j * imaginary - one) < 1e-3 * np.abs(expected).max()
 
@@ -147,8 +147,8 @@ def test_an_arm_that_swings_freely_keeps_its_energy_and_angular_momentum():
     """Coriolis forces of the tip's mass follow from the kinematics alone."""
     diagram = teleoperator_of_arms(planar(), planar(), stiffness=np.zeros((2, 2)))
     start = {"q_m1": 0.3, "q_m2": 1.1, "q_m1_velocity": 2.0, "q_m2_velocity": -3.0, "q_s2": 1.0}
-    found = simulate(diagram, duration=1.0, initial=start, computer="continuous", step=1e-3)
-    q, w = ([found[f"q_m{n}{end}"].values for n in (1, 2)] for end in ("", "_velocity"))
+    simulation = simulate(diagram, duration=1.0, initial=start, computer="continuous", step=1e-3)
+    q, w = ([simulation[f"q_m{n}{end}"].values for n in (1, 2)] for end in ("", "_velocity"))
     angle = q[0] + q[1]
     rate = w[0] + w[1]
     vx = -LENGTHS[0] * np.sin(q[0]) * w[0] - LENGTHS[1] * np.sin(angle) * rate
@@ -166,19 +166,19 @@ def test_arms_on_a_stiff_coupling_move_together():
         damped, damped, stiffness=4000.0 * np.eye(2), damping=40.0 * np.eye(2)
     )
     start = {f"q_{side}{n}": damped.pose[n - 1] for side in "ms" for n in (1, 2)}
-    found = simulate(diagram, duration=1.0, inputs={"F_u1": 2.0}, initial=start, step=2e-4)
-    moved = found["X_m1"].values[-1] - found["X_m1"].values[0]
-    apart = found["X_e1"].values[-1]
+    simulation = simulate(diagram, duration=1.0, inputs={"F_u1": 2.0}, initial=start, step=2e-4)
+    moved = simulation["X_m1"].values[-1] - simulation["X_m1"].values[0]
+    apart = simulation["X_e1"].values[-1]
     assert moved > 0.01
     # less than 2 N on 4000 N/m
     assert 0 < apart < 5.1e-4
 
 
-def test_two_arms_are_seen_as_one_linear_system_at_their_pose():
+def test_two_arms_are_one_linear_system_at_their_pose():
     damped = planar(damping=0.4)
     stiffness = np.array([[900.0, 100.0], [100.0, 700.0]])
     diagram = teleoperator_of_arms(damped, damped, stiffness=stiffness)
-    found = matrix_response(diagram, ["X_s1", "X_s2"], ["F_u1", "F_u2"], FREQUENCY).data.values
+    response = matrix_response(diagram, ["X_s1", "X_s2"], ["F_u1", "F_u2"], FREQUENCY).data.values
     a, b = damped.pose
     jacobian = np.array(
         [
@@ -192,7 +192,7 @@ def test_two_arms_are_seen_as_one_linear_system_at_their_pose():
     z = z + s * inverse.T @ (0.4 * np.eye(2)) @ inverse
     joined = z + stiffness - stiffness @ np.linalg.inv(z + stiffness) @ stiffness
     expected = np.linalg.inv(z + stiffness) @ stiffness @ np.linalg.inv(joined)
-    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    np.testing.assert_allclose(response, expected, rtol=1e-9)
 
 
 def test_a_coordinate_of_joints_that_an_arm_does_not_have_is_refused():
@@ -222,5 +222,5 @@ def test_six_axes_with_compensation_on_each_run_faster_than_real_time():
     simulate(diagram, duration=0.01, inputs=push)  # compiled here, cached on disk
     # measured 0.05 s for a simulated second
     with takes_less_than(5.0):
-        found = simulate(diagram, duration=5.0, inputs=push)
-    assert np.abs(found["q_s1"].values).max() > 0.01
+        simulation = simulate(diagram, duration=5.0, inputs=push)
+    assert np.abs(simulation["q_s1"].values).max() > 0.01

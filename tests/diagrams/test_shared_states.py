@@ -69,25 +69,25 @@ def closed(pole):
     k = stabilising(pole)
     a = np.block([[RODS.A, RODS.B @ k.C], [k.B @ RODS.C, k.A]])
     assert np.linalg.eigvals(a).real.max() < -2  # the loop decays
-    seen = np.hstack([RODS.C, np.zeros((2, 6))])
-    return control.ss(a, np.vstack([RODS.B, np.zeros((6, 2))]), seen, 0), a
+    output_matrix = np.hstack([RODS.C, np.zeros((2, 6))])
+    return control.ss(a, np.vstack([RODS.B, np.zeros((6, 2))]), output_matrix, 0), a
 
 
 @pytest.mark.parametrize("pole", [pytest.param(0.0, marks=pytest.mark.slow), 3.0])
 def test_a_loop_with_a_controller_that_grows_by_itself_decays_as_its_matrices_say(pole):
     """A copy of the states for each entry would grow as e^(pole t). 1e-6 of the range."""
     exact, a = closed(pole)
-    found = simulate(
+    simulation = simulate(
         two_rods(stabilising(pole)),
         duration=1.0,
         inputs={"f1": FORCES[0], "f2": FORCES[1]},
         computer="continuous",
         step=2e-4,
     )
-    time = found["time"].values
+    time = simulation["time"].values
     answer = control.forced_response(exact, time, np.outer(FORCES, np.ones(len(time)))).outputs
     for x, theirs in zip(("x1", "x2"), answer, strict=True):
-        assert np.abs(found[x].values - theirs).max() < 1e-6 * np.ptp(theirs)
+        assert np.abs(simulation[x].values - theirs).max() < 1e-6 * np.ptp(theirs)
     system = to_iosystem(two_rods(stabilising(pole)))
     linear = system.linearize(np.zeros(system.nstates), np.zeros(system.ninputs))
     assert system.nstates == len(a)
@@ -102,7 +102,7 @@ def test_a_computer_steps_the_states_together(pole, discrete):
     """Exact for readings held over a sample, against the matrices of python-control; 1e-6."""
     k = stabilising(pole)
     sampled, rods = (control.sample_system(one, PERIOD, "zoh") for one in (k, RODS))
-    found = simulate(
+    simulation = simulate(
         two_rods(sampled if discrete else k, analog=False),
         duration=0.3,
         inputs={"f1": FORCES[0], "f2": FORCES[1]},
@@ -111,12 +111,12 @@ def test_a_computer_steps_the_states_together(pole, discrete):
         jit=False,
     )
     x, z, expected = np.zeros(4), np.zeros(6), []
-    for _ in found["time"].values:
+    for _ in simulation["time"].values:
         y = rods.C @ x
         expected.append(y)
         x, z = rods.A @ x + rods.B @ (sampled.C @ z + FORCES), sampled.A @ z + sampled.B @ y
     for name, theirs in zip(("x1", "x2"), np.transpose(expected), strict=True):
-        assert np.abs(found[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
+        assert np.abs(simulation[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
 
 
 @pytest.mark.slow
@@ -132,9 +132,9 @@ def test_a_transfer_function_is_that_of_the_whole_loop():
     k = stabilising(-2.0)
     point = 4.0 + 9.0j
     known = control.tf(RODS.feedback(k, sign=1))(point)
-    found, left_out = transfer_function(two_rods(k), output="x2", input="f1")
+    transfer, left_out = transfer_function(two_rods(k), output="x2", input="f1")
     assert left_out == ()
-    assert complex(found(point)) == pytest.approx(known[1, 0], rel=1e-6)
+    assert complex(transfer(point)) == pytest.approx(known[1, 0], rel=1e-6)
 
 
 def test_what_no_output_shows_is_there_all_the_same():

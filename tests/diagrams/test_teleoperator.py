@@ -37,12 +37,12 @@ def with_values(expression, diagram):
 
 
 def test_the_two_port_of_two_sides_without_cancellation_is_that_of_the_textbook():
-    found = two_port_functions(teleoperator(environment=ANY))
+    functions = two_port_functions(teleoperator(environment=ANY))
     slave = (Z_s + P) ** -1
-    assert proved_equal(found["h_11"], Z_m + P - P * slave * P)
-    assert proved_equal(found["h_12"], -P * slave)
-    assert proved_equal(found["h_21"], slave * P)
-    assert proved_equal(found["Z_t"], Z_m + P - P * (Z_s + Z_E + P) ** -1 * P)
+    assert proved_equal(functions["h_11"], Z_m + P - P * slave * P)
+    assert proved_equal(functions["h_12"], -P * slave)
+    assert proved_equal(functions["h_21"], slave * P)
+    assert proved_equal(functions["Z_t"], Z_m + P - P * (Z_s + Z_E + P) ** -1 * P)
 
 
 def test_an_environment_at_the_slaves_port_gives_the_transmitted_impedance():
@@ -72,18 +72,18 @@ def test_the_simulated_transmitted_impedance_is_the_derived_one(frequency, cycle
     environment = body(0.0, spring__stiffness=300.0, viscous__damping=1.0)
     diagram = linear(environment=environment)
     amplitude = 2e-3
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=cycles / frequency,
         motion={"X_m": sine(amplitude=amplitude, frequency=frequency)},
         computer="continuous",
         step=1e-4,
     )
-    time = found["F_m"]["time"].values
+    time = simulation["F_m"]["time"].values
     last = time >= (cycles - 1) / frequency - 1e-9
     angle = 2 * np.pi * frequency * time[last]
     waves = np.column_stack([np.sin(angle), np.cos(angle)])
-    real, imaginary = np.linalg.lstsq(waves, found["F_m"].values[last], rcond=None)[0]
+    real, imaginary = np.linalg.lstsq(waves, simulation["F_m"].values[last], rcond=None)[0]
     phasor = (real + 1j * imaginary) / amplitude
     derived = with_values(two_port_functions(diagram)["Z_t"], diagram)(2j * np.pi * frequency)
     # the slave on its springs decays at 13/s: after 1.9 s nothing is left
@@ -98,9 +98,11 @@ def test_python_control_and_the_kernel_agree_on_a_compensated_teleoperator():
         body(0.1, viscous__damping=0.5), slave, coupling=COUPLING, slave_cancellation=DAHL
     )
     push = lambda t: 0.8 * np.sin(2 * np.pi * 2.0 * t)  # noqa: E731
-    found = simulate(diagram, duration=0.4, inputs={"F_u": push}, computer="continuous", step=1e-4)
+    simulation = simulate(
+        diagram, duration=0.4, inputs={"F_u": push}, computer="continuous", step=1e-4
+    )
     system = to_iosystem(diagram)
-    time = found["X_s"]["time"].values
+    time = simulation["X_s"]["time"].values
     inputs = np.array([push(time) if n == "F_u" else 0 * time for n in system.input_labels])
     response = control.input_output_response(
         system, time, inputs, solve_ivp_kwargs={"rtol": 1e-8, "atol": 1e-11}
@@ -108,24 +110,26 @@ def test_python_control_and_the_kernel_agree_on_a_compensated_teleoperator():
     for name in ("X_m", "X_s", "F_P", "F_Cs"):
         reference = response.outputs[system.output_labels.index(name)]
         # python-control interpolates inputs linearly between samples: a few 1e-6 of the largest
-        assert np.abs(found[name].values - reference).max() < 1e-4 * np.abs(reference).max(), name
+        assert np.abs(simulation[name].values - reference).max() < 1e-4 * np.abs(reference).max(), (
+            name
+        )
 
 
 def test_contact_pushes_the_slave_and_never_pulls():
     wall = body(0.0).with_effect(
         CONTACT, {"stiffness": 800.0, "damping": 4.0, "contact_position": 1e-3}
     )
-    found = simulate(
+    simulation = simulate(
         linear(environment=wall),
         duration=2.0,
         motion={"X_m": sine(amplitude=4e-3, frequency=1.0)},
     )
-    force, there = found["F_s"].values, found["X_s"].values
+    force, there = simulation["F_s"].values, simulation["X_s"].values
     assert force.max() <= 0.0 and force.min() < -0.5
     assert np.all(force[there < 1e-3] == 0.0)
 
 
 def test_signals_carry_the_units_of_their_axis():
-    found = simulate(linear(), duration=0.01, jit=False)
-    units = {n: found[n].attrs["units"] for n in ("X_m", "X_e", "X_s_velocity", "F_P", "U_s")}
+    simulation = simulate(linear(), duration=0.01, jit=False)
+    units = {n: simulation[n].attrs["units"] for n in ("X_m", "X_e", "X_s_velocity", "F_P", "U_s")}
     assert units == {"X_m": "m", "X_e": "m", "X_s_velocity": "m/s", "F_P": "N", "U_s": "N"}

@@ -241,7 +241,7 @@ def test_the_short_form_is_wired_as_the_package_does(reading):
         (SHORT, "[blocks.Z_H]", "[blocks.Z_H", "loop.toml: not valid TOML"),
     ],
 )
-def test_a_mistake_is_told_in_one_line(reading, text, old, new, words):
+def test_a_mistake_is_reported_in_one_line(reading, text, old, new, words):
     assert old in text
     with pytest.raises(ExperimentError) as caught:
         reading(text.replace(old, new, 1))
@@ -279,7 +279,7 @@ def test_parallel_rods_and_arms_are_read_as_they_were_written(reading):
         assert reading(diagram_text(diagram)) == diagram
 
 
-def test_what_has_no_form_in_a_file_is_told_in_one_line(tmp_path):
+def test_what_has_no_form_in_a_file_is_reported_in_one_line(tmp_path):
     control = pytest.importorskip("control")
     diagram = load_shipped("world-haptics-2005")
     filtered = diagram.with_block("C", from_control(control.tf([1.0], [0.1, 1.0])))
@@ -298,9 +298,9 @@ def test_what_has_no_form_in_a_file_is_told_in_one_line(tmp_path):
     assert not (tmp_path / "odd.toml").exists()
 
 
-def test_a_users_own_effect_takes_part_in_a_file(tmp_path, capsys):
-    own = tmp_path / "magnet.py"
-    own.write_text(
+def test_an_effect_of_the_user_takes_part_in_a_file(tmp_path, capsys):
+    path = tmp_path / "magnet.py"
+    path.write_text(
         '"""A magnet."""\n'
         "from teleopdesign.effects import Effect, Parameter\n"
         'EFFECT = Effect(role="force", law=lambda now, p: p.pull * now.position, linear=True,\n'
@@ -308,16 +308,16 @@ def test_a_users_own_effect_takes_part_in_a_file(tmp_path, capsys):
     )
     file = tmp_path / "loop.toml"
     file.write_text(FREE.replace("effects.coulomb]\nlevel", "effects.magnet]\npull"))
-    known = catalogue([own])
+    known = catalogue([path])
     diagram = read_diagram(file, effects=known)
     write_diagram(diagram, tmp_path / "copy.toml", effects=known)
     assert read_diagram(tmp_path / "copy.toml", effects=known) == diagram
-    assert main(["derive", str(file), "--effect", str(own)]) == 0
+    assert main(["derive", str(file), "--effect", str(path)]) == 0
     assert main(["derive", str(file)]) == 2
     assert 'no effect "magnet"' in capsys.readouterr().err
 
 
-def test_a_missing_file_and_an_unknown_name_are_told(tmp_path):
+def test_a_missing_file_and_an_unknown_name_are_reported(tmp_path):
     with pytest.raises(ExperimentError, match="none.toml: cannot be read"):
         read_diagram(tmp_path / "none.toml")
     with pytest.raises(ModelError, match='did you mean "haptic-interface"'):

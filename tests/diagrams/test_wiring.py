@@ -41,26 +41,26 @@ def pair(master, slave, coupling):
 
 def test_two_bodies_and_their_coupling_are_derived_from_the_wiring():
     M, S, P = map(block_symbol, "MSP")
-    found = transfer(pair(ANY, ANY, ANY), "x_s", ("f_u",))["f_u"]
-    assert proved_equal(found, (S + P - P * (M + P) ** -1 * P) ** -1 * P * (M + P) ** -1)
+    poles = transfer(pair(ANY, ANY, ANY), "x_s", ("f_u",))["f_u"]
+    assert proved_equal(poles, (S + P - P * (M + P) ** -1 * P) ** -1 * P * (M + P) ** -1)
 
 
 def test_two_bodies_swing_against_each_other():
     """Equal masses on a spring: x_m - x_s swings at sqrt(2 P/m), the middle moves freely."""
     stiff = controller("lead", {"gain": 400.0, "zero": 1.0, "pole": 1.0})
-    found = simulate(
+    simulation = simulate(
         pair(body(0.5), body(0.5), stiff),
         duration=0.3,
         initial={"x_m": 1e-3, "x_m_velocity": 0.0},
         computer="continuous",
         jit=False,
     )
-    t = found["x_m"]["time"].values
+    t = simulation["x_m"]["time"].values
     swing = 1e-3 * np.cos(np.sqrt(2 * 400 / 0.5) * t)
     # order four at 1e-4 s and 40 rad/s: 1e-11
-    np.testing.assert_allclose(found["x_m"] - found["x_s"], swing, atol=1e-10)
-    np.testing.assert_allclose(found["x_m"] + found["x_s"], 1e-3, atol=1e-12)
-    assert found["x_e"].attrs["units"] == "m" and found["f_p"].attrs["units"] == "N"
+    np.testing.assert_allclose(simulation["x_m"] - simulation["x_s"], swing, atol=1e-10)
+    np.testing.assert_allclose(simulation["x_m"] + simulation["x_s"], 1e-3, atol=1e-12)
+    assert simulation["x_e"].attrs["units"] == "m" and simulation["f_p"].attrs["units"] == "N"
 
 
 def test_values_are_read_and_changed_by_name():

@@ -39,7 +39,7 @@ def write_recorded(folder, believed, *, inertia=0.15, channels="", more=None, se
     text = HEAD.format(inertia=inertia, effects=believed, step=STEP, channels=channels)
     rng = np.random.default_rng(seed)
     hard = values.get("level", 0.0) / (0.3 * STEP)
-    own = {
+    parameters = {
         "inertia": inertia - values.get("tip_inertia", 0.0),
         "bristle_stiffness": hard or 1.0,
         "bristle_damping": 0.3 * math.sqrt(hard * inertia),
@@ -48,7 +48,7 @@ def write_recorded(folder, believed, *, inertia=0.15, channels="", more=None, se
         "kd": 1.5 * inertia * 40.0,
         "resolution": STEP,
     }
-    body = truth_simulator.body(**{**own, **values})
+    body = truth_simulator.body(**{**parameters, **values})
     for name, seconds in SECONDS.items():
         x, v = RECORDS[name](rng, RATE, seconds, "normal", 16.0)
         drive = truth_simulator.Drive.zero(len(x))

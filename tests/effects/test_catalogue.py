@@ -41,7 +41,7 @@ CLAIMS = ("even in velocity", "non-negative")  # those that a test below checks
 # text and names
 
 
-def test_every_file_of_the_folder_is_one_effect_under_its_own_name():
+def test_every_file_of_the_folder_is_one_effect_under_the_name_of_the_file():
     known = EFFECTS | BLOCK_EFFECTS
     assert [p.stem for p in FILES] == sorted(known)
     assert all(known[name].name == name for name in known)
@@ -147,7 +147,7 @@ LEVEL_SIGNALS = ("velocity", "direction", "position", "time", "acting_force", "c
 
 
 @cache
-def settled_law(name):
+def law_at_rest(name):
     """The law as a function of signals and parameters, hidden states where they come to rest."""
     effect = EFFECTS[name]
     law, rates, states = effect.expression(), effect.rates(), effect.state_symbols()
@@ -160,7 +160,7 @@ def settled_law(name):
 
 def level_at(name, velocity, values):
     """What the effect makes of the friction level at that velocity, elsewhere held."""
-    law = settled_law(name)
+    law = law_at_rest(name)
     return float(
         law(
             velocity,

@@ -31,9 +31,9 @@ S = sp.Symbol("s")
 @pytest.mark.parametrize("factor", ["friction_drift", "position_dependent_friction"])
 def test_a_factor_scales_the_coulomb_level_and_not_what_others_add(factor):
     plain, whole = body_of("coulomb", "stribeck"), body_of("coulomb", "stribeck", factor)
-    own = EFFECTS[factor].expression()
+    expression = EFFECTS[factor].expression()
     coulomb = EFFECTS["coulomb"].expression()
-    assert sp.simplify(whole.level() - plain.level() - coulomb * (own - 1)) == 0
+    assert sp.simplify(whole.level() - plain.level() - coulomb * (expression - 1)) == 0
 
 
 def test_a_users_factor_that_needs_no_effect_scales_the_whole_level():
@@ -61,7 +61,7 @@ def test_an_effect_at_its_absent_values_changes_nothing_along_a_motion(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_no_parameter_moves_a_force_in_which_its_derivative_is_said_to_be_zero(name):
+def test_no_parameter_moves_a_force_in_which_its_derivative_is_declared_zero(name):
     x, u, f = signals()
     motion = motion_along(encoded(x), u, f, resolution=1e-6)
     body = body_of(*dict.fromkeys(("coulomb", "viscous", *with_needs(name), name)))
@@ -101,8 +101,8 @@ def test_a_trace_of_an_effect_changes_a_trace(name):
 def test_a_linear_effect_superposes(name, a, b):
     names = with_needs(name)
 
-    def left(*given):
-        return residual_along(body_of(*names), motion_along(*given)).residual.value
+    def left(*forces):
+        return residual_along(body_of(*names), motion_along(*forces)).residual.value
 
     one, other = signals(1), signals(2)
     both = left(*(a * p + b * q for p, q in zip(one, other, strict=True)))

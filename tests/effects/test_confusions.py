@@ -4,7 +4,7 @@ The machines come from the truth simulator, which shares no law with the package
 """
 
 import pytest
-from diagnose.own_cases import truth_of, write_own
+from diagnose.simulated_cases import truth_of, write_simulated
 from effects.recorded import write_recorded
 
 from teleopdesign import Model, find_missing, load_experiment
@@ -29,10 +29,10 @@ def diagnosed(folder, effect):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", MISTAKEN_FOR)
-def test_a_planted_effect_is_told_from_those_that_it_is_mistaken_for(effect, tmp_path):
-    folder = write_own(tmp_path / effect, effect)
-    found = diagnosed(folder, effect)
-    named = {c.effect.name for c in found.missing}
+def test_a_planted_effect_is_distinguished_from_those_that_it_is_mistaken_for(effect, tmp_path):
+    folder = write_simulated(tmp_path / effect, effect)
+    diagnosis = diagnosed(folder, effect)
+    named = {c.effect.name for c in diagnosis.missing}
     alike = [{e["effect"] for e in group} for group in truth_of(folder)["indistinguishable"]]
     assert named == {effect} or (not named and any(effect in group for group in alike))
 
@@ -41,10 +41,10 @@ def test_a_planted_effect_is_told_from_those_that_it_is_mistaken_for(effect, tmp
 @pytest.mark.parametrize("effect", MISTAKEN_FOR)
 def test_an_effect_is_not_named_where_one_that_it_is_mistaken_for_is_planted(effect, tmp_path):
     other = MISTAKEN_FOR[effect][0]
-    found = diagnosed(write_own(tmp_path / other, other), effect)
-    assert effect not in {c.effect.name for c in found.missing}
+    diagnosis = diagnosed(write_simulated(tmp_path / other, other), effect)
+    assert effect not in {c.effect.name for c in diagnosis.missing}
     assert other in {
-        c.effect.name for c in (*found.missing, *(g for gs in found.groups for g in gs))
+        c.effect.name for c in (*diagnosis.missing, *(g for gs in diagnosis.groups for g in gs))
     }
 
 
@@ -55,15 +55,17 @@ BELIEVED = "coulomb = { level = 0.3 }\nviscous = { damping = 0.5 }\ntransmission
 
 @pytest.mark.slow
 @pytest.mark.parametrize("level", [0.3, 0.0])
-def test_friction_of_a_tip_is_told_from_that_of_the_body_and_from_presliding(level, tmp_path):
+def test_friction_of_a_tip_is_distinguished_from_that_of_the_body_and_from_presliding(
+    level, tmp_path
+):
     folder = write_recorded(tmp_path / "gear", BELIEVED, tip_level=level, **GEAR, **RUBBING)
     names = {"coulomb", "viscous", "transmission_compliance", "tip_friction", "presliding"}
     known = {n: e for n, e in EFFECTS.items() if n in names}
     experiment = load_experiment(folder)
-    found = find_missing(experiment, Model.from_experiment(experiment, known))
-    assert [c.effect.name for c in found.missing] == (["tip_friction"] if level else [])
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in diagnosis.missing] == (["tip_friction"] if level else [])
     if level:
-        fitted = found.model.parameters
+        fitted = diagnosis.model.parameters
         # five standard errors; measured: 0.29978 +- 0.00765
         assert fitted["device.tip_friction.level"].value == pytest.approx(level, rel=0.1)
-        assert found.after.check_error < 0.02 * found.before.check_error
+        assert diagnosis.after.check_error < 0.02 * diagnosis.before.check_error

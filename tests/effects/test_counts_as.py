@@ -28,7 +28,7 @@ def test_a_law_that_holds_the_damping_itself_needs_the_viscous_effect():
     assert BODY.with_effect(EFFECTS["viscous"]).lacks(warming) == ()
 
 
-def test_an_effect_names_none_of_its_own_parameters_as_those_of_others():
+def test_an_effect_names_none_of_its_parameters_as_those_of_others():
     # its own parameters begin with the name of the effect that it needs
     assert EFFECTS["viscous_asymmetry"].parameters_of_others() == frozenset()
     with pytest.raises(ModelError):

@@ -43,8 +43,8 @@ def everywhere(effect):
     ranges = {s: (-inf, inf) for s in SIGNALS.values()} | {SPEED: (0.0, inf)}
     ranges[SIGNALS["time"]] = (0.0, inf)
     effects = [effect, *(KNOWN[n] for n in effect.needs)]
-    own = {s: e.parameters[n] for e in effects for n, s in e.symbols().items()}
-    return ranges | {s: (p.lower, p.upper) for s, p in own.items()}
+    parameters = {s: e.parameters[n] for e in effects for n, s in e.symbols().items()}
+    return ranges | {s: (p.lower, p.upper) for s, p in parameters.items()}
 
 
 def never_helps(effect):
@@ -87,7 +87,7 @@ def test_what_supplies_is_neither(name):
     assert not is_conservative(EFFECTS[name])
 
 
-def test_all_that_acts_on_commands_is_said_to_supply():
+def test_all_that_acts_on_commands_is_declared_as_a_supply():
     """It changes the force of a controller, of which no law of the body is a bound."""
     assert set(ON_COMMANDS) <= set(declaring("supplies"))
 
@@ -100,7 +100,7 @@ def test_a_false_declaration_is_not_proved(name, claim):
     assert not claim(EFFECTS[name])
 
 
-def told_walk(seed, samples=400, sample_time=1e-3):
+def random_walk(seed, samples=400, sample_time=1e-3):
     """A motion that is told at every sample: speeds over four decades, rests, reversals."""
     rng = np.random.default_rng(seed)
     legs = rng.integers(3, 60, size=samples)
@@ -142,7 +142,7 @@ def test_the_work_done_against_it_never_falls_below_zero(name, data, seed):
     the direction of motion is largest: the sum is an upper bound of the work, and above zero.
     """
     drawn = data.draw(values_of(name))
-    motion = told_walk(seed)
+    motion = random_walk(seed)
     names = with_needs(name)
     bare = residual_along(body_of(), motion).residual.value
     force = bare - residual_along(body_of(*names, values=drawn), motion).residual.value
@@ -195,8 +195,8 @@ def test_a_contact_takes_no_less_than_it_declares(name, data, seed):
     drawn = data.draw(values_of(name)) | {"environment.damping": 0.0}
     body = Body("prismatic", {"inertia": Value(0.1)})
     for n in with_needs(name):
-        own = {p: drawn[f"{n}.{p}"] for p in KNOWN[n].parameters}
-        body = body.with_effect(KNOWN[n], own)
+        parameters = {p: drawn[f"{n}.{p}"] for p in KNOWN[n].parameters}
+        body = body.with_effect(KNOWN[n], parameters)
     work, size = work_around(body.contact(), body.numbers(), seed)
     assert work >= -1e-3 * size  # the touch between samples
     if EFFECTS[name].energy == "stores":
@@ -206,7 +206,7 @@ def test_a_contact_takes_no_less_than_it_declares(name, data, seed):
 # a user's file
 
 
-OWN = '''"""Own: a force.
+SOURCE = '''"""Own: a force.
 
     F = K x
 """
@@ -224,11 +224,11 @@ EFFECT = Effect(
 
 def test_a_users_effect_that_does_not_say_counts_as_one_that_supplies(tmp_path):
     file = tmp_path / "own.py"
-    file.write_text(OWN.format(energy=""))
+    file.write_text(SOURCE.format(energy=""))
     assert load_effect(file).energy == "supplies"
-    file.write_text(OWN.format(energy='\n    energy="stores",'))
+    file.write_text(SOURCE.format(energy='\n    energy="stores",'))
     assert load_effect(file).energy == "stores"
-    file.write_text(OWN.format(energy='\n    energy="store",'))
+    file.write_text(SOURCE.format(energy='\n    energy="store",'))
     with pytest.raises(ModelError, match='energy: found the text "store", expected'):
         load_effect(file)
     assert Effect(role="force", law=lambda now, p: 0, parameters={}, absent={}).energy == "supplies"

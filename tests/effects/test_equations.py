@@ -133,8 +133,10 @@ def spaces(effect, values):
     signals = SimpleNamespace(
         **{n: values[s] for n, s in {**SIGNALS, **states}.items() if s in values}
     )
-    own = SimpleNamespace(**{n: values[s] for n, s in effect.symbols().items() if s in values})
-    return signals, own, {s.name: v for s, v in values.items()}
+    parameters = SimpleNamespace(
+        **{n: values[s] for n, s in effect.symbols().items() if s in values}
+    )
+    return signals, parameters, {s.name: v for s, v in values.items()}
 
 
 def test_every_law_is_written_out_here():
@@ -186,12 +188,12 @@ def test_the_force_between_two_sides_is_the_equation_of_its_file(name, coupling)
 def test_elements_stick_by_their_stiffness_and_slip_at_their_levels():
     effect = KNOWN["maxwell_slip"]
     stops = effect.stops()
-    own = {n: 0.1 * (i + 1) for i, n in enumerate(effect.symbols())}
-    values = {symbol: own[n] for n, symbol in effect.symbols().items()}
+    parameters = {n: 0.1 * (i + 1) for i, n in enumerate(effect.symbols())}
+    values = {symbol: parameters[n] for n, symbol in effect.symbols().items()}
     values |= {SIGNALS["velocity"]: 2.0, SIGNALS["level"]: 5.0}
-    levels = {i: own[f"level_{i}"] for i in (2, 3, 4)}
+    levels = {i: parameters[f"level_{i}"] for i in (2, 3, 4)}
     levels[1] = 5.0 - sum(levels.values())
     for i, level in levels.items():
         rate, stop = stops[f"force_{i}"]
-        assert float(rate.subs(values)) == pytest.approx(2.0 * own[f"stiffness_{i}"])
+        assert float(rate.subs(values)) == pytest.approx(2.0 * parameters[f"stiffness_{i}"])
         assert float(stop.subs(values)) == pytest.approx(level)

@@ -25,8 +25,8 @@ def facts(**changed):
         "film": 0.1,
     }
     body = {"inertia": 0.1, "coulomb.level": 0.5, "gravity.phase": 0.3}
-    given = {"axis": "revolute", "body": body, "places": places, "speeds": speeds, **known}
-    return RecordFacts(**given | changed)
+    arguments = {"axis": "revolute", "body": body, "places": places, "speeds": speeds, **known}
+    return RecordFacts(**arguments | changed)
 
 
 def test_one_sine_tells_no_force_of_the_place_from_one_of_the_speed_two_sines_do():
@@ -39,17 +39,17 @@ def test_one_sine_tells_no_force_of_the_place_from_one_of_the_speed_two_sines_do
 
 
 def test_friction_that_is_largest_where_gravity_is_may_be_friction_by_the_load():
-    said = follows_gravity(lambda place: 1.0 + np.abs(np.sin(place + 0.3)), facts())
-    assert said is not None and "load_dependent_friction" in said
+    sentence = follows_gravity(lambda place: 1.0 + np.abs(np.sin(place + 0.3)), facts())
+    assert sentence is not None and "load_dependent_friction" in sentence
     assert follows_gravity(lambda place: 2.0 - np.abs(np.sin(place + 0.3)), facts()) is None
     assert follows_gravity(lambda place: np.ones_like(place), facts()) is None, "nothing varies"
     assert follows_gravity(np.abs, facts(body={"inertia": 0.1})) is None, "there is no gravity"
 
 
 def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
-    given = {"stiffness_1": 9.0, "stiffness_2": 3.0, "stiffness_3": 27.0, "stiffness_4": 1.0}
-    given |= {"level_2": 0.2, "level_3": 0.3, "level_4": 1e-4}
-    values = softest_first(given, {"coulomb.level": 1.0})
+    parameters = {"stiffness_1": 9.0, "stiffness_2": 3.0, "stiffness_3": 27.0, "stiffness_4": 1.0}
+    parameters |= {"level_2": 0.2, "level_3": 0.3, "level_4": 1e-4}
+    values = softest_first(parameters, {"coulomb.level": 1.0})
     # the first carries 1 - 0.2 - 0.3; the fourth carries next to nothing and comes last
     assert [values[f"stiffness_{i}"] for i in (1, 2, 3, 4)] == [3.0, 9.0, 27.0, 1.0]
     levels = [values[f"level_{i}"] for i in (2, 3, 4)]
@@ -59,14 +59,14 @@ def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
 def test_what_slips_within_no_stretch_of_a_record_is_a_spring_though_two_records_lie_apart():
     """Of a pendulum that swung to each side in a record of its own, a hysteresis was named."""
     assert slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=2.0)) is None
-    said = slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=0.7))
-    assert said is not None and "never slips within the travel of 0.7 rad" in said
+    sentence = slip_is_observable("the bristle", [0.8], facts(travel=2.0, sweep=0.7))
+    assert sentence is not None and "never slips within the travel of 0.7 rad" in sentence
     soft = {"stiffness_1": 0.5, "stiffness_2": 5.0, "stiffness_3": 50.0, "stiffness_4": 500.0}
     values = SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0)  # element 1: 0.8 rad
     plausible = EFFECTS["maxwell_slip"].plausible
     assert plausible(values, facts(travel=2.0, sweep=2.0)) is None
-    said = plausible(values, facts(travel=2.0, sweep=1.0))
-    assert said is not None and "in one direction only within the travel of 1 rad" in said
+    sentence = plausible(values, facts(travel=2.0, sweep=1.0))
+    assert sentence is not None and "in one direction only within the travel of 1 rad" in sentence
     soft["stiffness_1"] = 0.1  # 4 rad: beside others that slip, this one is a spring
-    said = plausible(SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0), facts())
-    assert said is not None and "never slips within the travel of 1 rad" in said
+    sentence = plausible(SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0), facts())
+    assert sentence is not None and "never slips within the travel of 1 rad" in sentence

@@ -69,8 +69,8 @@ def modelled(*names):
         for n, p in EFFECTS[name].parameters.items()
         if p.optional and n not in PUBLIC[name]
     }
-    given = {n: v for n, v in VALUES.items() if n.split(".")[0] in names}
-    return body_of(*names, values=unknown | given)
+    values = {n: v for n, v in VALUES.items() if n.split(".")[0] in names}
+    return body_of(*names, values=unknown | values)
 
 
 def simulated(*names, step=STEP):
@@ -147,10 +147,10 @@ def test_a_tip_that_dry_friction_holds_rests_and_lets_the_spring_wind_up():
     t = np.arange(1000) * 1e-3
     x = 4e-4 * t  # m; the spring has 0.2 N after 0.5 s
     zero = Traced(np.zeros_like(x), np.zeros((0, len(x))))
-    given = {SIGNALS["position"]: Traced(x, zero.tangent), SIGNALS["acceleration"]: zero}
-    given |= {SIGNALS["velocity"]: Traced(np.full_like(x, 4e-4), zero.tangent)}
-    given |= {SIGNALS["interaction_force"]: zero}
-    hidden = ode_scan(held_tip, Along(given, effect.numbers(), (), 1e-3))
+    signals = {SIGNALS["position"]: Traced(x, zero.tangent), SIGNALS["acceleration"]: zero}
+    signals |= {SIGNALS["velocity"]: Traced(np.full_like(x, 4e-4), zero.tangent)}
+    signals |= {SIGNALS["interaction_force"]: zero}
+    hidden = ode_scan(held_tip, Along(signals, effect.numbers(), (), 1e-3))
     tip = hidden[held_tip.state_symbols()["tip_position"]].value
     stuck = t < 0.49
     stretch = 1e3 * (x - tip)
@@ -183,16 +183,16 @@ def test_a_tip_swings_as_its_transfer_function_says_at_ten_samples_a_cycle(frequ
     wave = np.exp(1j * w * t)
     motion = {"position": wave, "velocity": 1j * w * wave, "acceleration": -(w**2) * wave}
     none = np.zeros((0, len(t)))
-    given = {SIGNALS[n]: Traced(y.real, none) for n, y in motion.items()}
-    given[SIGNALS["interaction_force"]] = Traced(np.zeros(len(t)), none)
-    hidden = ode_scan(effect, Along(given, values, (), 1 / rate))
-    found = hidden[effect.state_symbols()["tip_position"]].value
+    signals = {SIGNALS[n]: Traced(y.real, none) for n, y in motion.items()}
+    signals[SIGNALS["interaction_force"]] = Traced(np.zeros(len(t)), none)
+    hidden = ode_scan(effect, Along(signals, values, (), 1 / rate))
+    tip = hidden[effect.state_symbols()["tip_position"]].value
     expected = ((k + 1j * w * c) / (k + 1j * w * c - m * w**2) * wave).real
-    settled = slice(1000, None)  # 2 s; the resonance rings for 0.1 s
-    assert np.abs(found - expected)[settled].max() < 2e-3 * np.abs(expected).max()
+    steady_rows = slice(1000, None)  # 2 s; the resonance rings for 0.1 s
+    assert np.abs(tip - expected)[steady_rows].max() < 2e-3 * np.abs(expected).max()
 
 
-def test_the_direction_of_motion_is_told_within_a_few_steps_of_every_reversal():
+def test_the_direction_of_motion_is_known_within_a_few_steps_of_every_reversal():
     motion = simulated("coulomb")
     moving = np.abs(motion.velocity) > 0.02  # m/s; 20 steps a sample
     assert moving.mean() > 0.3
@@ -222,10 +222,10 @@ def test_a_bristle_stiffer_than_the_encoder_sees_is_coulomb_friction():
         body_of("coulomb", "presliding", values={"presliding.stiffness": 1e7}), motion
     )
     plain = residual_along(body_of("coulomb"), motion)
-    told = motion.direction != 0
+    moving = motion.direction != 0
     # bristle length 0.05 um: it slides within a sample wherever the motion is told, except at
     # the first sample after a reversal
-    assert np.mean(np.abs(hard.friction.value - plain.friction.value)[told] < 1e-3 * LEVEL) > 0.97
+    assert np.mean(np.abs(hard.friction.value - plain.friction.value)[moving] < 1e-3 * LEVEL) > 0.97
 
 
 PARAMETERS = [(name, p) for name in NAMES for p in EFFECTS[name].parameters]
@@ -245,15 +245,15 @@ def test_tangents_are_the_slopes_of_the_residual(name, parameter, seed):
     body = body_of(*names)
     value = body.parameters[full].value
     # 0.1 s: forty time constants of a state whose start is not asked for its slope
-    settled = slice(100, None)
+    steady_rows = slice(100, None)
     # small enough that clipped samples stay clipped; large enough against rounding (1e-16/1e-6)
     h = 1e-6 * value
 
     def left(at):
-        return residual_along(body.with_values({full: at}), motion).residual.value[settled]
+        return residual_along(body.with_values({full: at}), motion).residual.value[steady_rows]
 
     slope = (left(value + h) - left(value - h)) / (2 * h)
-    tangent = residual_along(body, motion, [full]).residual.tangent[0, settled]
+    tangent = residual_along(body, motion, [full]).residual.tangent[0, steady_rows]
     assert np.linalg.norm(slope) > 0
     # second order of h is 1e-12; rounding 1e-9 of the residual; a sample or two may change sides
     assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope)
@@ -277,7 +277,7 @@ def test_tangents_of_friction_pass_through_presliding_and_actuation_together(nam
 
 
 @pytest.mark.parametrize("name", ["half", "a", "p", "z", "u", "free", "f"])
-def test_an_effect_of_a_users_own_may_be_called_as_it_likes(tmp_path, name):
+def test_an_effect_of_the_user_may_have_any_name(tmp_path, name):
     """Parameters `step` and `level`: with some names of the effect, words of the generated scan."""
     path = tmp_path / f"{name}.py"
     path.write_text(
@@ -291,10 +291,10 @@ def test_an_effect_of_a_users_own_may_be_called_as_it_likes(tmp_path, name):
         "                                                        - now.output) / p.step)},\n"
         '    absent={"step": 0.0, "level": 1.0})\n'
     )
-    own = load_effect(path)
+    effect = load_effect(path)
     motion = motion_along(*signals(3, 600))
     values = {f"{name}.step": Value(2e-3), f"{name}.level": Value(1.0)}
     lag = body_of("actuator_lag", values={"actuator_lag.time_constant": 2e-3})
-    made = Body(lag.axis, {"inertia": lag.parameters["inertia"], **values}, (own,))
-    found, expected = (residual_along(b, motion).residual.value for b in (made, lag))
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+    made = Body(lag.axis, {"inertia": lag.parameters["inertia"], **values}, (effect,))
+    along, expected = (residual_along(b, motion).residual.value for b in (made, lag))
+    np.testing.assert_allclose(along, expected, rtol=0, atol=1e-9 * np.abs(expected).max())

@@ -41,9 +41,9 @@ def coupled(tmp_path):
 
 def test_the_other_motion_is_a_channel_and_its_inertia_is_estimated(coupled):
     experiment = load_experiment(coupled)
-    found = fit(Model.from_experiment(experiment).with_effect("coupling"), experiment)
+    estimates = fit(Model.from_experiment(experiment).with_effect("coupling"), experiment)
     # the encoder of the device alone has errors: five of its standard errors are 1 %
-    assert found.parameters["device.coupling.inertia"].value == pytest.approx(SHARED, rel=0.01)
+    assert estimates.parameters["device.coupling.inertia"].value == pytest.approx(SHARED, rel=0.01)
 
 
 @pytest.mark.slow
@@ -51,8 +51,8 @@ def test_a_coupling_is_named_beside_what_it_is_mistaken_for(coupled):
     names = {"coulomb", "viscous", "coupling", "spring", "added_inertia", "bias", "cogging"}
     experiment = load_experiment(coupled)
     known = {n: e for n, e in EFFECTS.items() if n in names}
-    found = find_missing(experiment, Model.from_experiment(experiment, known))
-    assert [c.effect.name for c in found.missing] == ["coupling"]
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in diagnosis.missing] == ["coupling"]
 
 
 def test_a_law_on_a_channel_that_a_record_has_not_is_no_candidate(tmp_path):
@@ -60,8 +60,8 @@ def test_a_law_on_a_channel_that_a_record_has_not_is_no_candidate(tmp_path):
     experiment = load_experiment(folder)
     model = Model.from_experiment(experiment)
     motions = [s.motion for s in prepare(experiment, bandwidth=60.0).of("fit")]
-    tried = {c.effect.name for c in candidates(model, motions)}
-    assert "stribeck" in tried and tried.isdisjoint({"coupling", "viscous_temperature"})
+    names = {c.effect.name for c in candidates(model, motions)}
+    assert "stribeck" in names and names.isdisjoint({"coupling", "viscous_temperature"})
     with pytest.raises(ModelError, match='coupling: needs the channel "other_position", which fit'):
         fit(model.with_effect("coupling", values={"inertia": 0.1}), experiment)
     toml = folder / "experiment.toml"

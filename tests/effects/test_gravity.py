@@ -32,17 +32,23 @@ def undetermined(phase, low, high):
 
 @pytest.mark.parametrize("phase", [0.0, 0.3, np.pi])
 def test_near_the_hanging_place_a_spring_and_a_constant_force_would_do_as_well(phase):
-    said = undetermined(phase, -0.5 - phase, 0.5 - phase)
+    sentence = undetermined(phase, -0.5 - phase, 0.5 - phase)
     # sin x less its best line over half a radian either way: x^3 / 6 leaves 0.0032 (rms) of 0.28
-    assert "spring and a constant force" in said and "within 1.1 %" in said and "1 rad" in said
+    assert (
+        "spring and a constant force" in sentence
+        and "within 1.1 %" in sentence
+        and "1 rad" in sentence
+    )
 
 
 @pytest.mark.parametrize(("phase", "low", "high"), [(0.0, -2.0, 2.0), (0.0, 1.0, 2.2)])
-def test_over_a_wide_travel_or_near_the_level_gravity_is_told_by_its_curvature(phase, low, high):
+def test_over_a_wide_travel_or_near_the_level_gravity_is_recognised_by_its_curvature(
+    phase, low, high
+):
     assert undetermined(phase, low, high) is None
 
 
-def test_without_samples_or_travel_nothing_is_said():
+def test_without_samples_or_travel_nothing_is_reported():
     p = SimpleNamespace(amplitude=2.0, phase=0.0)
     still = facts(0.3, 0.3)
     assert EFFECTS["gravity"].undetermined(p, still) is None

@@ -46,7 +46,7 @@ def test_it_takes_energy_out_whoever_drives(force, v, mu, d, e):
 
 
 @given(force=st.floats(-50, 50), v=SPEEDS, mu=st.floats(0, 1), d=PARTS, e=st.floats(0, 5))
-def test_a_machine_seen_from_the_other_side_has_the_same_level(force, v, mu, d, e):
+def test_a_machine_viewed_from_the_other_side_has_the_same_level(force, v, mu, d, e):
     """Even where force and motion both turn round."""
     here, there = (level(s * force, s * v, mu=mu, d=d, e=e) for s in (1, -1))
     assert here == pytest.approx(there)

@@ -29,7 +29,7 @@ def facts(**changed):
     return RecordFacts(**known | {"speeds": 4.0 * np.cos(np.pi * places / 2)} | changed)
 
 
-def said(name, what, values, **changed):
+def objection_to(name, what, values, **changed):
     """What the effect says of such values: None, or why they do not deserve its name."""
     return getattr(EFFECTS[name], what)(SimpleNamespace(**values), facts(**changed))
 
@@ -85,7 +85,7 @@ DESERVED = [
     ("backlash", "tip_inertia", 0.49, 0.5, GAP, "no part"),
 ]
 #: the same of what the records cannot tell
-TOLD = [
+CASES = [
     ("friction_drift", "time_constant", 10.0, 10.5, {"fraction": 0.21}, "= 0.02 1/s"),
     ("stribeck", "extra_static_level", 7.0, 7.1, {"stribeck_velocity": 0.1}, "8.1 N"),
     ("transmission_compliance", "tip_inertia", HUM / 0.949**2, HUM / 0.951**2, RINGS, "47.5 Hz"),
@@ -96,29 +96,35 @@ TOLD = [
 
 @pytest.mark.parametrize(
     ("name", "parameter", "keeps", "loses", "others", "words", "what"),
-    [(*row, "plausible") for row in DESERVED] + [(*row, "undetermined") for row in TOLD],
+    [(*row, "plausible") for row in DESERVED] + [(*row, "undetermined") for row in CASES],
 )
 def test_an_effect_keeps_its_name_up_to_the_limit_and_loses_it_beyond(
     name, parameter, keeps, loses, others, words, what
 ):
-    assert said(name, what, {**others, parameter: keeps}) is None
-    assert words in said(name, what, {**others, parameter: loses})
+    assert objection_to(name, what, {**others, parameter: keeps}) is None
+    assert words in objection_to(name, what, {**others, parameter: loses})
 
 
 def test_where_the_motion_never_turns_round_no_loop_and_no_cycle_is_there():
-    assert "never reverses" in said("presliding", "plausible", {"stiffness": 10.0}, stroke=inf)
+    assert "never reverses" in objection_to(
+        "presliding", "plausible", {"stiffness": 10.0}, stroke=inf
+    )
     assert (
-        said("friction_drift", "plausible", {"fraction": 0.5, "time_constant": 0.1}, stroke=inf)
+        objection_to(
+            "friction_drift", "plausible", {"fraction": 0.5, "time_constant": 0.1}, stroke=inf
+        )
         is None
     )
 
 
-def test_nothing_is_said_where_nothing_can_be_held_against_the_records():
-    assert said("presliding", "plausible", {"stiffness": 0.0}) is None, "there is no bristle"
+def test_nothing_is_reported_where_nothing_can_be_held_against_the_records():
+    assert objection_to("presliding", "plausible", {"stiffness": 0.0}) is None, (
+        "there is no bristle"
+    )
     no_tip = {"inertia": 0.5, "coulomb.level": 1.0}
-    assert said("tip_friction", "plausible", {"level": 0.1}, body=no_tip) is None
+    assert objection_to("tip_friction", "plausible", {"level": 0.1}, body=no_tip) is None
     nowhere = np.zeros(0)
-    assert said("hardening_spring", "plausible", {"neutral": 9.0}, places=nowhere) is None
+    assert objection_to("hardening_spring", "plausible", {"neutral": 9.0}, places=nowhere) is None
 
 
 def test_one_deflection_within_the_travel_is_enough():
@@ -162,11 +168,11 @@ def test_bend_is_what_no_line_has():
 def test_three_places_tell_whether_friction_follows_the_torque_of_gravity():
     body = {"gravity.phase": 0.0}
 
-    def said_of(places):
+    def objection_at(places):
         return follows_gravity(lambda x: 1.0 + np.abs(np.sin(x)), facts(body=body, places=places))
 
-    assert "load_dependent_friction" in said_of(np.array([0.1, 0.5, 1.2]))
-    assert said_of(np.array([0.1, 0.5])) is None
+    assert "load_dependent_friction" in objection_at(np.array([0.1, 0.5, 1.2]))
+    assert objection_at(np.array([0.1, 0.5])) is None
 
 
 def test_a_structure_declares_neither_a_linear_form_nor_what_it_does_with_energy_by_itself():
@@ -184,7 +190,7 @@ def test_a_structure_declares_neither_a_linear_form_nor_what_it_does_with_energy
 
 def test_a_gain_over_the_place_has_no_name_where_each_place_was_passed_at_one_speed():
     values = {"fall": 0.1, "centre": 0.0}
-    assert "one speed only" in said("position_dependent_gain", "plausible", values)
+    assert "one speed only" in objection_to("position_dependent_gain", "plausible", values)
     apart = np.random.default_rng(0).uniform(-4.0, 4.0, 401)
-    assert said("position_dependent_gain", "plausible", values, speeds=apart) is None
-    assert said("position_dependent_gain", "plausible", values, places=np.zeros(0)) is None
+    assert objection_to("position_dependent_gain", "plausible", values, speeds=apart) is None
+    assert objection_to("position_dependent_gain", "plausible", values, places=np.zeros(0)) is None

@@ -11,7 +11,7 @@ from effects.along import (
     motion_along,
     signals,
 )
-from own_effect import OWN
+from users_effect import SOURCE
 
 from teleopdesign.effects import (
     EFFECTS,
@@ -25,14 +25,14 @@ from teleopdesign.realise.along_motion import residual_along
 
 
 @pytest.fixture
-def own(tmp_path):
+def users_effect(tmp_path):
     file = tmp_path / "own_drag.py"
-    file.write_text(OWN)
+    file.write_text(SOURCE)
     return file
 
 
-def test_a_users_file_becomes_an_effect_under_the_files_name(own):
-    known = catalogue([own])
+def test_a_users_file_becomes_an_effect_under_the_files_name(users_effect):
+    known = catalogue([users_effect])
     assert set(known) == {*EFFECTS, "own_drag"}
     effect = known["own_drag"]
     assert effect.title == "Own drag: a force in proportion to the square of velocity."
@@ -40,11 +40,11 @@ def test_a_users_file_becomes_an_effect_under_the_files_name(own):
     assert effect.expression() == drag * v * sp.Abs(v)
 
 
-def test_a_users_effect_takes_part_in_the_residual(own):
+def test_a_users_effect_takes_part_in_the_residual(users_effect):
     x, u, f = signals()
     motion = motion_along(x, u, f)
     bare = body_of()
-    body = bare.with_effect(load_effect(own), {"drag": 3.0})
+    body = bare.with_effect(load_effect(users_effect), {"drag": 3.0})
     force = (
         residual_along(bare, motion).residual.value - residual_along(body, motion).residual.value
     )
@@ -53,7 +53,7 @@ def test_a_users_effect_takes_part_in_the_residual(own):
 
 def test_a_users_effect_takes_the_place_of_one_of_the_same_name(tmp_path):
     file = tmp_path / "viscous.py"
-    file.write_text(OWN)
+    file.write_text(SOURCE)
     assert "drag" in catalogue([file])["viscous"].parameters
     assert "damping" in EFFECTS["viscous"].parameters, "the package's own stays"
 
@@ -82,27 +82,27 @@ BAD = {
 
 
 @pytest.mark.parametrize("mistake", BAD)
-def test_a_mistake_in_an_effect_file_is_one_line(own, mistake):
+def test_a_mistake_in_an_effect_file_is_one_line(users_effect, mistake):
     old, new, expected = BAD[mistake]
-    text = own.read_text()
+    text = users_effect.read_text()
     assert old in text
-    own.write_text(text.replace(old, new, 1))
+    users_effect.write_text(text.replace(old, new, 1))
     with pytest.raises(ModelError) as caught:
-        load_effect(own)
+        load_effect(users_effect)
     message = str(caught.value)
-    assert message.startswith(f"{own}: ")
+    assert message.startswith(f"{users_effect}: ")
     assert len(message.splitlines()) == 1
     assert re.search(expected, message), message
 
 
 @pytest.mark.parametrize("field", [f.name for f in fields(FitSearch)])
-def test_an_older_file_is_told_what_to_write_instead(own, field):
-    text = own.read_text()
+def test_an_older_file_is_refused_with_what_to_write_instead(users_effect, field):
+    text = users_effect.read_text()
     older = re.sub(r"(Parameter\([^)]*)\)", rf"\1, {field}=0)", text)
     assert older != text
-    own.write_text(older)
+    users_effect.write_text(older)
     with pytest.raises(ModelError, match=rf"search=FitSearch\({field}=") as refusal:
-        load_effect(own)
+        load_effect(users_effect)
     assert "\n" not in str(refusal.value)
 
 
@@ -110,6 +110,6 @@ def test_an_effect_file_that_is_not_there_or_has_no_name_is_one_line(tmp_path):
     with pytest.raises(ModelError, match="no such effect file"):
         load_effect(tmp_path / "nothing.py")
     file = tmp_path / "my-effect.py"
-    file.write_text(OWN)
+    file.write_text(SOURCE)
     with pytest.raises(ModelError, match='"my-effect" must be a name such as my_effect.py'):
         load_effect(file)

@@ -47,7 +47,7 @@ def integrate(
             first_step=min(step, float(times[at]) - t),
         )
         step = max(float(np.diff(solved.t).max()), 1e-6)  # an event may end a step where it begins
-        hits = [(found[0], i) for i, found in enumerate(solved.t_events) if len(found)]
+        hits = [(instants[0], i) for i, instants in enumerate(solved.t_events) if len(instants)]
         if hits:
             t, which = min(hits)
             y = solved.y_events[which][0]

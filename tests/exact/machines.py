@@ -48,7 +48,7 @@ class Bristle:
             a = (force(t) - spring * x - friction - self.viscous * v) / self.mass
             return v, a, bristle_rate
 
-        give = (self.level + self.extra) / self.stiffness
+        bristle_length = (self.level + self.extra) / self.stiffness
         first = 1 if force(1e-6) >= 0 else -1
         y = integrate(
             rate,
@@ -56,7 +56,7 @@ class Bristle:
             start=[0.0, 0.0, 0.0],
             mode=[first],
             times=times,
-            sizes=[1e-2, 1e-1, give],
+            sizes=[1e-2, 1e-1, bristle_length],
         )
         x, v, z = y.T
         return {"x": x, "v": v, "friction": self.friction(v, z, np.sign(v))[0]}

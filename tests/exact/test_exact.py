@@ -78,8 +78,8 @@ def test_the_late_spring_is_exact_in_thirty_digits():
         here = [x, v * d]
         here += [f * d**2 / mp.mpf(m.mass) / ((k + 1) * (k + 2)) for k, f in enumerate(force)]
         x, v, last = mp.fsum(here), mp.fsum(k * c for k, c in enumerate(here)) / d, here
-    found = m.motion(np.array([0.0, 19.5 * m.delay, 20 * m.delay]))["x"][-1]
-    assert abs(found - float(x)) < 1e-14
+    position = m.motion(np.array([0.0, 19.5 * m.delay, 20 * m.delay]))["x"][-1]
+    assert abs(position - float(x)) < 1e-14
 
 
 def test_the_relay_cycles_and_no_reading_is_within_rounding_of_a_flip():

@@ -36,8 +36,8 @@ def errors(machine, times=TIMES, **settings):
     both = pair(machine)
     exact = both.exact(times)
     result = simulate(both.diagram, duration=float(times[-1]), **both.arguments, **settings)
-    found = {n: result[s].values + more(times) for n, (s, more) in both.columns.items()}
-    return {n: float(np.abs(x - exact[n]).max() / np.ptp(exact[n])) for n, x in found.items()}
+    values = {n: result[s].values + more(times) for n, (s, more) in both.columns.items()}
+    return {n: float(np.abs(x - exact[n]).max() / np.ptp(exact[n])) for n, x in values.items()}
 
 
 def check(machine, force, position):

@@ -101,15 +101,15 @@ def test_the_force_of_a_law_is_that_of_fifty_digits(name, data):
     motion = Trajectory(lambda t: start + speed * t, lambda t: speed + 0.0 * t, lambda t: 0.0 * t)
     try:
         made = made.with_values(scaled)
-        found = simulate(
+        simulation = simulate(
             made, duration=0.004, motion={"L": motion}, computer="continuous", jit=False
         )
     except ModelError:
         return
-    t = mp.mpf(float(found["L"]["time"].values[-1]))
+    t = mp.mpf(float(simulation["L"]["time"].values[-1]))
     now = {
         "time": t,
-        "position": mp.mpf(float(found["L"].values[-1])),
+        "position": mp.mpf(float(simulation["L"].values[-1])),
         "velocity": mp.mpf(speed),
         "direction": mp.sign(speed),
         "acceleration": mp.mpf(0),
@@ -117,7 +117,7 @@ def test_the_force_of_a_law_is_that_of_fifty_digits(name, data):
     }
     # R_V is what the hand adds to move the body so
     force, rounding = force_and_rounding(made, now)
-    assert abs(mp.mpf(float(found["R_V"].values[-1])) - force) <= rounding
+    assert abs(mp.mpf(float(simulation["R_V"].values[-1])) - force) <= rounding
 
 
 @pytest.mark.slow
@@ -127,10 +127,10 @@ def test_a_bristle_over_twelve_decades_follows_dahl_or_is_refused(level, stiffne
     stroke = Stroke(level=level, stiffness=1e5 * stiffness, large=travel, small=0.4 * travel)
     both = pair(stroke)
     try:
-        found = simulate(both.diagram, duration=0.1, **both.arguments)["Z_M_friction"].values
+        simulation = simulate(both.diagram, duration=0.1, **both.arguments)["Z_M_friction"].values
     except ModelError:
         return
-    assert np.abs(found - both.exact(times)["friction"]).max() <= BRISTLE * level
+    assert np.abs(simulation - both.exact(times)["friction"]).max() <= BRISTLE * level
 
 
 def oscillation(mass, stiffness, damping, force, times):
@@ -154,7 +154,7 @@ def test_a_mass_on_a_spring_over_twelve_decades_moves_right_or_is_refused(mass, 
     device = body(INERTIA * mass, spring__stiffness=1e3 * stiffness, viscous__damping=2.0 * damping)
     times = 1e-3 * np.arange(11)
     try:
-        found = simulate(
+        simulation = simulate(
             haptic_interface(device), duration=0.01, inputs={"R_V": 1.0}, computer="continuous"
         )["L"].values
     except ModelError:
@@ -162,5 +162,5 @@ def test_a_mass_on_a_spring_over_twelve_decades_moves_right_or_is_refused(mass, 
     m, k, b = INERTIA * mass, 1e3 * stiffness, 2.0 * damping
     end, radians = times[-1], (k / m) ** 0.5 * times[-1]
     amplitude = min(2.0 / k, end**2 / (2 * m), end / b)
-    error = np.abs(found - oscillation(m, k, b, 1.0, times)).max()
+    error = np.abs(simulation - oscillation(m, k, b, 1.0, times)).max()
     assert error <= (AT_ONCE + EACH_RADIAN * radians) * amplitude

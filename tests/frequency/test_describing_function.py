@@ -40,51 +40,53 @@ def number(expression):
 
 
 def test_coulomb_friction_is_four_over_pi_at_any_frequency():
-    found = describing_function(body(0.0, coulomb__level=0.5), amplitude=AMPLITUDE, frequency=7.0)
+    response = describing_function(
+        body(0.0, coulomb__level=0.5), amplitude=AMPLITUDE, frequency=7.0
+    )
     expected = [number(closed_forms.coulomb(0.5, a)) for a in AMPLITUDE]
-    np.testing.assert_allclose(found, expected, rtol=1e-6)  # (pi/2000)^2/6 of the midpoint rule
+    np.testing.assert_allclose(response, expected, rtol=1e-6)  # (pi/2000)^2/6 of the midpoint rule
 
 
 @pytest.mark.parametrize("smoothing", [1e-3, 0.05, 2 * np.pi * 7.0 * 1e-3, 1.0])
 def test_smoothed_coulomb_friction_has_its_closed_form(smoothing):
     """Below, at and above a = V, at 7 Hz."""
     law = controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": smoothing})
-    found = describing_function(law, amplitude=AMPLITUDE, frequency=7.0)
+    response = describing_function(law, amplitude=AMPLITUDE, frequency=7.0)
     speed = 2 * np.pi * 7.0 * AMPLITUDE
     expected = [
         number(closed_forms.smoothed_coulomb(0.5, sp.Float(smoothing), a, sp.Float(v)))
         for a, v in zip(AMPLITUDE, speed, strict=True)
     ]
-    np.testing.assert_allclose(found, expected, rtol=1e-6)
+    np.testing.assert_allclose(response, expected, rtol=1e-6)
 
 
 @pytest.mark.parametrize("stiffness", [1e3, 1e5])
 def test_dahl_friction_has_its_closed_form(stiffness):
     law = controller("dahl", {"level": 0.5, "stiffness": stiffness})
-    found = describing_function(law, amplitude=AMPLITUDE, frequency=3.0)
+    response = describing_function(law, amplitude=AMPLITUDE, frequency=3.0)
     expected = [number(closed_forms.dahl(0.5, sp.Float(stiffness), sp.Float(a))) for a in AMPLITUDE]
     # second order in steps of 1/2000: 7e-5 where the bristle turns within a step, u = 4000
-    np.testing.assert_allclose(found, expected, rtol=2e-4)
+    np.testing.assert_allclose(response, expected, rtol=2e-4)
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT and EFFECTS[n].linear])
 def test_a_linear_effect_is_its_declared_impedance(name):
     effect = EFFECTS[name]
     made = body_of(*with_needs(name))
-    found = describing_function(made, amplitude=3e-3, frequency=4.0)
+    response = describing_function(made, amplitude=3e-3, frequency=4.0)
     s = sp.Symbol("s")
     expected = complex(made.impedance(s)[0].subs(made.numbers()).subs(s, 8j * np.pi))
     assert effect.linear
-    assert found == pytest.approx(expected, rel=1e-9)
+    assert response == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_linear_controller_is_its_transfer_function():
     """A lead compensator on the position, its hidden state closed over a cycle."""
     lead = controller("lead", {"gain": 2e4, "zero": 6.0, "pole": 300.0})
     s = 8j * np.pi
-    found = describing_function(lead, amplitude=3e-3, frequency=4.0)
+    response = describing_function(lead, amplitude=3e-3, frequency=4.0)
     # second order: (300/s times a step of 1/8000 s)^2/24 = 6e-5
-    assert found == pytest.approx(2e4 * (s + 6.0) / (s + 300.0), rel=1e-4)
+    assert response == pytest.approx(2e4 * (s + 6.0) / (s + 300.0), rel=1e-4)
 
 
 @pytest.mark.slow
@@ -92,10 +94,10 @@ def test_a_linear_controller_is_its_transfer_function():
 def test_every_dissipating_effect_takes_energy_from_a_sinusoid(name):
     """What opposes motion in phase with velocity is not negative where an effect claims that."""
     made = body_of(*with_needs(name))
-    found = describing_function(made, amplitude=5e-3, frequency=2.0)
-    assert np.isfinite(found)
+    response = describing_function(made, amplitude=5e-3, frequency=2.0)
+    assert np.isfinite(response)
     if EFFECTS[name].energy == "dissipates":
-        assert found.imag > -1e-12 * abs(found)  # springs: rounding
+        assert response.imag > -1e-12 * abs(response)  # springs: rounding
 
 
 @pytest.mark.parametrize("name", sorted(WITHOUT))
@@ -109,9 +111,9 @@ def against_simulation(name):
     simulated = measured_impedance(
         haptic_interface(made), amplitude=5e-3, frequency=4.0, computer="continuous"
     )
-    found = describing_function(made, amplitude=5e-3, frequency=4.0)
+    response = describing_function(made, amplitude=5e-3, frequency=4.0)
     # the simulated contact gives by 1e-5 of the amplitude, which turns friction by 0.4 %
-    assert simulated.data["impedance"].item() == pytest.approx(found, rel=5e-3)
+    assert simulated.data["impedance"].item() == pytest.approx(response, rel=5e-3)
 
 
 @pytest.mark.slow  # Coulomb friction is in test_measured_impedance.py

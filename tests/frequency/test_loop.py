@@ -54,14 +54,14 @@ def test_simulated_feedback_oscillates_just_beyond_its_delay_margin(share, grows
     """After a push, a fifth below and above the margin of 3.93 ms."""
     delay = share * delay_margin(loop_gain(interface()))
     period = 1e-4  # a hold of half of it is 1 % of the delay
-    found = simulate(
+    simulation = simulate(
         interface(),
         duration=0.4,
         inputs={"R_V": lambda t: 1e-3 * (t < 0.01)},
         computer=Sampling(period=period, delay=round(delay / period) * period),
         jit=False,
     )
-    error = np.abs(found["E"].values)
+    error = np.abs(simulation["E"].values)
     early, late = error[200:1000].max(), error[-1000:].max()
     assert bool(late > early) is grows
 
@@ -144,8 +144,8 @@ def test_a_dead_time_in_the_loop_is_exact():
     late = 2e-3
     device = body(0.15).with_effect(EFFECTS["actuation_delay"], {"delay": late})
     with_delay = haptic_interface(device, hand=body(0.5), force_feedback=FEEDBACK)
-    found = delay_margin(loop_gain(with_delay))
-    assert found == pytest.approx(delay_margin(loop_gain(interface())) - late, rel=1e-9)
+    response = delay_margin(loop_gain(with_delay))
+    assert response == pytest.approx(delay_margin(loop_gain(interface())) - late, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -186,7 +186,7 @@ def narrow(time):
 
 
 @pytest.mark.parametrize("time", [0.0, 1e-6, 0.1])
-def test_a_resonance_is_seen_though_it_is_narrower_than_a_grid(time):
+def test_a_resonance_is_detected_though_it_is_narrower_than_a_grid(time):
     """Above it the gain is 1 at a phase of -arccos(1/10)."""
     expected = (np.pi - np.arccos(0.1)) / 7.0
     assert delay_margin(narrow(time)) == pytest.approx(expected - time, rel=1e-4)

@@ -22,16 +22,16 @@ def coulomb():
     return measured_impedance(diagram, amplitude=[1e-3, 4e-3, 1e-2], frequency=[2.0, 5.0])
 
 
-def test_a_linear_mechanism_has_its_own_impedance_at_every_amplitude():
-    found = measured_impedance(
+def test_a_linear_mechanism_has_the_same_impedance_at_every_amplitude():
+    impedance = measured_impedance(
         haptic_interface(LINEAR), amplitude=[1e-4, 1e-2], frequency=[0.5, 8.0, 60.0]
     )
     s = 2j * np.pi * np.array([0.5, 8.0, 60.0])
     expected = 0.2 * s**2 + 3.0 * s + 500.0
     # exact but for (omega step)^2/8 of reading cycles between steps
-    np.testing.assert_allclose(found.data["impedance"][0, :, 0], expected, rtol=1e-4)
-    assert float(found.spread()["size"].max()) < 1e-6
-    assert float(found.data["distortion"].max()) < 1e-3
+    np.testing.assert_allclose(impedance.data["impedance"][0, :, 0], expected, rtol=1e-4)
+    assert float(impedance.spread()["size"].max()) < 1e-6
+    assert float(impedance.data["distortion"].max()) < 1e-3
 
 
 def test_coulomb_friction_and_mass_are_as_the_describing_function_says(coulomb):
@@ -53,29 +53,29 @@ def test_cycles_settle_behind_a_slow_filter():
     """At 100 Hz a filter of 20 Hz loses 72 % a cycle: more than the first four cycles."""
     feedback = controller("low_pass", {"bandwidth": 20.0})
     diagram = haptic_interface(LINEAR, force_feedback=feedback, analog=("H",))
-    found = measured_impedance(diagram, amplitude=1e-3, frequency=100.0)
+    impedance = measured_impedance(diagram, amplitude=1e-3, frequency=100.0)
     expected = bode(diagram, output="E", input="L", given="L", frequency=np.array([100.0]))
-    assert float(found.data["unsettled"].max()) < 3e-4
+    assert float(impedance.data["unsettled"].max()) < 3e-4
     # 0.1 %: what the tolerance of settling allows
-    np.testing.assert_allclose(found.data["impedance"].item(), expected.values()[0], rtol=1e-3)
+    np.testing.assert_allclose(impedance.data["impedance"].item(), expected.values()[0], rtol=1e-3)
 
 
 def test_amplitude_can_follow_a_profile():
-    found = measured_impedance(
+    impedance = measured_impedance(
         haptic_interface(LINEAR), amplitude=falling_profile(0.01), frequency=[1.0, 10.0]
     )
-    assert found.on_profile
-    np.testing.assert_allclose(found.data["amplitude"], [0.01, 0.01 * 10**-0.8])
+    assert impedance.on_profile
+    np.testing.assert_allclose(impedance.data["amplitude"], [0.01, 0.01 * 10**-0.8])
     with pytest.raises(ModelError, match="function of frequency"):
-        found.spread()
+        impedance.spread()
 
 
-def test_a_revolute_axis_has_its_own_units():
+def test_a_revolute_axis_has_revolute_units():
     # of the structure of LINEAR, whose kernel is there
     wheel = Body("revolute", LINEAR.parameters, LINEAR.effects)
-    found = measured_impedance(haptic_interface(wheel), amplitude=0.1, frequency=2.0)
-    assert found.data["impedance"].attrs["units"] == "N*m/rad"
-    assert found.data["amplitude"].attrs["units"] == "rad"
+    impedance = measured_impedance(haptic_interface(wheel), amplitude=0.1, frequency=2.0)
+    assert impedance.data["impedance"].attrs["units"] == "N*m/rad"
+    assert impedance.data["amplitude"].attrs["units"] == "rad"
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_a_revolute_axis_has_its_own_units():
         ({"force": "F"}, 'no signal "F"'),
     ],
 )
-def test_a_wrong_request_is_said_in_one_line(arguments, message):
+def test_a_wrong_request_is_reported_in_one_line(arguments, message):
     with pytest.raises(ModelError, match=message):
         measured_impedance(
             haptic_interface(LINEAR), **({"amplitude": 1e-3, "frequency": 1.0} | arguments)
@@ -126,8 +126,8 @@ def test_a_linear_loop_simulated_agrees_with_its_symbolic_response():
         body(viscous__damping=5.0), hand=LINEAR, force_feedback=feedback, analog=("H",)
     )
     f = np.array([0.5, 2.0, 5.0, 20.0, 100.0])
-    found = simulated_response(diagram, amplitude=1.0, frequency=f)
-    np.testing.assert_allclose(found.values(), bode(diagram, frequency=f).values(), rtol=1e-3)
+    response = simulated_response(diagram, amplitude=1.0, frequency=f)
+    np.testing.assert_allclose(response.values(), bode(diagram, frequency=f).values(), rtol=1e-3)
 
 
 @pytest.mark.slow
@@ -135,7 +135,7 @@ def test_how_ideal_the_contact_is_hardly_matters():
     """LuGre beside the four cases: halving the give moves sizes by less than 0.1 dB."""
     cases = four_cases(world_haptics_2005()) | {"LuGre": haptic_interface(body(**LUGRE))}
     coarse, fine = (
-        measured_impedance(cases, amplitude=[5e-4, 1e-2], frequency=[2.0, 15.0], give=give)
-        for give in (1e-5, 5e-6)
+        measured_impedance(cases, amplitude=[5e-4, 1e-2], frequency=[2.0, 15.0], give=width)
+        for width in (1e-5, 5e-6)
     )
     assert float(np.abs(coarse.decibel - fine.decibel).max()) < 0.1

@@ -29,11 +29,11 @@ def closed(plant, law, **options):
 @pytest.mark.parametrize("law", [LEAD, INTEGRAL])
 def test_responses_and_margins_are_those_of_the_system_that_was_measured(plant, law):
     """Exact at the measured frequencies; the margin to 1 %: lines between 100 a decade."""
-    known, found = closed(plant, law), closed(control.frd(plant, W), law)
+    known, response = closed(plant, law), closed(control.frd(plant, W), law)
     f = W[::7] / (2 * np.pi)
-    matrices = [matrix_response(d, ["x"], ["f"], f).data.values.ravel() for d in (found, known)]
+    matrices = [matrix_response(d, ["x"], ["f"], f).data.values.ravel() for d in (response, known)]
     np.testing.assert_allclose(*matrices, rtol=1e-9)
-    loops = [loop_gain(d, controller="K") for d in (found, known)]
+    loops = [loop_gain(d, controller="K") for d in (response, known)]
     np.testing.assert_allclose(loops[0](1j * W), loops[1](1j * W), rtol=1e-9)
     try:
         expected = delay_margin(loops[1])
@@ -72,7 +72,7 @@ def test_a_measured_loop_is_stable_where_its_poles_say_so(seed):
 
 
 def test_what_it_does_not_tell_is_one_line():
-    found = closed(control.frd(FREE, W), LEAD)
+    response = closed(control.frd(FREE, W), LEAD)
     short = closed(control.frd(FREE, np.geomspace(0.3, 5.0, 40)), LEAD)
     turning = control.frd(LEAD(1j * W) * np.exp(2.6j * np.arange(len(W))), W)
     few = closed(control.frd(FREE, W), turning)
@@ -80,9 +80,9 @@ def test_what_it_does_not_tell_is_one_line():
     for make, words in (
         (lambda: delay_margin(loop_gain(short, controller="K")), "measure further"),
         (lambda: delay_margin(loop_gain(few, controller="K")), "too few frequencies"),
-        (lambda: simulate(found, duration=0.01), "tells nothing of the steps in time"),
+        (lambda: simulate(response, duration=0.01), "tells nothing of the steps in time"),
         (
-            lambda: matrix_response(found, ["x"], ["f"], np.array([900.0])),
+            lambda: matrix_response(response, ["x"], ["f"], np.array([900.0])),
             "measured from 0.3 to 3000 rad/s",
         ),
         (lambda: closed(control.frd(-FREE, W), LEAD), "show a mass of -0.1"),
@@ -101,5 +101,5 @@ def test_what_it_does_not_tell_is_one_line():
 def test_nothing_is_proved_of_it_and_the_claim_says_why():
     claims = diagram_claims(closed(control.frd(FREE, W), LEAD), rng=np.random.default_rng(1))
     assert [one.claim.status for one in claims.claims] == ["unknown"]
-    said = str(claims.claims[0].claim.verdict)
-    assert "P_rest is a measured frequency response" in said and "right half plane" in said
+    text = str(claims.claims[0].claim.verdict)
+    assert "P_rest is a measured frequency response" in text and "right half plane" in text

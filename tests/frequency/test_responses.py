@@ -40,7 +40,7 @@ def test_python_control_data_and_arrays_give_the_same_response(model):
         (control.frd(np.ones((2, 2, 3)), [1, 2, 3]), None, "2 inputs and 2 outputs"),
     ],
 )
-def test_wrong_data_is_said_in_one_line(values, frequency, message):
+def test_wrong_data_is_reported_in_one_line(values, frequency, message):
     with pytest.raises(ModelError, match=message):
         measured_response(values, frequency=frequency)
 

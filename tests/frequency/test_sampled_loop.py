@@ -52,9 +52,9 @@ def test_a_sampled_gain_of_a_force_bears_the_gain_of_one_sample():
 def test_simulated_force_feedback_grows_just_beyond_its_gain_margin(share, grows):
     diagram = interface(gain(share * gain_margin(loop_gain(interface(gain(1.0))))))
     pushed = {"R_V": lambda t: 1e-3 * (t < 0.01)}
-    found = simulate(diagram, duration=0.1, inputs=pushed, computer=Sampling(period=PERIOD),
+    simulation = simulate(diagram, duration=0.1, inputs=pushed, computer=Sampling(period=PERIOD),
                      jit=False)  # fmt: skip
-    error = np.abs(found["E"].values)
+    error = np.abs(simulation["E"].values)
     early, late = error[: len(error) // 3].max(), error[-len(error) // 5 :].max()
     assert bool(late > early) is grows
 
@@ -84,7 +84,7 @@ def test_a_dead_time_of_part_of_a_sample_counts_as_it_is():
             assert loop.with_gain(factor).grows() == (largest >= 1)
 
 
-def test_slow_poles_sampled_fast_are_told_from_each_other():
+def test_slow_poles_sampled_fast_are_distinguished_from_each_other():
     """Poles at -1e-3 and -2e-3 1/s, a sample of 1e-5 s: 1e-8 from z = 1. As without samples."""
     below = np.polymul([1, 1e-3], [1, 2e-3])
     exact = tuple(Fraction(repr(float(c))) for c in below)
@@ -129,7 +129,7 @@ def test_where_others_sample_too_margins_are_called_approximate():
 
 
 @pytest.mark.slow
-def test_a_window_of_dead_times_about_a_whole_sample_is_seen():
+def test_a_window_of_dead_times_about_a_whole_sample_is_detected():
     """Late by 3/8 of a sample; it grows from 0.623 to 0.65 of a sample more, then at 0.875 again.
 
     Drawn by the attack; the crossing beyond the window was called the margin.

@@ -373,9 +373,9 @@ def main(arguments: list[str] | None = None) -> int:
         folder, truth = a.folder / "cases" / case.name, a.folder / "truth" / f"{case.name}.json"
         write_files(case, folder, truth)
         shown = "+".join(f"{h.effect}@{h.at}" for h in case.hidden) or "-"
-        taken = time.perf_counter() - began
+        spent = time.perf_counter() - began
         print(
-            f"{case.name} {level:8s} {shown:40s} {case.figures['ratio']:7.2f} floors {taken:5.1f} s"
+            f"{case.name} {level:8s} {shown:40s} {case.figures['ratio']:7.2f} floors {spent:5.1f} s"
         )
     return 0
 

@@ -19,18 +19,18 @@ def look_alikes(effect, explains, *, excitation="normal", hand=True, more=()):
         scales=[Scale(1.0, 0.1, 0.01, 12.0, 1e-6)],
     )
     values = [{"inertia": 0.1, "level": 0.3, "damping": 1.0}]
-    asked = []
+    attempts = []
 
     def error(changed, added, steps):
-        asked.extend(added[0])
+        attempts.extend(added[0])
         return 0.02 if added[0][0] in explains else 0.08
 
     hidden = [Hidden(e, 0, "device", shape(np.random.default_rng(1))) for e in (effect, *more)]
-    found = groups(machine, hidden, values, error=error, true=0.02, excitation=excitation)
-    return [[e["effect"] for e in g] for g in found], set(asked)
+    classes = groups(machine, hidden, values, error=error, true=0.02, excitation=excitation)
+    return [[e["effect"] for e in g] for g in classes], set(attempts)
 
 
-def test_twins_cannot_be_told_by_any_record():
+def test_twins_cannot_be_distinguished_by_any_record():
     assert look_alikes("bias", ())[0] == [["bias", "coulomb_asymmetry"]]
     assert look_alikes("spring", (), more=["coulomb_asymmetry"])[0] == [
         ["coulomb_asymmetry", "bias"]

@@ -218,12 +218,12 @@ def draw(effect: str, base: Values, scale: Scale, strength: float, q: Values) ->
         return {"gravity": 2.0 * s * f, "gravity_phase": turn}
     if effect == "maxwell_slip":
         # two or three elements: a stiff one, and softer ones that slip after a longer way
-        give, third = max(0.15 * s * d, 1.5 * scale.resolution), 0.25 if b > 0.5 else 0.0
+        slip_length, third = max(0.15 * s * d, 1.5 * scale.resolution), 0.25 if b > 0.5 else 0.0
         second = 0.3 + 0.2 * a
         return {
-            "slip_k1": (1 - second - third) * level / give,
-            "slip_k2": second * level / (4.0 * give), "slip_w2": second * level,
-            "slip_k3": third * level / (14.0 * give), "slip_w3": third * level,
+            "slip_k1": (1 - second - third) * level / slip_length,
+            "slip_k2": second * level / (4.0 * slip_length), "slip_w2": second * level,
+            "slip_k3": third * level / (14.0 * slip_length), "slip_w3": third * level,
             "slip_k4": 0.0, "slip_w4": 0.0,
         }  # fmt: skip
     if effect == "shear_thinning":

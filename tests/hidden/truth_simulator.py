@@ -221,8 +221,8 @@ def _drift(p, s, t, dt, u):
         sign = 1.0 if dx > 0.0 else -1.0
         level = _level(p, x, t + 0.5 * dt, _acting(p, x, middle), w, sign)
         if level > 0.0:
-            give = sign * level / p[SIG]
-            s[2] = give + (s[2] - give) * math.exp(-p[SIG] * abs(dx) / level)
+            bend = sign * level / p[SIG]
+            s[2] = bend + (s[2] - bend) * math.exp(-p[SIG] * abs(dx) / level)
             if p[SK1] > 0.0:
                 _slipping(p, s, level, dx)
         else:
@@ -230,8 +230,8 @@ def _drift(p, s, t, dt, u):
     s[0] += dx
     s[5] += s[6] * dt
     if p[TFC] > 0.0 and s[6] != 0.0:
-        give = math.copysign(p[TFC] / p[TSIG], s[6])
-        s[9] = give + (s[9] - give) * math.exp(-p[TSIG] * abs(s[6] * dt) / p[TFC])
+        bend = math.copysign(p[TFC] / p[TSIG], s[6])
+        s[9] = bend + (s[9] - bend) * math.exp(-p[TSIG] * abs(s[6] * dt) / p[TFC])
     s[7] += s[8] * dt
 
 

@@ -16,32 +16,32 @@ SPEEDS = (0.02, 0.04, 0.08)
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
+def levels(tmp_path_factory):
     folder = write(tmp_path_factory.mktemp("runs") / "three", SPEEDS)
     return coulomb_level(td.load_experiment(folder))
 
 
-def test_every_run_is_found_once_and_nothing_else(found):
-    assert [round(r.velocity, 3) for r in found.runs] == [s * w for s in SPEEDS for w in (1, -1)]
+def test_every_run_is_detected_once_and_nothing_else(levels):
+    assert [round(r.velocity, 3) for r in levels.runs] == [s * w for s in SPEEDS for w in (1, -1)]
     # a run of 0.08 m less its ends
-    for run in found.runs:
+    for run in levels.runs:
         assert 0.6 * 0.08 < np.ptp(run.position) <= 0.08
         assert np.ptp(np.diff(run.time)) < 1e-9
 
 
-def test_level_and_damping_are_within_three_standard_errors(found):
-    level, error = found.level
+def test_level_and_damping_are_within_three_standard_errors(levels):
+    level, error = levels.level
     assert abs(level - LEVEL) < 3 * error
-    assert abs(found.line.damping - DAMPING) < 3 * found.line.damping_error
+    assert abs(levels.line.damping - DAMPING) < 3 * levels.line.damping_error
     # and these are of use
     assert error < 0.05 * LEVEL
 
 
-def test_gravity_cancels_and_is_told(found):
-    for one in found.speeds:
+def test_gravity_cancels_and_is_reported(levels):
+    for one in levels.speeds:
         assert abs(one.middle - BIAS) < 4 * one.middle_error
-    assert found.forward.level == pytest.approx(LEVEL + BIAS, abs=4 * found.forward.level_error)
-    assert found.backward.level == pytest.approx(LEVEL - BIAS, abs=4 * found.backward.level_error)
+    assert levels.forward.level == pytest.approx(LEVEL + BIAS, abs=4 * levels.forward.level_error)
+    assert levels.backward.level == pytest.approx(LEVEL - BIAS, abs=4 * levels.backward.level_error)
 
 
 def test_a_spring_cancels_where_both_runs_cover_the_same_travel(tmp_path):
@@ -85,13 +85,13 @@ def test_a_record_without_steady_motion_says_so():
         coulomb_level(td.load_experiment(td.example("rod")), shortest=2.0)
 
 
-def test_results_are_written_with_units(found, tmp_path):
-    found.to_json(tmp_path / "level.json")
+def test_results_are_written_with_units(levels, tmp_path):
+    levels.to_json(tmp_path / "level.json")
     content = json.loads((tmp_path / "level.json").read_text())
-    assert content["coulomb_level"] == list(found.level)
+    assert content["coulomb_level"] == list(levels.level)
     assert content["units"] == {"force": "N", "velocity": "m/s"}
-    assert len(content["runs"]) == len(found.runs)
-    (axis,) = found.plot().axes
+    assert len(content["runs"]) == len(levels.runs)
+    (axis,) = levels.plot().axes
     assert (axis.get_xlabel(), axis.get_ylabel()) == (
         "velocity (m/s)",
         r"force that moves it (N)",
@@ -99,22 +99,22 @@ def test_results_are_written_with_units(found, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_diagnosis_of_the_same_record_agrees(found, tmp_path):
+def test_the_diagnosis_of_the_same_record_agrees(levels, tmp_path):
     experiment = td.load_experiment(write(tmp_path / "same", SPEEDS))
     fitted = td.fit(td.Model.from_experiment(experiment), experiment)
     value = fitted.parameters["device.coulomb.level"]
-    level, error = found.level
+    level, error = levels.level
     assert abs(level - value.value) < 3 * np.hypot(error, value.stderr)
 
 
 def test_recorded_positioning_system_agrees_with_its_diagnosis():
     """EMPS, 24 runs at one speed and its like: diagnosis 19.99 +- 0.17 N, 208.5 +- 2 N s/m."""
-    found = coulomb_level(td.load_experiment(shared_folder("data") / "emps"))
-    level, error = found.level
+    levels = coulomb_level(td.load_experiment(shared_folder("data") / "emps"))
+    level, error = levels.level
     assert abs(level - 19.99) < 3 * np.hypot(error, 0.17)
-    damping = (found.forward.damping + found.backward.damping) / 2
+    damping = (levels.forward.damping + levels.backward.damping) / 2
     assert damping == pytest.approx(208.5, rel=0.1)
-    (speed,) = found.speeds
+    (speed,) = levels.speeds
     # half the difference at one speed: level and damping together, to a few percent
     assert speed.friction == pytest.approx(19.99 + 208.5 * speed.speed, rel=0.05)
 
@@ -131,8 +131,8 @@ def test_recorded_insertion_axis_runs_at_its_commanded_speeds(tmp_path):
     experiment = td.load_experiment(tmp_path)
     out = {round(r.velocity, 2) for r in steady_runs(experiment) if r.direction > 0}
     assert out == {round(0.01 * k, 2) for k in range(1, 16)}
-    found = coulomb_level(experiment)
-    (both,) = found.speeds
+    levels = coulomb_level(experiment)
+    (both,) = levels.speeds
     # the diagnosis of the Fourier paths of another day: 0.40 to 0.81 N along the travel, 1.6 N s/m
     assert both.speed == pytest.approx(0.097, abs=0.002)
     assert 0.5 < both.friction < 0.8

@@ -41,15 +41,15 @@ def test_on_ideal_coulomb_friction_no_stiffness_oscillates():
 @pytest.mark.parametrize("presliding", [5e3, 2e4])
 def test_on_presliding_it_is_the_stiffness_of_contact_and_hand(presliding):
     """Small motion is a spring sigma_p + k_H - sigma_D: gone at sigma_D = sigma_p + k_H."""
-    found = largest(loop(presliding))
+    stiffness = largest(loop(presliding))
     # the kick leaves the straight part of the bristle: its spring is softer there
-    assert found.stiffness == pytest.approx(presliding + HAND, rel=0.08)
-    assert found.oscillates <= 1.02 * found.stiffness * (1 + 1e-9)
+    assert stiffness.stiffness == pytest.approx(presliding + HAND, rel=0.08)
+    assert stiffness.oscillates <= 1.02 * stiffness.stiffness * (1 + 1e-9)
     # P43 is stricter: passive for any hand
-    assert found.stiffness > presliding * (CANCELLED / LEVEL) ** 0.5
+    assert stiffness.stiffness > presliding * (CANCELLED / LEVEL) ** 0.5
 
 
-def test_the_ends_of_the_range_are_told():
+def test_the_ends_of_the_range_are_reported():
     assert largest(loop(5e3), largest=1e3).stiffness == float("inf")
     assert largest(loop(5e3), smallest=2e4).stiffness == 0.0
 

@@ -26,8 +26,8 @@ def made(data=DATA, **more):
 
 @pytest.mark.parametrize("mistake", REFUSED)
 def test_an_argument_that_cannot_be_meant_is_refused(mistake):
-    arguments, said = REFUSED[mistake]
-    with pytest.raises(ExperimentError, match=said):
+    arguments, message = REFUSED[mistake]
+    with pytest.raises(ExperimentError, match=message):
         made(**arguments)
 
 
@@ -37,7 +37,7 @@ def test_two_numbers_are_one_span():
     assert [len(r.time) for r in one.records] == [1500, 1500]
 
 
-def test_a_file_in_place_of_arrays_is_told_how_it_is_read():
+def test_a_file_in_place_of_arrays_is_refused_with_how_to_read_it():
     with pytest.raises(ExperimentError, match="found str, .*of a file: teleopdesign new FILE"):
         made("log.csv")
 

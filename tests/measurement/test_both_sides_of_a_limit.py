@@ -39,7 +39,7 @@ def clock_with(stamps, h):
 
 @pytest.mark.parametrize("truth", [0.0, 1.0])
 @pytest.mark.parametrize("noise", [0.3, 1.0])
-def test_whether_stamps_are_true_is_told_as_surely_as_it_scatters(truth, noise):
+def test_whether_stamps_are_true_is_as_sure_as_they_scatter(truth, noise):
     """Over draws, the coefficient scatters about the truth by the error that is given with it."""
     h, n, off = 1e-3, 1500, []
     for seed in range(25):
@@ -47,8 +47,8 @@ def test_whether_stamps_are_true_is_told_as_surely_as_it_scatters(truth, noise):
         late = 0.1 * h * random.standard_normal(n)
         when = h * np.arange(n) + truth * late
         x = np.sin(2 * np.pi * 1.5 * when) + noise * 1e-3 * random.standard_normal(n)
-        told, error = stamps_are_true(clock_with(h * np.arange(n) + late, h), [x])
-        off.append((told - truth) / error)
+        are_true, error = stamps_are_true(clock_with(h * np.arange(n) + late, h), [x])
+        off.append((are_true - truth) / error)
     spread = float(np.sqrt(np.mean(np.square(off))))
     # 25 draws tell a spread to 14 %; six samples count as one, for neighbours share readings
     assert 0.3 < spread < 1.5
@@ -68,16 +68,16 @@ def test_a_command_that_changes_between_rows_is_its_mean_over_each_sample(phase,
     held = random.standard_normal(n + 2)  # of cell -1, 0, 1, ...
     at = np.arange(n) + scatter * random.uniform(-1.0, 1.0, n)
     values = held[np.floor(at - phase).astype(int) + 1]
-    found, _ = commands_on_clock(values, clock_with(h * at, h), phase)
+    commands, _ = commands_on_clock(values, clock_with(h * at, h), phase)
     fine = (np.arange(200) + 0.5) / 200
     times = np.arange(n)[:, None] + fine
     mean = held[np.floor(times - phase).astype(int) + 1].mean(axis=1)
-    seen = np.isin(np.arange(-1, n + 1), np.floor(at - phase))
+    rows = np.isin(np.arange(-1, n + 1), np.floor(at - phase))
     # where a row or its neighbour came too late to see a command, a line stands for it
-    whole = seen[:-2] & seen[1:-1] & seen[2:]
+    whole = rows[:-2] & rows[1:-1] & rows[2:]
     inside = np.flatnonzero(whole)[2:-2]
     assert len(inside) > (0.25 if scatter else 0.98) * n
-    assert found[inside] == pytest.approx(mean[inside], abs=1e-9)
+    assert commands[inside] == pytest.approx(mean[inside], abs=1e-9)
 
 
 # rows of a slower source
@@ -102,7 +102,7 @@ def test_rows_that_repeat_at_random_are_those_of_no_slower_source():
 
 @pytest.mark.parametrize("interpolates", [True, False])
 @pytest.mark.parametrize("coarser", [True, False])
-def test_readings_between_the_stated_steps_are_said_unless_they_were_interpolated(
+def test_readings_between_the_stated_steps_are_reported_unless_they_were_interpolated(
     interpolates, coarser
 ):
     random = np.random.default_rng(1)
@@ -121,12 +121,12 @@ def test_readings_between_the_stated_steps_are_said_unless_they_were_interpolate
     position = replace(position, record=replace(position.record, reading=(step,)))
     if coarser:  # what lies further apart than the stated steps was not made by interpolation
         position = replace(position, step=2e-3)
-    found = check_steps(position, [])
+    findings = check_steps(position, [])
     if interpolates and not coarser:
-        assert found == []
+        assert findings == []
     else:
-        assert "is not read in steps of the stated 0.001 m" in found[0].sentence
-        assert found[0].concern == ("warning" if coarser else "note")
+        assert "is not read in steps of the stated 0.001 m" in findings[0].sentence
+        assert findings[0].concern == ("warning" if coarser else "note")
 
 
 # tables
@@ -263,15 +263,15 @@ def test_beyond_its_reach_nothing_is_left_of_a_row_and_within_half_of_it_somethi
 )
 def test_windows_hold_every_row_with_what_it_reaches_and_do_not_overlap(rows, far, m):
     rows = np.array(sorted(rows))
-    found = windows(rows, 500, m, far)
+    spans = windows(rows, 500, m, far)
     for row in rows:
-        (inside,) = [w for w in found if w[0] <= row < w[1]]
+        (inside,) = [w for w in spans if w[0] <= row < w[1]]
         assert inside[0] <= max(row - far, 0) and inside[1] >= min(row + far + 1, 500)
-    assert all(a[1] <= b[0] for a, b in zip(found, found[1:], strict=False))
+    assert all(a[1] <= b[0] for a, b in zip(spans, spans[1:], strict=False))
     # what is mirrored at an end lies within the window there
-    if found[0][0] == 0:
-        assert found[0][1] >= min(m + 1, 500)
-    if found[-1][1] == 500:
-        assert found[-1][0] <= max(499 - m, 0)
-    assert found == [(0, 500)] or sum(b - a for a, b in found) <= 0.7 * 500
-    assert json.dumps(found)  # plain numbers
+    if spans[0][0] == 0:
+        assert spans[0][1] >= min(m + 1, 500)
+    if spans[-1][1] == 500:
+        assert spans[-1][0] <= max(499 - m, 0)
+    assert spans == [(0, 500)] or sum(b - a for a, b in spans) <= 0.7 * 500
+    assert json.dumps(spans)  # plain numbers

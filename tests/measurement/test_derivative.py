@@ -95,8 +95,8 @@ def test_what_goes_further_than_its_jumps_does_not_wrap():
 @settings(max_examples=20)
 def test_a_velocity_in_any_unit_is_a_factor_times_the_derivative(factor, sign, offset):
     v = sign * factor * (rate_of(SWING) + offset)
-    found, alike = derivative_factor(3.0 + SWING, v, H)
-    assert found == pytest.approx(sign * factor, rel=1e-3)
+    estimate, alike = derivative_factor(3.0 + SWING, v, H)
+    assert estimate == pytest.approx(sign * factor, rel=1e-3)
     assert alike == pytest.approx(sign, abs=1e-4)
 
 

@@ -258,11 +258,11 @@ def test_vectors_and_tall_matrices_are_columns_and_nothing_else(shape, columns):
         assert read.shape == (max(shape),) and read[1] == len(columns) + which
 
 
-def test_of_many_names_the_first_twenty_are_said():
+def test_of_many_names_the_first_twenty_are_reported():
     for many in (0, 1, 19, 20, 21, 50):
         names = [f"n{k}" for k in range(many)]
-        said = join_names(iter(names)).split(", ")
-        assert said == ([*names[:20], "..."] if many > 20 else names if names else [""])
+        parts = join_names(iter(names)).split(", ")
+        assert parts == ([*names[:20], "..."] if many > 20 else names if names else [""])
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ def test_every_message_has_columns_by_its_names(path):
     assert "/PSM1/io/actuator_current.data[2]" in names
 
 
-def test_the_joint_that_moves_is_found_with_its_measured_position_and_effort(path):
+def test_the_joint_that_moves_is_recognised_with_its_measured_position_and_effort(path):
     from teleopdesign.measurement.survey import Choices, survey_log
 
     survey = survey_log(open_log(path, path.name), path.name, Choices(axis="prismatic"))

@@ -16,7 +16,7 @@ SWING = np.sin(2 * np.pi * 0.6 * T) + 0.4 * np.sin(2 * np.pi * 1.7 * T + 1.0)
 
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e3])
-def test_the_noise_of_readings_is_told_from_their_motion(size):
+def test_the_noise_of_readings_is_distinguished_from_their_motion(size):
     rng = np.random.default_rng(0)
     noise = size * rng.standard_normal(len(T))
     assert reading_noise(noise) == pytest.approx(size, rel=0.05)

@@ -67,7 +67,7 @@ def test_one_column_is_scaled_and_moved_as_its_channel_says(rod, edit):
     np.testing.assert_allclose(after, -2 * before, rtol=1e-12)
 
 
-def test_two_bodies_have_their_own_axes_and_units(pair):
+def test_two_bodies_have_separate_axes_and_units(pair):
     experiment = load_experiment(pair)
     signals = experiment.records[0].signals
     ramp = np.arange(150.0)
@@ -113,7 +113,7 @@ def test_the_path_of_the_toml_itself_will_do(rod):
     assert load_experiment(rod / "experiment.toml").folder == rod
 
 
-def test_an_experiment_is_found_from_inside_its_folder(rod, monkeypatch):
+def test_an_experiment_can_be_loaded_from_inside_its_folder(rod, monkeypatch):
     monkeypatch.chdir(rod)
     assert load_experiment(".").folder.name == "rod"
 

@@ -45,8 +45,8 @@ def test_a_position_that_moves_as_a_cubic_is_filled_without_error(c, lost):
 def test_a_line_is_filled_without_error_and_a_parabola_errs_by_half_its_second_difference(a, b):
     k = np.arange(40.0)
     for rule in ("line", "held"):
-        said = filling_error(b * k + a * k**2, clock_of(np.arange(40)), rule, step=0.0)
-        assert said == pytest.approx(abs(a), abs=1e-9)
+        error = filling_error(b * k + a * k**2, clock_of(np.arange(40)), rule, step=0.0)
+        assert error == pytest.approx(abs(a), abs=1e-9)
 
 
 @pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
@@ -54,12 +54,12 @@ def test_steps_of_an_encoder_are_filled_by_steps(step):
     """Half a step a row: between two that differ by a step, it reads the first or the second."""
     even, slow = np.arange(80), np.arange(80) // 2
     assert filling_error(step * even, clock_of(even), "position", step=step) == 0.0
-    said = filling_error(step * slow, clock_of(even), "position", step=step)
-    assert said == pytest.approx(step / np.sqrt(2), rel=0.02)
+    error = filling_error(step * slow, clock_of(even), "position", step=step)
+    assert error == pytest.approx(step / np.sqrt(2), rel=0.02)
     # three steps a row are no longer seen one by one
     fast = 3 * even + even % 2
-    said = filling_error(step * fast, clock_of(even), "position", step=step)
-    assert said == pytest.approx(step * 4 / 3, rel=1e-9)
+    error = filling_error(step * fast, clock_of(even), "position", step=step)
+    assert error == pytest.approx(step * 4 / 3, rel=1e-9)
 
 
 def test_what_lies_beside_a_gap_or_an_end_tells_no_error():
@@ -122,13 +122,13 @@ def test_a_record_fills_each_signal_by_its_rule_and_says_by_how_much_that_errs(s
     assert np.abs(off["position"]).max() < 2e-5 * size
     bend = (2 * np.pi * 2.1 * H) ** 2 / 2 * np.abs(f[50:950:50]).max()
     assert np.abs(off["interaction_force"]).max() == pytest.approx(bend, rel=0.02)
-    (said,) = (s for s in record.reading if s.topic == "lost rows")
+    (note,) = (s for s in record.reading if s.topic == "lost rows")
     lost = 18 / 1000
     rms = [(2 * np.pi * k * H) ** 2 / 2 * size / np.sqrt(2) for k in (0.9, 2.1)]
     error = np.sqrt(lost * sum(r**2 for r in rms) / (np.mean(u**2) + np.mean(f**2)))
-    assert said.size == pytest.approx(error, rel=0.02)
-    assert "18 rows lost, 1.8 %" in said.observed
-    assert f"adds at most {100 * said.size:.2g} % of the force" in said.effect
+    assert note.size == pytest.approx(error, rel=0.02)
+    assert "18 rows lost, 1.8 %" in note.observed
+    assert f"adds at most {100 * note.size:.2g} % of the force" in note.effect
 
 
 @pytest.mark.parametrize(
@@ -178,5 +178,5 @@ def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay
     inner = slice(10, -10)
     off = record.signals["device.interaction_force"] - tone(t)
     assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01
-    (said,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
-    assert said.endswith(f", {rate:g} Hz")
+    (note,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
+    assert note.endswith(f", {rate:g} Hz")

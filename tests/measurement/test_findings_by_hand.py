@@ -24,21 +24,21 @@ def leaping(by, unit="rad", row=700):
 
 @pytest.mark.parametrize("part", [-1.04, 0.96, 1.0])
 def test_a_leap_by_about_a_turn_asks_for_an_angle_to_be_unwrapped(part):
-    (found,) = check_jumps(leaping(part * 2 * np.pi))
-    assert "jumps once, most at 0.699 s (row 700)" in found.sentence
-    assert "a whole turn: unwrap the angle" in found.sentence
-    assert found.numbers["size"] == pytest.approx(part * 2 * np.pi, abs=1e-3)
+    (finding,) = check_jumps(leaping(part * 2 * np.pi))
+    assert "jumps once, most at 0.699 s (row 700)" in finding.sentence
+    assert "a whole turn: unwrap the angle" in finding.sentence
+    assert finding.numbers["size"] == pytest.approx(part * 2 * np.pi, abs=1e-3)
 
 
 @pytest.mark.parametrize(("part", "unit"), [(1.06, "rad"), (0.94, "rad"), (2.0, "rad"), (1.0, "m")])
 def test_a_leap_by_anything_else_is_no_turn(part, unit):
-    (found,) = check_jumps(leaping(part * 2 * np.pi, unit))
-    assert "turn" not in found.sentence and "unwrap" not in found.sentence
+    (finding,) = check_jumps(leaping(part * 2 * np.pi, unit))
+    assert "turn" not in finding.sentence and "unwrap" not in finding.sentence
 
 
 def test_a_leap_is_shown_with_the_samples_before_and_after_it():
-    (found,) = check_jumps(leaping(3.0))
-    marked = found.graph.series[1]
+    (finding,) = check_jumps(leaping(3.0))
+    marked = finding.graph.series[1]
     assert marked.x.tolist() == pytest.approx([0.699, 0.7])
     assert marked.y[1] - marked.y[0] == pytest.approx(3.0, abs=0.02)
 
@@ -87,10 +87,10 @@ def held_in_turn(every, n=4000, off=0, part=0.0):
 @pytest.mark.parametrize("every", [2, 3, 10])
 def test_a_channel_of_a_slower_source_says_its_rate(every):
     for signal in (held_in_turn(every), held_in_turn(every, off=1, part=0.02)):
-        (found,) = check_update(signal)
-        assert f"changes only every {every} samples" in found.sentence
-        assert f"the log at {1 / H:.4g} Hz" in found.sentence
-        assert found.numbers == {"samples": every, "rate": pytest.approx(1 / H / every)}
+        (finding,) = check_update(signal)
+        assert f"changes only every {every} samples" in finding.sentence
+        assert f"the log at {1 / H:.4g} Hz" in finding.sentence
+        assert finding.numbers == {"samples": every, "rate": pytest.approx(1 / H / every)}
 
 
 def test_a_channel_that_changes_at_odd_times_or_always_has_no_rate():
@@ -107,20 +107,20 @@ def stuck_at(*holds):
     return channel(x)
 
 
-def test_a_stuck_channel_is_told_from_its_first_to_its_last_sample():
-    (found,) = check_stuck(stuck_at((1005, 1100)))
-    assert (found.numbers["from"], found.numbers["to"]) == (
+def test_a_stuck_channel_is_reported_from_its_first_to_its_last_sample():
+    (finding,) = check_stuck(stuck_at((1005, 1100)))
+    assert (finding.numbers["from"], finding.numbers["to"]) == (
         pytest.approx(1.005),
         pytest.approx(1.099),
     )
-    assert "from 1.005 to 1.099 s: cut that out" in found.sentence
-    assert found.numbers["duration"] == pytest.approx(0.095) and found.numbers["count"] == 1
+    assert "from 1.005 to 1.099 s: cut that out" in finding.sentence
+    assert finding.numbers["duration"] == pytest.approx(0.095) and finding.numbers["count"] == 1
 
 
-def test_of_several_stuck_stretches_the_longest_is_told_and_all_are_counted():
-    (found,) = check_stuck(stuck_at((1005, 1040), (2000, 2095), (3010, 3040)))
-    assert "from 2 to 2.094 s (3 times, 0.16 s in all)" in found.sentence
-    assert found.numbers["duration"] == pytest.approx(0.16)
+def test_of_several_stuck_stretches_the_longest_is_reported_and_all_are_counted():
+    (finding,) = check_stuck(stuck_at((1005, 1040), (2000, 2095), (3010, 3040)))
+    assert "from 2 to 2.094 s (3 times, 0.16 s in all)" in finding.sentence
+    assert finding.numbers["duration"] == pytest.approx(0.16)
 
 
 def test_samples_that_a_log_repeats_are_counted_among_those_in_motion():
@@ -130,10 +130,10 @@ def test_samples_that_a_log_repeats_are_counted_among_those_in_motion():
         y = x.copy()
         at = np.arange(3025, 3975, every)
         y[at] = y[at - 1]
-        (found,) = check_repeats(channel(y, step=1.0))
-        assert found.concern == concern
-        assert found.numbers["count"] == len(at)
-        assert found.numbers["part"] == pytest.approx(share, abs=0.005)
+        (finding,) = check_repeats(channel(y, step=1.0))
+        assert finding.concern == concern
+        assert finding.numbers["count"] == len(at)
+        assert finding.numbers["part"] == pytest.approx(share, abs=0.005)
     assert check_repeats(channel(y, "interaction_force", step=1.0)) == []
 
 
@@ -145,10 +145,12 @@ def test_samples_that_a_log_repeats_are_counted_among_those_in_motion():
         ("interaction_force", "warning", "not connected"),
     ],
 )
-def test_a_channel_that_says_one_value_is_told_with_what_that_may_mean(quantity, concern, words):
-    (found,) = check_constant(channel(np.full(100, 2.5), quantity))
-    assert found.concern == concern and words in found.sentence
-    assert found.numbers["value"] == 2.5
+def test_a_channel_that_says_one_value_is_reported_with_what_that_may_mean(
+    quantity, concern, words
+):
+    (finding,) = check_constant(channel(np.full(100, 2.5), quantity))
+    assert finding.concern == concern and words in finding.sentence
+    assert finding.numbers["value"] == 2.5
     assert check_constant(channel(np.arange(100.0), quantity)) == []
 
 
@@ -160,27 +162,27 @@ def test_a_channel_that_says_one_value_is_told_with_what_that_may_mean(quantity,
 def test_a_limit_of_a_command_may_be_meant_and_one_of_a_sensor_is_not(quantity, side):
     """Told with its share, shown from the first sample at it."""
     y = side * np.minimum(swing(4600), 0.8)[600:]
-    (found,) = check_clipped(channel(y, quantity, step=1e-6))
+    (finding,) = check_clipped(channel(y, quantity, step=1e-6))
     is_command = quantity == "actuator_force"
-    assert found.concern == ("note" if is_command else "warning")
-    assert ("fine if the command itself is limited" in found.sentence) == is_command
-    assert ("the channel is clipped" in found.sentence) == (not is_command)
+    assert finding.concern == ("note" if is_command else "warning")
+    assert ("fine if the command itself is limited" in finding.sentence) == is_command
+    assert ("the channel is clipped" in finding.sentence) == (not is_command)
     at = np.flatnonzero(np.abs(y) == 0.8)
-    assert found.numbers["part"] == pytest.approx(len(at) / len(y))
-    assert found.numbers["count"] == 5
-    assert ("largest" if side > 0 else "smallest") in found.sentence
-    begins = found.graph.series[0].x[0]
+    assert finding.numbers["part"] == pytest.approx(len(at) / len(y))
+    assert finding.numbers["count"] == 5
+    assert ("largest" if side > 0 else "smallest") in finding.sentence
+    begins = finding.graph.series[0].x[0]
     assert begins == pytest.approx((at[0] - 100) * H)
 
 
 @pytest.mark.parametrize("row", [150, 450, 550])
-def test_a_lone_sample_or_leap_of_a_later_stretch_is_told_by_its_row_in_the_record(row):
+def test_a_lone_sample_or_leap_of_a_later_stretch_is_reported_by_its_row_in_the_record(row):
     halves = (slice(0, 300), slice(300, 600))
     x = np.random.default_rng(0).normal(size=600)
     x[row] += 100.0
-    (found,) = check_outliers(channel(x, segments=halves))
-    assert found.numbers["row"] == row + 1 and found.numbers["time"] == pytest.approx(row * H)
+    (finding,) = check_outliers(channel(x, segments=halves))
+    assert finding.numbers["row"] == row + 1 and finding.numbers["time"] == pytest.approx(row * H)
     x[row] -= 100.0
     x[row:] += 100.0 * (np.arange(row, 600) < halves[row >= 300].stop)
-    (found,) = check_jumps(channel(x, segments=halves))
-    assert found.numbers["time"] == pytest.approx((row - 1) * H)
+    (finding,) = check_jumps(channel(x, segments=halves))
+    assert finding.numbers["time"] == pytest.approx((row - 1) * H)

@@ -71,13 +71,13 @@ def test_a_motion_in_one_direction_tells_a_constant_force_from_no_friction():
 
 
 @pytest.mark.parametrize("factor", [0.3, 1.0, -2.0])
-def test_the_force_that_balances_is_found_whatever_the_body_is(factor):
+def test_the_force_that_balances_is_detected_whatever_the_body_is(factor):
     rng = np.random.default_rng(4)
     hand = np.convolve(rng.standard_normal(len(T)), np.hanning(80), "same")
     v, a = rate_of(SWING), rate_of(SWING, 2)
     force = 0.1 * a + 0.5 * np.sign(v) + 0.2 * v + 0.3 - factor * hand
-    found, error = balance_factor(force, hand, SWING, H)
-    assert found == pytest.approx(factor, abs=0.03) and 0 < error < 0.05
+    estimate, error = balance_factor(force, hand, SWING, H)
+    assert estimate == pytest.approx(factor, abs=0.03) and 0 < error < 0.05
     assert balance_factor(force[:150], hand[:150], SWING[:150], H) == (0.0, np.inf)
     # while the body rests friction takes any force: these rows do not count
     still = np.where(T < 10.0, SWING, SWING[2000])
@@ -114,7 +114,7 @@ def test_errors_of_first_values_count_each_second_as_one_reading():
 
 @pytest.mark.parametrize("rate", [0.05, 0.18, 0.5])
 @pytest.mark.parametrize("stiffness", [0.0, 0.3, 3.0, 10.0])
-def test_a_pendulum_below_its_own_rate_is_no_turned_inertia(rate, stiffness):
+def test_a_pendulum_below_its_natural_frequency_is_no_turned_inertia(rate, stiffness):
     """Chirps from rest; by itself the body swings at up to 14 rad/s."""
     t = 0.01 * np.arange(1500)
     x = 0.8 * np.sin(rate * t**2)

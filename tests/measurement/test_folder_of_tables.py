@@ -29,7 +29,7 @@ def run(tmp_path):
     return tmp_path / "run"
 
 
-def test_a_drive_and_a_sensor_with_clocks_of_their_own_are_one_log(run, tmp_path, capsys):
+def test_a_drive_and_a_sensor_with_separate_clocks_are_one_log(run, tmp_path, capsys):
     assert main(["new", str(run), "--yes", "--output", str(tmp_path / "arm")]) == 0
     assert "2 tables, each with its own clock" in capsys.readouterr().out
     record = td.load_experiment(tmp_path / "arm").records[0]
@@ -65,7 +65,7 @@ def test_a_link_that_leads_out_of_the_folder_is_not_followed(run, tmp_path):
     assert not [name for name in open_log(run, "run").names if "secret" in name]
 
 
-def test_two_logs_that_are_parts_of_one_run_are_told_what_to_do(run, tmp_path, capsys):
+def test_two_logs_that_are_parts_of_one_run_are_refused_with_what_to_do(run, tmp_path, capsys):
     logs = [str(run / "drive.csv"), str(run / "sensor.csv")]
     assert main(["new", *logs, "--yes", "--output", str(tmp_path / "arm")]) == 2
     assert "put them into a folder and give the folder" in capsys.readouterr().err

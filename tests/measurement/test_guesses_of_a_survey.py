@@ -173,9 +173,9 @@ def test_on_real_recordings_the_sign_is_as_it_was_logged(name):
         force = sum(signals[n][rows] for n in forces if n in signals)
         assert not is_turned(force, position, record.sample_time)
         forth = np.mean(np.diff(position) > 0)
-        told = explain_force(force, position, record.sample_time).explained > DRIVES
+        is_known = explain_force(force, position, record.sample_time).explained > DRIVES
         one_way = not 0.1 < forth < 0.9  # which tells no friction from the weight of a link
-        assert is_turned(-force, position, record.sample_time) or not told or one_way
+        assert is_turned(-force, position, record.sample_time) or not is_known or one_way
 
 
 @pytest.mark.parametrize("name", ["current_A", "Torque [Nm]", "speed [rad/s]", "F (N)"])
@@ -208,7 +208,7 @@ def test_counts_of_a_turn_are_read_above_the_table(line):
     assert counts_per_turn_in(["run 12", line]) == (8192.0, line)
     survey = look({"t": T, "enc": np.round(1000 * Q), "i": U}, (line,))
     assert survey.channels["position"]["counts_per_turn"] == 8192
-    assert "the log says" in survey.guesses["channels.position.counts_per_turn"]
+    assert "a line of the log states" in survey.guesses["channels.position.counts_per_turn"]
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,7 @@ def test_a_force_at_a_lever_is_its_torque():
 
 
 @pytest.mark.parametrize(
-    ("entry", "said"),
+    ("entry", "message"),
     [
         ({"unit": "N"}, r"expected a torque, or beside a force lever_arm = \{"),
         (
@@ -83,8 +83,8 @@ def test_a_force_at_a_lever_is_its_torque():
         ({"unit": "N", "lever_arm": {"value": 1, "unit": "rad"}}, "lever_arm"),
     ],
 )
-def test_a_lever_that_does_not_suit_is_refused(entry, said):
-    with pytest.raises(ExperimentError, match=said):
+def test_a_lever_that_does_not_suit_is_refused(entry, message):
+    with pytest.raises(ExperimentError, match=message):
         td.experiment(
             PADDLE, interaction_force={"column": "handle_force_N", **entry}, inertia=0.02, **WORDS
         )
@@ -116,7 +116,7 @@ def test_a_drive_on_a_field_bus_counts_its_encoder(names):
     assert position["unit"] == "counts"
 
 
-def test_the_torque_object_of_a_drive_is_said_to_be_in_parts_of_a_rated_torque():
+def test_the_torque_object_of_a_drive_is_reported_to_be_in_parts_of_a_rated_torque():
     survey = look({"t [s]": T, "0x6064": COUNTED, "0x6077": np.round(NEEDED * 1000)})
     assert "parts of a rated force" in survey.guesses["channels.actuator_force.unit"]
 

@@ -94,7 +94,7 @@ def test_a_mistake_in_the_toml_is_named(rod, edit, mistake):
     assert_says(message, expected)
 
 
-def test_no_such_column_lists_those_found_and_the_nearest(rod, edit):
+def test_no_such_column_lists_the_columns_of_the_file_and_the_nearest(rod, edit):
     edit(rod / "fit.csv", "t,u,x,f_h", "t,u,x_pos,f_h")
     edit(rod / "experiment.toml", 'column = "x"', 'column = "pos"')
     assert error_of(rod) == (

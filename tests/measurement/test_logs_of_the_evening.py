@@ -91,8 +91,8 @@ def test_signals_of_a_struct_have_the_names_and_units_that_they_say(tmp_path, co
     kind = [("Name", object), ("Data", object), ("Unit", object)]
     x, y = np.zeros((1, 1), dtype=kind), np.zeros((1, count), dtype=kind)
     x[0, 0] = ("Time", T[None, :], "s")
-    said = [('"Model Root"/"Encoder"/"Angle"', Q, "deg"), ('"Model Root"/"Tau cmd"', U, "Nm")]
-    for k, (name, values, unit) in enumerate(said[:count]):
+    channels = [('"Model Root"/"Encoder"/"Angle"', Q, "deg"), ('"Model Root"/"Tau cmd"', U, "Nm")]
+    for k, (name, values, unit) in enumerate(channels[:count]):
         y[0, k] = (name, values[None, :], unit)
     savemat(tmp_path / "rec.mat", {"rec": {"X": x, "Y": y, "Info": {"Name": "rec"}}})
     log = open_log(tmp_path / "rec.mat", "rec.mat")
@@ -113,7 +113,7 @@ def test_addresses_of_a_field_bus_are_no_words():
     assert likeness("0x6077:00 Torque", "position") == 0.0 < likeness("x 60", "position")
 
 
-def test_parts_of_a_rated_torque_are_told_from_a_torque():
+def test_parts_of_a_rated_torque_are_distinguished_from_a_torque():
     table = {"t": T, "q": Q, "Target torque [0.1%]": 1000 * U}
     why = look(table).guesses["channels.actuator_force.unit"]
     assert "parts of a rated force" in why and "`scale`" in why

@@ -28,7 +28,7 @@ def test_a_timetable_alone_is_refused_with_what_to_type(tmp_path):
         open_log(tmp_path / "log.mat", "log.mat")
 
 
-def test_a_timetable_beside_columns_is_left_out_and_said(tmp_path):
+def test_a_timetable_beside_columns_is_left_out_and_reported(tmp_path):
     version_73(tmp_path / "log.mat", q=np.linspace(0, 1, 50))
     log = open_log(tmp_path / "log.mat", "log.mat")
     assert log.names == ("q",)

@@ -52,14 +52,14 @@ def test_a_step_that_is_not_stated_is_read_and_noise_counts_for_more():
         assert made(noisy).step == pytest.approx(4 * noise, rel=0.1)
 
 
-def test_where_the_velocity_is_below_what_readings_leave_no_direction_is_told():
+def test_where_the_velocity_is_below_what_readings_leave_no_direction_is_reported():
     """A motion that grows: what is told of it is its sign; a coarser reading tells less."""
     for step in (1e-5, 1e-2):
         motion = made(step * np.round(SWING * T / T[-1] / step), resolution=step)
-        told = motion.direction != 0
+        moving = motion.direction != 0
         inner = slice(300, -300)
         right = motion.direction[inner] == np.sign(np.gradient(SWING * T / T[-1], H))[inner]
-        assert right[told[inner]].mean() > 0.97
+        assert right[moving[inner]].mean() > 0.97
     fine, coarse = (
         np.mean(made(s * np.round(SWING / s), resolution=s).direction != 0) for s in (1e-5, 1e-2)
     )
@@ -84,15 +84,15 @@ def test_a_held_force_acts_at_the_rows_as_its_mean_and_as_late_as_its_log(parts,
     w = 2 * np.pi * 3.0
     begins = H * np.arange(len(T) * parts) / parts
     motion = replace(made(SWING), command_late=late)
-    seen = motion.at_rows(np.sin(w * (begins - late)))
+    command = motion.at_rows(np.sin(w * (begins - late)))
     inner = slice(600, -600)
     expected = np.sin(w * (T - 0.5 * H / parts))[inner]
-    assert seen[inner] == pytest.approx(expected, abs=2e-3)
+    assert command[inner] == pytest.approx(expected, abs=2e-3)
     two = motion.at_rows(np.stack([np.sin(w * (begins - late)), np.ones(len(begins))]))
-    assert two[0] == pytest.approx(seen) and two[1] == pytest.approx(1.0)
+    assert two[0] == pytest.approx(command) and two[1] == pytest.approx(1.0)
 
 
-def test_the_force_of_links_is_what_is_known_and_each_base_parameter_less_the_own_inertia():
+def test_the_force_of_links_is_the_known_one_and_each_base_parameter_less_the_joints_inertia():
     constant, columns = np.array([1.0, 2.0]), np.array([[1.0, 0.0], [2.0, 4.0]])
     acceleration = np.array([10.0, -10.0])
     links = LinkForces(constant, columns, columns, inertia=0.3)

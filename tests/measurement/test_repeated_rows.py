@@ -74,7 +74,7 @@ def test_a_motion_without_noise_that_stops_for_a_while_has_lost_nothing():
     assert not repeated_rows([smooth, force, 3 * force], [smooth], [force]).any()
 
 
-def test_nothing_is_said_where_no_channel_tells():
+def test_nothing_is_reported_where_no_channel_tells():
     _, x, u, _ = moved()
     again = np.zeros(ROWS, dtype=bool)
     again[300:1700:50] = True
@@ -150,14 +150,12 @@ def test_a_body_that_rests_a_good_part_of_the_time_is_no_slow_source(rest):
     assert not rows_between_readings([x, 3 * x], [x], stamps).any()
 
 
-@pytest.mark.parametrize(
-    ("at", "found"), [(0, []), (1, [2]), (200, [201]), (397, [398]), (398, [])]
-)
-def test_a_sample_that_repeats_is_seen_where_the_motion_before_and_behind_it_is(at, found):
+@pytest.mark.parametrize(("at", "rows"), [(0, []), (1, [2]), (200, [201]), (397, [398]), (398, [])])
+def test_a_sample_that_repeats_is_detected_where_the_motion_before_and_behind_it_is(at, rows):
     """At the ends of a record nothing says that the body went on."""
     x = 10.0 * np.arange(400.0)
     x[at + 1] = x[at]
-    assert repeats(x, 1.0).tolist() == found
+    assert repeats(x, 1.0).tolist() == rows
 
 
 def halted(before, leap, after, rows=(100, 100)):

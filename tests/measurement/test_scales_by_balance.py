@@ -29,14 +29,14 @@ def in_amperes(joint, hand="hand (Nm)", sign=1.0):
 
 
 @pytest.mark.parametrize("factor", [1.0, -0.02, 37.0])
-def test_a_factor_between_two_forces_is_found_within_its_error(joint, factor):
+def test_a_factor_between_two_forces_is_estimated_within_its_error(joint, factor):
     """Static friction that falls with speed is not in the balance, but its rows are left out."""
-    found, error = balance_factor(joint["u"], joint["hand"] / factor, joint["q"], 1e-3)
-    assert abs(found - factor) < 2 * error < 0.1 * abs(factor)
+    estimate, error = balance_factor(joint["u"], joint["hand"] / factor, joint["q"], 1e-3)
+    assert abs(estimate - factor) < 2 * error < 0.1 * abs(factor)
 
 
 @pytest.mark.parametrize("rest", [slice(0, 900), slice(0, 0)])
-def test_no_factor_is_found_where_hardly_anything_moves(joint, rest):
+def test_no_factor_is_detected_where_hardly_anything_moves(joint, rest):
     q = np.zeros(len(joint["q"]))
     q[rest] = joint["q"][rest]
     assert balance_factor(joint["u"], joint["hand"], q, 1e-3) == (0.0, np.inf)
@@ -66,7 +66,7 @@ def test_without_a_hand_a_constant_stays_open(joint):
 
 
 @pytest.mark.parametrize("name", ["tcp_torque", "tipforce", "Endkraft", "tau2"])
-def test_a_torque_that_no_name_calls_the_hands_is_found_beside_a_current(joint, name):
+def test_a_torque_that_no_name_calls_the_hands_is_detected_beside_a_current(joint, name):
     survey = look(in_amperes(joint, hand=name))
     assert survey.channels["interaction_force"]["column"] == name
     constant = survey.channels["actuator_force"]["torque_constant"]["value"]
@@ -105,7 +105,7 @@ def test_a_stated_gear_stands(joint):
     assert "channels.position.gear_ratio" not in survey.guesses
 
 
-def test_forces_of_two_scales_are_told_where_no_name_says_which_side(joint):
+def test_forces_of_two_scales_are_reported_where_no_name_says_which_side(joint):
     survey = look(of_the_motor(joint, q="angle (deg)"))
     assert "gear_ratio" not in survey.channels["position"]
     (note,) = [n for n in survey.notes if "only with a factor of" in n]
@@ -121,5 +121,5 @@ def test_forces_of_two_scales_are_told_where_no_name_says_which_side(joint):
     ],
 )  # fmt: skip
 def test_a_gear_in_a_line_above_the_table(line, ratio):
-    found = gear_ratio_in((line,))
-    assert (None if found is None else found[0]) == ratio
+    reading = gear_ratio_in((line,))
+    assert (None if reading is None else reading[0]) == ratio

@@ -54,14 +54,14 @@ def put(places, values):
 
 
 def warnings(experiment, topic=None):
-    found = [f for f in check_signals(experiment) if f.concern != "fine"]
-    return [f for f in found if topic is None or f.topic == topic]
+    findings = [f for f in check_signals(experiment) if f.concern != "fine"]
+    return [f for f in findings if topic is None or f.topic == topic]
 
 
 def the_only(experiment, topic):
-    found = warnings(experiment)
-    assert [f.topic for f in found] == [topic], list(map(str, found))
-    return found[0]
+    findings = warnings(experiment)
+    assert [f.topic for f in findings] == [topic], list(map(str, findings))
+    return findings[0]
 
 
 def motion(seed=0):
@@ -82,25 +82,25 @@ def test_a_sound_record_gives_no_warning_and_no_note(rod):
     assert {f.concern for f in check_signals(rod)} == {"fine"}
 
 
-def test_a_lone_force_sample_of_ten_sigma_is_found_where_it_is(rod):
+def test_a_lone_force_sample_of_ten_sigma_is_detected_where_it_is(rod):
     off = 10 * 0.0116  # the stated noise
-    found = the_only(
+    finding = the_only(
         spoilt(rod, "interaction_force", put(4321, lambda x: x[4321] + off)), "outliers"
     )
-    assert found.numbers["time"] == 4.321
-    assert found.numbers["row"] == 4322
-    assert "at 4.321 s (row 4322)" in found.sentence
+    assert finding.numbers["time"] == 4.321
+    assert finding.numbers["row"] == 4322
+    assert "at 4.321 s (row 4322)" in finding.sentence
     # noise of the sample itself and of the four that its course is read from: 1.4 sigma
-    assert found.numbers["size"] == pytest.approx(off, abs=4 * 1.4 * 0.0116)
+    assert finding.numbers["size"] == pytest.approx(off, abs=4 * 1.4 * 0.0116)
 
 
-def test_a_lone_position_sample_of_ten_sigma_is_found_where_it_is(rod):
+def test_a_lone_position_sample_of_ten_sigma_is_detected_where_it_is(rod):
     off = 10 * 0.29 * 7.2e-6  # a step scatters by 0.29 of itself: three steps
     spoiled = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3 * 7.2e-6))
-    found = the_only(spoiled, "outliers")
-    assert found.numbers["row"] == 5001
-    assert found.numbers["size"] == pytest.approx(off, rel=0.7)  # rounding: 1.3 steps at most
-    assert "one sample lies" in found.sentence
+    finding = the_only(spoiled, "outliers")
+    assert finding.numbers["row"] == 5001
+    assert finding.numbers["size"] == pytest.approx(off, rel=0.7)  # rounding: 1.3 steps at most
+    assert "one sample lies" in finding.sentence
 
 
 def test_several_lone_samples_are_counted_in_the_sentence(rod):
@@ -109,8 +109,8 @@ def test_several_lone_samples_are_counted_in_the_sentence(rod):
         x[[3000, 5000]] += 10 * 7.2e-6
         return x
 
-    found = the_only(spoilt(rod, "position", two), "outliers")
-    assert found.numbers["count"] == 2 and "2 samples lie" in found.sentence
+    finding = the_only(spoilt(rod, "position", two), "outliers")
+    assert finding.numbers["count"] == 2 and "2 samples lie" in finding.sentence
 
 
 def test_steps_and_kinks_are_no_outliers():
@@ -125,7 +125,7 @@ def test_steps_and_kinks_are_no_outliers():
 
 @settings(max_examples=30)
 @given(seed=st.integers(0, 2**31), row=st.integers(50, 11_900), size=st.floats(8.0, 1e4))
-def test_every_lone_sample_is_found_and_nothing_else(seed, row, size):
+def test_every_lone_sample_is_detected_and_nothing_else(seed, row, size):
     rng = np.random.default_rng(seed)
     x = motion(seed) + 1e-5 * rng.standard_normal(len(T))
     # 8 sigma beyond what makes a sample odd: 5.3 standard deviations of 1.4 sigma
@@ -156,10 +156,10 @@ def test_lost_samples_are_counted_where_a_position_leaps(rod):
         segments=(slice(0, len(kept)),),
         signals={k: v[kept] for k, v in first.signals.items()},
     )
-    found = warnings(replace(rod, records=(record, *others)), "jumps")
-    assert len(found) == 1
-    assert found[0].numbers["samples"] == pytest.approx(12, abs=1.5)  # speed before and after
-    assert found[0].numbers["time"] == pytest.approx(fastest / 1000, abs=2e-3)
+    findings = warnings(replace(rod, records=(record, *others)), "jumps")
+    assert len(findings) == 1
+    assert findings[0].numbers["samples"] == pytest.approx(12, abs=1.5)  # speed before and after
+    assert findings[0].numbers["time"] == pytest.approx(fastest / 1000, abs=2e-3)
 
 
 def test_a_wrapped_angle_is_called_a_whole_turn():
@@ -168,47 +168,47 @@ def test_a_wrapped_angle_is_called_a_whole_turn():
     unwrapped = 4.0 * T + 0.2 * np.sin(9 * T)
     wrapped = np.angle(np.exp(1j * unwrapped))
     spoiled = spoilt(replace(turning, bodies=bodies), "position", lambda x: wrapped)
-    found = warnings(spoiled, "jumps")
-    assert "unwrap" in found[0].sentence
-    assert abs(found[0].numbers["size"]) == pytest.approx(2 * np.pi, rel=0.01)
+    findings = warnings(spoiled, "jumps")
+    assert "unwrap" in findings[0].sentence
+    assert abs(findings[0].numbers["size"]) == pytest.approx(2 * np.pi, rel=0.01)
 
 
-def test_a_clipped_force_sensor_is_found_with_its_limit_and_share(rod):
+def test_a_clipped_force_sensor_is_detected_with_its_limit_and_share(rod):
     x = rod.records[0].signals["device.interaction_force"]
     limit = float(np.round(np.quantile(x, 0.97), 4))
     spoiled = spoilt(rod, "interaction_force", lambda x: np.minimum(x, limit))
-    found = warnings(spoiled, "clipped channels")
-    assert [f.concern for f in found] == ["warning"]
-    assert found[0].numbers["value"] == limit
-    assert found[0].numbers["part"] == pytest.approx(0.03, abs=0.002)
+    findings = warnings(spoiled, "clipped channels")
+    assert [f.concern for f in findings] == ["warning"]
+    assert findings[0].numbers["value"] == limit
+    assert findings[0].numbers["part"] == pytest.approx(0.03, abs=0.002)
 
 
-def test_a_clipped_position_is_found_but_a_body_that_rests_is_not(rod):
+def test_a_clipped_position_is_detected_but_a_body_that_rests_is_not(rod):
     x = rod.records[0].signals["device.position"]
     limit = x[np.argsort(x)[int(0.9 * len(x))]]
-    found = warnings(spoilt(rod, "position", lambda x: np.minimum(x, limit)), "clipped channels")
-    assert found[0].numbers["value"] == limit
+    findings = warnings(spoilt(rod, "position", lambda x: np.minimum(x, limit)), "clipped channels")
+    assert findings[0].numbers["value"] == limit
     resting = np.repeat(np.tile([0.0, 0.01], 6), 1000)  # held at its ends, moved gently
     smooth = np.convolve(resting, np.hanning(400) / np.hanning(400).sum(), mode="same")
     assert warnings(spoilt(rod, "position", lambda x: read(smooth)), "clipped channels") == []
 
 
 @pytest.mark.parametrize("quantity", ["position", "interaction_force"])
-def test_a_channel_that_sticks_is_found_from_when_to_when(rod, quantity):
+def test_a_channel_that_sticks_is_detected_from_when_to_when(rod, quantity):
     x = rod.records[0].signals["device.position"]
     speed = np.abs(np.gradient(x))
     start = 2000 + int(np.argmax(speed[2000:6000]))
     spoiled = spoilt(rod, quantity, put(slice(start, start + 600), lambda x: x[start]))
-    found = [f for f in warnings(spoiled, "stuck channels")]
-    assert len(found) == 1
-    assert found[0].numbers["from"] == pytest.approx(start / RATE, abs=2e-3)
-    assert found[0].numbers["duration"] == pytest.approx(0.6, abs=2e-3)
+    findings = [f for f in warnings(spoiled, "stuck channels")]
+    assert len(findings) == 1
+    assert findings[0].numbers["from"] == pytest.approx(start / RATE, abs=2e-3)
+    assert findings[0].numbers["duration"] == pytest.approx(0.6, abs=2e-3)
 
 
 def test_a_channel_that_never_changes_is_named(rod):
-    found = warnings(spoilt(rod, "interaction_force", lambda x: 0 * x), "stuck channels")
-    assert found[0].numbers["value"] == 0.0
-    assert "throughout" in found[0].sentence
+    findings = warnings(spoilt(rod, "interaction_force", lambda x: 0 * x), "stuck channels")
+    assert findings[0].numbers["value"] == 0.0
+    assert "throughout" in findings[0].sentence
 
 
 def test_an_averaged_log_of_a_coarse_encoder_neither_repeats_samples_nor_runs_flat(rod):
@@ -240,17 +240,17 @@ def test_samples_that_repeat_while_the_body_goes_on_are_counted():
     held = np.sort(rng.choice(np.arange(20, 11_900, 5), 200, replace=False))
     spoiled = x.copy()
     spoiled[held] = x[held - 1]
-    found = repeats(spoiled, STEP)
-    assert set(found) <= set(held)
+    rows = repeats(spoiled, STEP)
+    assert set(rows) <= set(held)
     # where it moves less than six steps a sample, a repeat may be the encoder's
     fast = held[np.abs(x[held + 8] - x[held - 8]) / 16 > 6 * STEP]
-    assert len(set(fast) - set(found)) <= 0.05 * len(fast)
+    assert len(set(fast) - set(rows)) <= 0.05 * len(fast)
 
 
 def test_a_force_sampled_at_a_tenth_of_the_rate_is_noticed(rod):
     spoiled = spoilt(rod, "interaction_force", lambda x: np.repeat(x[::10], 10))
-    found = warnings(spoiled, "held samples")
-    assert found[0].numbers["rate"] == pytest.approx(100.0)
+    findings = warnings(spoiled, "held samples")
+    assert findings[0].numbers["rate"] == pytest.approx(100.0)
 
 
 def rounded(part):
@@ -264,30 +264,30 @@ def rounded(part):
 
 
 @pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force"])
-def test_a_force_that_is_logged_in_coarse_steps_is_told_with_the_step(rod, quantity):
-    (found,) = warnings(spoilt(rod, quantity, rounded(0.1)), "force steps")
+def test_a_force_that_is_logged_in_coarse_steps_is_reported_with_the_step(rod, quantity):
+    (finding,) = warnings(spoilt(rod, quantity, rounded(0.1)), "force steps")
     largest = np.abs(rod.records[0].signals[f"device.{quantity}"]).max()
-    assert found.numbers["step"] == pytest.approx(0.1 * largest, rel=1e-9)
-    assert found.numbers["error"] == pytest.approx(0.1 * largest / np.sqrt(12), rel=1e-9)
-    assert quantity in found.sentence and found.concern == "warning"
+    assert finding.numbers["step"] == pytest.approx(0.1 * largest, rel=1e-9)
+    assert finding.numbers["error"] == pytest.approx(0.1 * largest / np.sqrt(12), rel=1e-9)
+    assert quantity in finding.sentence and finding.concern == "warning"
 
 
 def test_fine_steps_and_a_relay_are_no_coarse_steps(rod):
     assert warnings(spoilt(rod, "actuator_force", rounded(0.01)), "force steps") == []
     relay = np.random.default_rng(1).integers(-3, 4, 40).repeat(1000).astype(float)
     for levels in (relay, np.sign(relay)):
-        found = spoilt(rod, "actuator_force", lambda x, y=levels: np.resize(y, len(x)))
-        assert warnings(found, "force steps") == []
+        experiment = spoilt(rod, "actuator_force", lambda x, y=levels: np.resize(y, len(x)))
+        assert warnings(experiment, "force steps") == []
 
 
 def test_fine_steps_of_a_smooth_force_are_no_coarse_steps(rod):
     """Every level is passed through, and still nothing is lost."""
     smooth = np.round(np.sin(2 * np.pi * 0.5 * T), 2)
-    found = spoilt(rod, "interaction_force", lambda x: np.resize(smooth, len(x)))
-    assert warnings(found, "force steps") == []
+    experiment = spoilt(rod, "interaction_force", lambda x: np.resize(smooth, len(x)))
+    assert warnings(experiment, "force steps") == []
 
 
-def test_a_lone_sample_on_a_fast_motion_is_found_though_it_is_less_than_a_step_of_the_motion():
+def test_a_lone_sample_on_a_fast_motion_is_detected_though_it_is_less_than_a_step_of_the_motion():
     x = np.arange(1000.0) + 0.01 * np.random.default_rng(1).normal(size=1000)
     x[500] += 0.5
     at, size, _ = lone_samples(x, 0.0)
@@ -300,20 +300,20 @@ def with_channel(experiment, quantity, **changes):
     return replace(experiment, channels={**experiment.channels, key: channel})
 
 
-def test_an_encoder_coarser_than_stated_is_found_with_its_step(rod):
-    found = warnings(with_channel(rod, "position", resolution=7.2e-6 / 4), "encoder steps")
-    assert found and all(f.concern == "warning" for f in found)
-    assert found[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
-    found = warnings(with_channel(rod, "position", resolution=7.2e-9), "encoder steps")
-    assert found[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
+def test_an_encoder_coarser_than_stated_is_detected_with_its_step(rod):
+    findings = warnings(with_channel(rod, "position", resolution=7.2e-6 / 4), "encoder steps")
+    assert findings and all(f.concern == "warning" for f in findings)
+    assert findings[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
+    findings = warnings(with_channel(rod, "position", resolution=7.2e-9), "encoder steps")
+    assert findings[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
 
 
 @pytest.mark.parametrize("factor", [0.3, 3.0])
 def test_noise_that_is_not_the_stated_one_is_measured(rod, factor):
-    found = warnings(with_channel(rod, "interaction_force", noise=factor * 0.0116), "noise")
+    findings = warnings(with_channel(rod, "interaction_force", noise=factor * 0.0116), "noise")
     # half a second of samples tells a scatter to 6 %, the median of forty pieces better
-    assert found[0].numbers["seen"] == pytest.approx(0.0116, rel=0.1)
-    assert found[0].numbers["ratio"] == pytest.approx(1 / factor, rel=0.1)
+    assert findings[0].numbers["seen"] == pytest.approx(0.0116, rel=0.1)
+    assert findings[0].numbers["ratio"] == pytest.approx(1 / factor, rel=0.1)
 
 
 def test_columns_swapped_between_a_noisy_and_a_quiet_force_are_suspected(rod):
@@ -322,8 +322,8 @@ def test_columns_swapped_between_a_noisy_and_a_quiet_force_are_suspected(rod):
         signals = {**record.signals, u: record.signals[f], f: 0.3 * np.sin(2 * np.pi * record.time)}
         return replace(record, signals=signals)
 
-    found = warnings(replace(rod, records=tuple(map(swap, rod.records))), "noise")
-    assert "actuator_force has it: are the two columns swapped?" in found[0].sentence
+    findings = warnings(replace(rod, records=tuple(map(swap, rod.records))), "noise")
+    assert "actuator_force has it: are the two columns swapped?" in findings[0].sentence
 
 
 def test_positions_taken_early_or_late_show_the_jitter_of_the_clock():
@@ -355,10 +355,10 @@ def rewritten(folder, stamps):
 
 def test_stamps_that_jitter_are_measured(tmp_path):
     jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
-    found = the_only(rewritten(tmp_path, np.arange(12_000) / RATE + jitter), "sample clock")
-    assert found.concern == "note"
-    assert found.numbers["jitter"] == pytest.approx(0.9e-4 / np.sqrt(3), rel=0.05)
-    assert found.numbers["rate"] == pytest.approx(RATE, rel=1e-6)
+    finding = the_only(rewritten(tmp_path, np.arange(12_000) / RATE + jitter), "sample clock")
+    assert finding.concern == "note"
+    assert finding.numbers["jitter"] == pytest.approx(0.9e-4 / np.sqrt(3), rel=0.05)
+    assert finding.numbers["rate"] == pytest.approx(RATE, rel=1e-6)
 
 
 def test_segments_and_what_is_too_short_to_be_compared_are_counted(rod):
@@ -368,20 +368,20 @@ def test_segments_and_what_is_too_short_to_be_compared_are_counted(rod):
     record = replace(first, time=time, segments=segments)
     # in a folder without files no stamps can be read again
     apart = replace(rod, folder=Path("nowhere"), records=(record, *others))
-    found = the_only(apart, "gaps")
-    assert found.numbers["longest_gap"] == pytest.approx(3.0, abs=1e-9)
-    assert found.numbers["too_short"] == 1
-    assert found.numbers["left_out"] == pytest.approx(0.3)
-    assert found.concern == "note"  # a fortieth of the record
+    finding = the_only(apart, "gaps")
+    assert finding.numbers["longest_gap"] == pytest.approx(3.0, abs=1e-9)
+    assert finding.numbers["too_short"] == 1
+    assert finding.numbers["left_out"] == pytest.approx(0.3)
+    assert finding.concern == "note"  # a fortieth of the record
 
 
 @pytest.mark.parametrize(("factor", "shift"), [(1.0, 0.0), (0.999, 0.004), (57.3, -0.011)])
-def test_factor_and_lag_of_a_velocity_channel_are_told(factor, shift):
+def test_factor_and_lag_of_a_velocity_channel_are_reported(factor, shift):
     rng = np.random.default_rng(6)
     velocity = factor * np.interp(T - shift, T, np.gradient(motion(), T))
-    found = shift_and_factor(read(motion()), velocity + 1e-3 * rng.standard_normal(len(T)), 1e-3)
-    assert found[0] == pytest.approx(shift, abs=2e-4)  # a fifth of a sample
-    assert found[1] == pytest.approx(factor, rel=2e-3)
+    estimate = shift_and_factor(read(motion()), velocity + 1e-3 * rng.standard_normal(len(T)), 1e-3)
+    assert estimate[0] == pytest.approx(shift, abs=2e-4)  # a fifth of a sample
+    assert estimate[1] == pytest.approx(factor, rel=2e-3)
 
 
 @pytest.mark.slow
@@ -397,23 +397,23 @@ def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
 
 
 @pytest.mark.slow
-def test_the_known_oddities_of_real_recordings_are_found_and_no_others():
+def test_the_known_oddities_of_real_recordings_are_detected_and_no_others():
     """What their READMEs say: jitter of psm and mtm, rows twice in mtm, a finer emps file."""
     data = shared_folder("data")
-    found = {
+    findings = {
         name: {(f.topic, f.where) for f in warnings(load_experiment(data / name))}
         for name in ("emps", "hsm150", "mtm_wrist", "psm_insertion")
     }
-    assert found["emps"] == {("encoder steps", "emps_pulses.csv.gz")}
-    assert found["hsm150"] == set()
+    assert findings["emps"] == {("encoder steps", "emps_pulses.csv.gz")}
+    assert findings["hsm150"] == set()
     topics = ("gaps", "held samples", "lost rows", "reading")
-    assert found["mtm_wrist"] == {(topic, "mtm_joint4_sweep.csv.gz") for topic in topics}
+    assert findings["mtm_wrist"] == {(topic, "mtm_joint4_sweep.csv.gz") for topic in topics}
     (repeated, *_) = load_experiment(data / "mtm_wrist").reading
     assert "rows the same as the one before" in repeated.observed
     runs = [f"psm1_fourier{k}.csv.gz" for k in (1, 2, 3)]
     sparse = {(topic, run) for topic in ("lost rows", "reading", "sample clock") for run in runs}
-    assert sparse <= found["psm_insertion"]
-    more = {topic for topic, _ in found["psm_insertion"] - sparse}
+    assert sparse <= findings["psm_insertion"]
+    more = {topic for topic, _ in findings["psm_insertion"] - sparse}
     assert more <= {"held samples", "outliers"}
 
 
@@ -428,10 +428,10 @@ def test_a_step_of_reading_that_adds_over_two_percent_to_the_force_error_needs_c
     rod, size, concern
 ):
     step = ReadingStep("fit.csv", "3 rows are lost", "filled", "none", size=size, topic="gaps")
-    told = replace(step, effect="0.3 N at most")
-    found, with_effect = check_reading(replace(rod.records[0], reading=(step, told)))
-    assert (found.concern, found.topic) == (concern, "gaps")
-    assert found.sentence == "3 rows are lost: filled."
+    step_with_effect = replace(step, effect="0.3 N at most")
+    findings, with_effect = check_reading(replace(rod.records[0], reading=(step, step_with_effect)))
+    assert (findings.concern, findings.topic) == (concern, "gaps")
+    assert findings.sentence == "3 rows are lost: filled."
     assert with_effect.sentence == "3 rows are lost: filled (0.3 N at most)."
 
 
@@ -477,25 +477,25 @@ def test_a_signal_that_comes_to_rest_or_turned_away_did_not_run_into_a_limit(app
 )
 def test_a_factor_of_a_velocity_names_the_unit_that_makes_it(rod, axis, factor, cause):
     position = replace(signals(rod)[0], axis=axis)
-    said = factor_cause(factor, position, replace(position, name="velocity"))
-    assert cause in said
-    assert ("sign = -1" in said) == (factor < 0)
+    sentence = factor_cause(factor, position, replace(position, name="velocity"))
+    assert cause in sentence
+    assert ("sign = -1" in sentence) == (factor < 0)
 
 
 def test_segments_of_which_over_a_tenth_is_too_short_need_care(rod):
     segments = tuple(slice(k, k + 100) for k in range(0, 2000, 100))
     record = replace(rod.records[0], segments=(*segments, slice(2000, 12_000)))
-    (found,) = check_segments(record)
-    assert found.concern == "warning" and found.numbers["left_out"] == pytest.approx(2.0)
+    (finding,) = check_segments(record)
+    assert finding.concern == "warning" and finding.numbers["left_out"] == pytest.approx(2.0)
 
 
-def test_what_is_in_order_is_said_beside_what_is_not_and_never_of_the_same(rod, tmp_path):
-    def said(experiment):
+def test_what_is_in_order_is_reported_beside_what_is_not_and_never_of_the_same(rod, tmp_path):
+    def topics(experiment):
         return sorted((f.topic, f.concern) for f in check_signals(experiment))
 
-    assert said(rod) == [("channels", "fine"), ("sample clock", "fine")]
+    assert topics(rod) == [("channels", "fine"), ("sample clock", "fine")]
     lone = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3e-4))
-    assert said(lone) == [("outliers", "warning"), ("sample clock", "fine")]
+    assert topics(lone) == [("outliers", "warning"), ("sample clock", "fine")]
     jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
     late = rewritten(tmp_path, np.arange(12_000) / RATE + jitter)
-    assert said(late) == [("channels", "fine"), ("sample clock", "note")]
+    assert topics(late) == [("channels", "fine"), ("sample clock", "note")]

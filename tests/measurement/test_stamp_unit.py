@@ -23,9 +23,9 @@ from teleopdesign.measurement.stamp_unit import unit_of_steps
 )
 def test_a_log_has_from_five_rows_a_second_to_a_hundred_thousand(step, unit):
     stamps = 1e6 + step * np.arange(300)
-    found, why = unit_of_steps(stamps)
-    assert found == unit and (why == "") == (unit == "s")
-    assert unit == "s" or why.endswith(f"only in {unit}") and f"{step:.4g}" in why
+    guess, why = unit_of_steps(stamps)
+    assert guess == unit and (why == "") == (unit == "s")
+    assert unit == "s" or f"only in {unit} are steps of {step:.4g}" in why
     # a row that says no time, and some that go back, change nothing
     stamps[[50, 90]] = np.nan
     stamps[100:] -= 40 * step
@@ -34,7 +34,7 @@ def test_a_log_has_from_five_rows_a_second_to_a_hundred_thousand(step, unit):
 
 def test_seconds_that_are_too_fine_are_a_guess():
     assert unit_of_steps(9e-6 * np.arange(400_000)) == (
-        "s", "steps of 9e-06 are those of a log only in s"
+        "s", "s: only in s are steps of 9e-06 usual for a log"
     )  # fmt: skip
 
 

@@ -15,18 +15,18 @@ from teleopdesign.measurement.soundness.time_shift import check_velocity
 # steps
 
 
-def test_a_resolution_to_write_is_said_in_the_unit_of_the_channel():
+def test_a_resolution_to_write_is_reported_in_the_unit_of_the_channel():
     """Of counts behind a gear, of degrees, and of one's own unit."""
     x = 4e-3 * np.round(swing(4000, 250.0))
-    said = {"m": "0.004", "mm": "4"}
-    for unit, step in said.items():
-        (found,) = check_steps(channel(x, step=4e-3, resolution=1e-3, written=unit), [])
-        assert f"write resolution = {step} at channels.position" in found.sentence
-        assert found.numbers == {"stated": 1e-3, "seen": pytest.approx(4e-3)}
-        assert "4 times the stated" in found.sentence
+    texts = {"m": "0.004", "mm": "4"}
+    for unit, step in texts.items():
+        (finding,) = check_steps(channel(x, step=4e-3, resolution=1e-3, written=unit), [])
+        assert f"write resolution = {step} at channels.position" in finding.sentence
+        assert finding.numbers == {"stated": 1e-3, "seen": pytest.approx(4e-3)}
+        assert "4 times the stated" in finding.sentence
     turned = Conversion(("x",), (1.0,), factor=-2e-3)
-    (found,) = check_steps(channel(x, step=4e-3, resolution=1e-3, conversion=turned), [])
-    assert "write resolution = 2 at channels.position" in found.sentence
+    (finding,) = check_steps(channel(x, step=4e-3, resolution=1e-3, conversion=turned), [])
+    assert "write resolution = 2 at channels.position" in finding.sentence
 
 
 def test_a_channel_off_its_stated_steps_names_the_one_that_lies_on_them():
@@ -43,24 +43,24 @@ def test_a_channel_off_its_stated_steps_names_the_one_that_lies_on_them():
         (1.4e-3, False),
         (0.2, False),
     ):
-        (found,) = check_steps(smooth, [other(step)])
-        assert ("but velocity is: are the two columns swapped?" in found.sentence) == is_swapped
-        assert found.concern == ("warning" if is_swapped else "note")
-        assert found.numbers == {"stated": 1e-3, "seen": 3.7e-4}
-    assert "but in finer" in found.sentence
+        (finding,) = check_steps(smooth, [other(step)])
+        assert ("but velocity is: are the two columns swapped?" in finding.sentence) == is_swapped
+        assert finding.concern == ("warning" if is_swapped else "note")
+        assert finding.numbers == {"stated": 1e-3, "seen": 3.7e-4}
+    assert "but in finer" in finding.sentence
     (coarse,) = check_steps(channel(random.normal(size=3000), step=2e-3, resolution=1e-3), [])
     assert coarse.concern == "warning" and "but of 0.002" in coarse.sentence
 
 
 @pytest.mark.parametrize("zero", [0.0, 0.3, -17.7])
 @pytest.mark.parametrize(("step", "is_coarse"), [(0.2, True), (0.05, False)])
-def test_a_coarse_force_is_told_from_whatever_zero_its_steps_count(zero, step, is_coarse):
+def test_a_coarse_force_is_detected_from_whatever_zero_its_steps_count(zero, step, is_coarse):
     random = np.random.default_rng(0)
     y = step * np.round((swing(4000) + 0.02 * random.normal(size=4000)) / step) + zero * step
-    found = check_force_steps(channel(y, "interaction_force", step=step))
-    assert [f.numbers["step"] for f in found] == [step] * is_coarse
-    if found:
-        assert f"{100 * step / np.sqrt(12) / y.std():.1f} % of what it does" in found[0].sentence
+    findings = check_force_steps(channel(y, "interaction_force", step=step))
+    assert [f.numbers["step"] for f in findings] == [step] * is_coarse
+    if findings:
+        assert f"{100 * step / np.sqrt(12) / y.std():.1f} % of what it does" in findings[0].sentence
 
 
 def test_positions_relays_and_scatter_are_no_coarse_forces():
@@ -88,11 +88,11 @@ def noisy(size, name="interaction_force", **more):
     ("stated", "words"), [(0.4, "hides effects"), (0.05, "makes noise look like an effect")]
 )
 def test_noise_that_is_stated_wrong_says_what_it_does_to_the_answer(stated, words):
-    (found,) = check_noise(noisy(0.1, noise=stated), [])
-    assert words in found.sentence and found.sentence.count("effect") == 1
-    assert found.numbers["seen"] == pytest.approx(0.1, rel=0.1)
-    assert found.numbers["stated"] == stated
-    assert found.numbers["ratio"] == pytest.approx(0.1 / stated, rel=0.1)
+    (finding,) = check_noise(noisy(0.1, noise=stated), [])
+    assert words in finding.sentence and finding.sentence.count("effect") == 1
+    assert finding.numbers["seen"] == pytest.approx(0.1, rel=0.1)
+    assert finding.numbers["stated"] == stated
+    assert finding.numbers["ratio"] == pytest.approx(0.1 / stated, rel=0.1)
     assert check_noise(noisy(0.1, noise=0.11), []) == [] == check_noise(noisy(0.1), [])
 
 
@@ -110,24 +110,24 @@ def test_another_column_with_the_stated_noise_is_a_swap_only_where_it_may_be(
     stated, other, swapped
 ):
     beside = noisy(other.pop("size"), "actuator_force", **other)
-    (found,) = check_noise(noisy(0.1, noise=stated), [beside])
-    assert ("actuator_force has it: are the two columns swapped?" in found.sentence) == swapped
+    (finding,) = check_noise(noisy(0.1, noise=stated), [beside])
+    assert ("actuator_force has it: are the two columns swapped?" in finding.sentence) == swapped
 
 
 # stretches
 
 
-def test_stretches_shorter_than_are_compared_are_told_with_how_much_they_are():
-    def found_of(*lengths):
+def test_stretches_shorter_than_are_compared_are_reported_with_how_much_they_are():
+    def findings_for(*lengths):
         ends = np.cumsum(lengths)
         segments = tuple(slice(int(b - n), int(b)) for b, n in zip(ends, lengths, strict=True))
         return check_segments(record_of(int(ends[-1]), segments))
 
-    assert found_of(5000) == []
-    (whole,) = found_of(5000, 2000)
+    assert findings_for(5000) == []
+    (whole,) = findings_for(5000, 2000)
     assert "left out" not in whole.sentence and whole.concern == "note"
     assert "2 segments of 2 to 5 s" in whole.sentence and whole.numbers["too_short"] == 0
-    (short,) = found_of(5000, 100, 2000, 200)
+    (short,) = findings_for(5000, 100, 2000, 200)
     assert "; 2 of them, 0.3 s in all, are shorter than" in short.sentence
     assert short.numbers["left_out"] == pytest.approx(0.3)
 
@@ -164,21 +164,21 @@ def test_a_velocity_is_doubted_by_factor_and_by_lag(factor, late, topics):
     v = factor * np.gradient(
         np.sin(2 * np.pi * 1.3 * (t - late)) + 0.3 * np.sin(2 * np.pi * 4.1 * (t - late)), H
     )
-    found = check_velocity(channel(x), channel(v, "velocity"))
-    assert [f.topic for f in found] == topics
-    for one in found:
+    findings = check_velocity(channel(x), channel(v, "velocity"))
+    assert [f.topic for f in findings] == topics
+    for one in findings:
         assert one.numbers["shift"] == pytest.approx(late, abs=0.02 * H)
         assert one.numbers["factor"] == pytest.approx(factor, rel=1e-3)
     if topics == ["time shift"]:
-        assert ("lags" if late > 0 else "leads") in found[0].sentence and "1.5 ms" in found[
+        assert ("lags" if late > 0 else "leads") in findings[0].sentence and "1.5 ms" in findings[
             0
         ].sentence
 
 
 def test_a_velocity_of_another_body_does_not_follow():
     t = H * np.arange(4000)
-    (found,) = check_velocity(channel(np.sin(9 * t)), channel(np.cos(23 * t), "velocity"))
-    assert "does not follow the position's derivative" in found.sentence
-    assert found.concern == "warning"
-    (found,) = check_velocity(channel(np.sin(9 * t)), channel(t < 0.1, "velocity"))
-    assert "does not follow" in found.sentence  # where both are compared it is zero
+    (finding,) = check_velocity(channel(np.sin(9 * t)), channel(np.cos(23 * t), "velocity"))
+    assert "does not follow the position's derivative" in finding.sentence
+    assert finding.concern == "warning"
+    (finding,) = check_velocity(channel(np.sin(9 * t)), channel(t < 0.1, "velocity"))
+    assert "does not follow" in finding.sentence  # where both are compared it is zero

@@ -54,17 +54,17 @@ def test_a_velocity_in_units_of_another_axis_says_no_unit_of_the_position(axis):
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("a", "it is the first that moves and may be one"),
-        ("a [rad]", "by its name and unit"),
-        ("a (counts)", "by its name and unit"),
+        ("a", "it is the first column that moves"),
+        ("a [rad]", "name or unit suggest a position"),
+        ("a (counts)", "name or unit suggest a position"),
     ],
 )
 def test_a_doubtful_position_says_what_speaks_for_it(name, why):
     survey = look({"t": T, name: Q, "tau": U})
-    said = survey.guesses["channels.position.column"]
-    assert said == f"{name!r} is read as the position: {why}"
+    guess = survey.guesses["channels.position.column"]
+    assert guess == f"{name!r} is read as the position: {why}"
     beside = look({"t": T, name: Q, "b": np.gradient(Q, T), "tau": U})
-    assert "its derivative is there too" in beside.guesses["channels.position.column"]
+    assert "another column is its derivative" in beside.guesses["channels.position.column"]
 
 
 def test_one_of_two_forces_alike_is_a_guess_and_one_alone_is_none():
@@ -88,8 +88,8 @@ def test_a_column_in_units_of_no_force_is_none_whatever_the_motion_explains(unit
 def test_long_lists_of_columns_end_in_dots_and_short_ones_do_not():
     for many in (1, 3, 4, 9):
         names = [f"c{k}" for k in range(many)]
-        said = explain_ambiguity("a", names, "the force")
-        assert ("..." in said) == (many > 3) and said.count("'c") == min(many, 3)
+        sentence = explain_ambiguity("a", names, "the force")
+        assert ("..." in sentence) == (many > 3) and sentence.count("'c") == min(many, 3)
         why = reasons(dict.fromkeys(names, "text"))
         assert ("..." in why) == (many > 3) and why.count("text") == min(many, 3)
     assert reasons({}) == ""
@@ -130,19 +130,19 @@ def test_a_column_left_out_says_what_the_motion_explains_of_it_and_of_what_was_t
     second = re.fullmatch(
         "a second force beside 'torque_a \\[Nm\\]'" + of_force, unused["torque_b [Nm]"]
     )
-    nothing = re.fullmatch("not a force by its name" + of_force, unused["c"])
+    nothing = re.fullmatch("its name is not that of a force" + of_force, unused["c"])
     assert second and nothing and int(nothing[1]) < int(second[1]) < 100
 
 
-@pytest.mark.parametrize(("counts", "said"), [(2000, 2000), (2600, 4096), (3333, 4096)])
-def test_counts_of_a_turn_that_no_encoder_has_are_not_read_off_a_velocity(counts, said):
+@pytest.mark.parametrize(("counts", "message"), [(2000, 2000), (2600, 4096), (3333, 4096)])
+def test_counts_of_a_turn_that_no_encoder_has_are_not_read_off_a_velocity(counts, message):
     columns = {
         "t": T,
         "pos [inc]": np.round(3.0 * counts * Q),
         "v [rpm]": 180.0 * np.gradient(Q, T),
     }
     survey = look(columns | {"current [mA]": U})
-    assert survey.channels["position"]["counts_per_turn"] == said
+    assert survey.channels["position"]["counts_per_turn"] == message
     why = survey.guesses["channels.position.counts_per_turn"]
-    assert ("agrees with" in why) == (said == counts)
-    assert ("look at the encoder" in why) == (said != counts)
+    assert ("agrees with" in why) == (message == counts)
+    assert ("see the data sheet of the encoder" in why) == (message != counts)

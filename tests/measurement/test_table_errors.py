@@ -75,7 +75,7 @@ AS_LOGGERS_WRITE = {
 
 
 @pytest.mark.parametrize("flaw", AS_LOGGERS_WRITE)
-def test_what_loggers_do_is_read_and_said(rod, flaw):
+def test_what_loggers_do_is_read_and_reported(rod, flaw):
     change, expected = AS_LOGGERS_WRITE[flaw]
     file = rod / "fit.csv"
     file.write_text("".join(line + "\n" for line in change(file.read_text().splitlines())))

@@ -67,7 +67,7 @@ def test_columns_of_one_name_are_counted(tmp_path, ending):
         read_columns(path, path.name, {"Torque [Nm]": "channels.force"})
 
 
-def test_where_nothing_can_be_used_the_reason_of_each_column_is_said(tmp_path):
+def test_where_nothing_can_be_used_the_reason_of_each_column_is_reported(tmp_path):
     rows = [[k / 100, "left", "up"] for k in range(80)]
     path = written(tmp_path, ".xlsx", ["t", "x", "u"], rows)
     with pytest.raises(ExperimentError, match="found no sheet"):
@@ -84,7 +84,7 @@ def test_where_nothing_can_be_used_the_reason_of_each_column_is_said(tmp_path):
     digits=st.integers(3, 6),
     seed=st.integers(0, 1000),
 )
-def test_an_encoder_is_seen_through_the_digits_that_were_printed(step, digits, seed):
+def test_an_encoder_is_recognised_through_the_digits_that_were_printed(step, digits, seed):
     """The last digit is a tenth of a step or less; the travel is 2000 steps."""
     rng = np.random.default_rng(seed)
     swing = np.sin(np.linspace(0, 9, 4000) + rng.uniform(0, 6)) * rng.uniform(0.8, 1.2)
@@ -161,8 +161,8 @@ def test_names_are_read_in_the_encoding_that_they_were_written_in(tmp_path, enco
     assert tuple(log.names) == names
     assert any(note.startswith("text in ") for note in log.notes)
     quantities = ("time", "position", "actuator_force", "interaction_force")
-    found = [max(quantities, key=lambda q: likeness(name, q)) for name in names]
-    assert found == list(quantities)
+    matches = [max(quantities, key=lambda q: likeness(name, q)) for name in names]
+    assert matches == list(quantities)
 
 
 @pytest.mark.parametrize("more", [0, 1, 2])

@@ -77,12 +77,12 @@ def test_arrays_of_several_trials_start_anew_at_each():
         td.experiment(data, segment="trail", **words)
 
 
-def test_no_gap_is_said_where_trials_follow_at_once():
+def test_no_gap_is_reported_where_trials_follow_at_once():
     """It was the rest of a difference: "the longest gap 3.34e-16 s"."""
     data = {"t": T, "trial": TRIAL, "q": Q, "u": U}
     made = td.experiment(
         data, axis="revolute", position="q", actuator_force="u", segment="trial", inertia=0.02
     )
-    (found,) = check_segments(made.records[0])
-    assert "with no gap between them" in found.sentence
-    assert found.numbers["longest_gap"] == pytest.approx(0.0, abs=1e-9)
+    (finding,) = check_segments(made.records[0])
+    assert "with no gap between them" in finding.sentence
+    assert finding.numbers["longest_gap"] == pytest.approx(0.0, abs=1e-9)

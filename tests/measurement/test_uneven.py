@@ -103,7 +103,7 @@ def test_a_few_rows_that_came_very_late_do_not_take_the_even_clock_away(seed, wo
     assert np.array_equal(record.signals["device.position"], motion(t))
 
 
-def test_a_command_that_changes_between_rows_is_read_by_its_own_clock():
+def test_a_command_that_changes_between_rows_is_read_by_the_clock_of_the_command():
     generator = np.random.default_rng(5)
     t = np.arange(4000) / RATE
     stamps = t + 0.05 / RATE * np.clip(generator.standard_normal(4000), -3, 3)
@@ -147,7 +147,7 @@ def test_a_wrapped_angle_a_gear_and_a_sign_are_undone():
     assert np.ptp(left) < 1e-9
 
 
-def test_counts_say_their_own_resolution():
+def test_counts_state_their_resolution():
     t = np.arange(2000) / RATE
     counts = np.round(motion(t) / (2 * np.pi) * 4096)
     channel = {"column": "q", "unit": "counts", "counts_per_turn": 4096}

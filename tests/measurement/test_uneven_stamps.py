@@ -37,7 +37,7 @@ def test_rows_that_are_missing_leave_their_places(seed, jitter):
 
 
 @pytest.mark.parametrize(("lost", "pauses"), [((5, 5), 0), ((6, 5), 1), ((6, 40), 2)])
-def test_a_pause_parts_the_rows_and_the_longest_is_said(lost, pauses):
+def test_a_pause_parts_the_rows_and_the_longest_is_reported(lost, pauses):
     h, places = 0.01, np.arange(900)
     for at, n in zip((200, 500), lost, strict=True):
         places[at:] += n

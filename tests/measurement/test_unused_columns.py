@@ -61,11 +61,11 @@ def test_the_table_the_file_and_the_picture_say_what_is_not_used(tmp_path, monke
     lines = [",".join(map(str, row)) for row in rows]
     (tmp_path / "log.csv").write_text("\n".join([",".join(table), *lines]) + "\n")
     assert main(["new", "log.csv", "--yes", "--output", "joint"]) == 0
-    told, written = capsys.readouterr().out, (tmp_path / "joint" / "experiment.toml").read_text()
+    output, written = capsys.readouterr().out, (tmp_path / "joint" / "experiment.toml").read_text()
     comments = [line for line in written.splitlines() if line.startswith("#   ")]
     assert len(comments) == len(OTHERS)
     for name, (_, why) in OTHERS.items():
-        assert any(line.strip().startswith(name) and why in line for line in told.splitlines())
+        assert any(line.strip().startswith(name) and why in line for line in output.splitlines())
         assert any(f'"{name}"' in line and why in line for line in comments)
 
 
@@ -101,7 +101,7 @@ def test_a_force_that_balances_with_the_command_is_the_hands_whatever_its_name(s
     assert "other" in survey.unused
 
 
-def test_a_log_whose_hand_force_is_said_to_be_none_has_none():
+def test_a_log_has_no_hand_force_where_the_user_states_that_there_is_none():
     survey = look({**COLUMNS, "ch3": HAND}, interaction_force="none")
     assert "interaction_force" not in survey.channels
     assert "ch3" in survey.unused
@@ -123,8 +123,8 @@ def test_no_other_column_is_taken_for_the_hands_force(other):
 
 def test_columns_that_may_be_the_position_as_well_make_it_a_guess():
     two = {"t": T, "q_0": COLUMNS["x"], "q_1": np.roll(COLUMNS["x"], 400), "u": COLUMNS["u"]}
-    said = look(two).guesses["channels.position.column"]
-    assert "'q_0' is read as the position" in said and "'q_1' may be the position as well" in said
+    guess = look(two).guesses["channels.position.column"]
+    assert "'q_0' is read as the position" in guess and "'q_1' may be the position as well" in guess
 
 
 def test_a_log_is_used_whole_however_much_of_it_is_looked_at():
@@ -146,10 +146,10 @@ def currents(feedback, noise=0.02):
 
     feedback: N, friction that the model lacks and that feedback adds
     """
-    asked = COLUMNS["u"] + HAND
+    columns = COLUMNS["u"] + HAND
     lacking = feedback * np.sign(VELOCITY) * np.exp(-((VELOCITY / 0.1) ** 2))
-    made = np.r_[np.zeros(2), (asked + lacking)[:-2]] + noise * RNG.standard_normal(ROWS)
-    return {"t": T, "x": COLUMNS["x"], "target_current": asked / 5, "actual_current": made / 5}
+    made = np.r_[np.zeros(2), (columns + lacking)[:-2]] + noise * RNG.standard_normal(ROWS)
+    return {"t": T, "x": COLUMNS["x"], "target_current": columns / 5, "actual_current": made / 5}
 
 
 def test_a_wanted_current_that_did_not_act_leaves_its_place_to_the_measured_one():

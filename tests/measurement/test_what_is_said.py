@@ -58,7 +58,7 @@ def test_without_a_velocity_the_unit_is_that_of_the_range(axis, reach, unit):
     turning = T * np.ptp(Q) / T[-1] + 0.01 * Q  # no wrap: it goes on and on
     survey = look({"t_s": T, "pos": reach * turning / np.ptp(turning), "i_A": U}, axis=axis)
     assert survey.channels["position"]["unit"] == unit
-    assert "from its range" in survey.guesses["channels.position.unit"]
+    assert "have a range of" in survey.guesses["channels.position.unit"]
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -96,30 +96,32 @@ def with_velocity(change):
 
 
 @pytest.mark.parametrize("late", [5, -5])
-def test_a_velocity_that_is_late_or_early_is_said_to_with_the_time(late):
-    (found,) = with_velocity(lambda t, v: np.roll(v, late))
-    assert found.concern == "note" and found.numbers["shift"] == pytest.approx(late / 500, rel=0.05)
+def test_a_velocity_that_is_late_or_early_is_reported_with_the_time(late):
+    (finding,) = with_velocity(lambda t, v: np.roll(v, late))
+    assert finding.concern == "note" and finding.numbers["shift"] == pytest.approx(
+        late / 500, rel=0.05
+    )
     word = "lags" if late > 0 else "leads"
-    assert f"velocity {word} position by 10 ms" in found.sentence
+    assert f"velocity {word} position by 10 ms" in finding.sentence
 
 
 @pytest.mark.parametrize(
     ("factor", "topics"),
     [(1.0, []), (1.04, []), (0.96, []), (1.06, ["units"]), (0.94, ["units"]), (-1.0, ["units"])],
 )
-def test_a_velocity_in_other_units_is_told_from_a_factor_of_a_twentieth(factor, topics):
-    found = with_velocity(lambda t, v: factor * v)
-    assert [f.topic for f in found] == topics
-    for one in found:
+def test_a_velocity_in_other_units_is_reported_from_a_factor_of_a_twentieth(factor, topics):
+    findings = with_velocity(lambda t, v: factor * v)
+    assert [f.topic for f in findings] == topics
+    for one in findings:
         assert one.numbers["factor"] == pytest.approx(factor, rel=1e-3)
         assert "times the derivative of position" in one.sentence
 
 
 def test_a_velocity_of_something_else_is_not_given_a_factor():
     random = np.random.default_rng(0)
-    (found,) = with_velocity(lambda t, v: np.cumsum(random.standard_normal(len(t))))
-    assert "does not follow the position's derivative" in found.sentence
-    assert found.concern == "warning" and found.numbers["left"] > 0.5
+    (finding,) = with_velocity(lambda t, v: np.cumsum(random.standard_normal(len(t))))
+    assert "does not follow the position's derivative" in finding.sentence
+    assert finding.concern == "warning" and finding.numbers["left"] > 0.5
     assert with_velocity(lambda t, v: np.ones(len(t))) == []
 
 
@@ -134,7 +136,7 @@ def test_spans_within_a_log_that_do_not_overlap_are_taken(spans):
 
 
 @pytest.mark.parametrize(
-    ("spans", "said"),
+    ("spans", "message"),
     [
         (((0, 5), (4.9, 10)), "expected spans that do not overlap"),
         (((4, 9), (0, 4.1)), "expected spans that do not overlap"),
@@ -144,8 +146,8 @@ def test_spans_within_a_log_that_do_not_overlap_are_taken(spans):
         (((0, 5), (10, 12)), "check span: found 10 to 12 s"),
     ],
 )
-def test_spans_that_overlap_or_lie_outside_are_refused(spans, said):
-    with pytest.raises(ExperimentError, match=said):
+def test_spans_that_overlap_or_lie_outside_are_refused(spans, message):
+    with pytest.raises(ExperimentError, match=message):
         check_spans(spans, 10.0, ["log.csv"])
     with pytest.raises(ExperimentError, match="found 2 logs"):
         check_spans(((0, 5), (5, 10)), 10.0, ["a.csv", "b.csv"])
@@ -172,7 +174,7 @@ WHOLE = RecordClock(
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "message"),
     [
         ({}, None),
         ({"dropped": 2}, "2 rows with the stamp of another"),
@@ -183,9 +185,9 @@ WHOLE = RecordClock(
         ({"counted": True}, "stamps that many rows share"),
     ],
 )
-def test_what_was_done_about_stamps_is_said_once_and_only_where_it_was(changes, said):
+def test_what_was_done_about_stamps_is_reported_once_and_only_where_it_was(changes, message):
     steps = _order(replace(WHOLE, **changes), "log.csv", 100)
-    assert [s.observed for s in steps] == ([] if said is None else [said])
+    assert [s.observed for s in steps] == ([] if message is None else [message])
 
 
 @pytest.mark.parametrize(

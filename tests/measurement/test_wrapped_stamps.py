@@ -19,7 +19,7 @@ def test_a_counter_that_wraps_counts_on(bits, step, late):
     assert notes == (f"a counter of {bits} bits wraps: time counts on",)
 
 
-def test_how_often_a_counter_wraps_is_said_and_rows_without_a_stamp_stay_so():
+def test_how_often_a_counter_wraps_is_reported_and_rows_without_a_stamp_stay_so():
     counts = 100 * np.arange(2000.0)
     stamps = counts % 2**16
     stamps[[5, 700, 1500]] = np.nan

@@ -138,7 +138,7 @@ def test_the_command_moves_the_model_as_asked(one_speed):
     assert np.std(motion.lowpassed(left)) < 2e-3 * np.std(whole)
 
 
-def test_the_reference_is_written_with_the_experiments_own_header_units_and_sample_time(
+def test_the_reference_is_written_with_header_units_and_sample_time_of_the_experiment(
     one_speed, tmp_path
 ):
     _, experiment, proposal = one_speed
@@ -164,7 +164,7 @@ def test_rivals_are_what_the_records_leave_open(one_speed):
 
 
 @pytest.mark.slow
-def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed):
+def test_the_predicted_separation_holds_on_an_independent_simulator(one_speed):
     rod, _, proposal = one_speed
     new = rod.records(proposal.reference.position["device"])
     after = refit(proposal.rivals, new, proposal.bench)
@@ -180,14 +180,14 @@ def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed
 
 
 @pytest.mark.slow
-def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_path):
+def test_no_motion_distinguishes_two_laws_that_need_the_same_force(tmp_path):
     _, experiment = POOR["one place"].experiment(tmp_path / "bias", 1)
     proposal = propose(diagnosed(experiment, FEW))
     assert {r.candidate.effect.name for r in proposal.rivals} == {"bias", "coulomb_asymmetry"}
     # the two differ in nothing but rounding, along any motion and with any change of the set-up
     assert all(s.predicted < 1e-3 for s in proposal.separations)
-    tried = proposal.remedies[0, 1]
-    assert len(tried) >= 6 and all(r.separation < 1e-3 for r in tried)
+    remedy = proposal.remedies[0, 1]
+    assert len(remedy) >= 6 and all(r.separation < 1e-3 for r in remedy)
     assert "only knowledge of the device can say" in proposal.sentence
     assert not proposal.is_useful and "follow the reference" not in proposal.sentence
 
@@ -202,10 +202,10 @@ def test_where_the_records_decide_nothing_is_proposed(diagnosis):
 
 def test_findings_carry_the_numbers_of_their_sentences(one_speed):
     _, _, proposal = one_speed
-    found = proposal.findings()
-    assert [f.topic for f in found][:2] == ["next experiment", "separation of rivals"]
-    assert found[0].graph is not None and found[0].graph.y_label == "position reference (mm)"
-    assert found[1].numbers["predicted 0"] == proposal.separations[0].predicted
+    findings = proposal.findings()
+    assert [f.topic for f in findings][:2] == ["next experiment", "separation of rivals"]
+    assert findings[0].graph is not None and findings[0].graph.y_label == "position reference (mm)"
+    assert findings[1].numbers["predicted 0"] == proposal.separations[0].predicted
     json.dumps(proposal_data(proposal), allow_nan=False)
 
 
@@ -222,7 +222,7 @@ def test_the_figure_draws_motion_residual_and_separations(one_speed):
 
 
 @pytest.mark.slow
-def test_limits_of_the_users_own_are_kept_and_wrong_ones_refused(one_speed):
+def test_limits_of_the_user_are_kept_and_wrong_ones_refused(one_speed):
     _, _, proposal = one_speed
     shown = shown_limits(proposal.diagnosis.prepared)["device"]
     slow = shown.with_values(speed=0.5 * shown.speed, high=0.5 * shown.high)
@@ -273,9 +273,9 @@ def known_of(poor, number):
 def proposed(case, number, folder):
     poor = POOR[case]
     rod, experiment = poor.experiment(folder, number)
-    found = diagnosed(experiment, known_of(poor, number))
-    wider = {b: own.widen(poor.wider) for b, own in shown_limits(found.prepared).items()}
-    return poor, rod, experiment, propose(found, limits=wider)
+    diagnosis = diagnosed(experiment, known_of(poor, number))
+    wider = {b: limits.widen(poor.wider) for b, limits in shown_limits(diagnosis.prepared).items()}
+    return poor, rod, experiment, propose(diagnosis, limits=wider)
 
 
 CASES = [(c, k) for c, p in POOR.items() for k in range(len(p.truths)) if len(p.truths) > 1]
@@ -283,7 +283,7 @@ CASES = [(c, k) for c, p in POOR.items() for k in range(len(p.truths)) if len(p.
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("case", "number"), [c for c in CASES if c[0] != "no scale of force"])
-def test_what_is_predicted_is_found_and_then_named(case, number, tmp_path):
+def test_what_is_predicted_is_measured_and_then_named(case, number, tmp_path):
     poor, rod, experiment, proposal = proposed(case, number, tmp_path / "case")
     truth, other = (number_of(proposal, poor.rivals[i]) for i in (number, 1 - number))
     new = rod.records(proposal.reference.position["device"])
@@ -293,9 +293,9 @@ def test_what_is_predicted_is_found_and_then_named(case, number, tmp_path):
         for s in proposal.separations
         if s.truth is proposal.rivals[truth] and s.other is proposal.rivals[other]
     )
-    found = after.separation(truth=truth, other=other)
+    separation = after.separation(truth=truth, other=other)
     # found over predicted lay between 0.4 and 1.1 when this was written; the servo is not known
-    assert 0.3 * predicted < found < 2.0 * predicted
+    assert 0.3 * predicted < separation < 2.0 * predicted
     again = diagnosed(with_records(experiment, new), known_of(poor, number))
     named = {c.effect.name for c in (*again.missing, *(c for g in again.groups for c in g))}
     if predicted >= 1.0:

@@ -123,13 +123,13 @@ def parts(function):
     module = importlib.import_module(function.__module__)
     tree = ast.parse(inspect.getsource(module))
     known = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
-    todo, seen = [function.__name__], {}
+    todo, functions = [function.__name__], {}
     while todo:
         name = todo.pop()
-        if name not in seen:
-            seen[name] = ast.Module(known[name].body, [])  # without its decorator's numbers
-            todo += [n.id for n in ast.walk(seen[name]) if getattr(n, "id", None) in known]
-    return seen.values()
+        if name not in functions:
+            functions[name] = ast.Module(known[name].body, [])  # without its decorator's numbers
+            todo += [n.id for n in ast.walk(functions[name]) if getattr(n, "id", None) in known]
+    return functions.values()
 
 
 @pytest.mark.parametrize("name", [n for n in SHOWN if STATEMENTS[n].how in ("proved", "refuted")])
@@ -224,10 +224,10 @@ def test_a_refutation_needs_both_the_failure_and_the_corrected_form():
     assert check(stated(Correction(TRUE, WRONG), "refuted")).outcome == "failed"
 
 
-@pytest.mark.parametrize("found", [1.2, 0.8, float("nan")])
-def test_a_number_out_of_its_range_fails_a_proof_beside_it(found):
+@pytest.mark.parametrize("number", [1.2, 0.8, float("nan")])
+def test_a_number_out_of_its_range_fails_a_proof_beside_it(number):
     def numbers():
-        return Numbers((Figure("one", found, 0.9, 1.1),))
+        return Numbers((Figure("one", number, 0.9, 1.1),))
 
     assert check(stated(TRUE, numbers=numbers)).outcome == "failed"
     assert check(stated(numbers(), "checked numerically")).outcome == "failed"
@@ -269,7 +269,7 @@ def test_the_command_prints_a_row_for_every_statement(capsys, monkeypatch):
     assert lines[-1].startswith("8 statements in") and lines[-1].endswith("8 proved.")
 
 
-def test_a_failing_statement_is_said_and_gives_status_1(capsys, monkeypatch):
+def test_a_failing_statement_is_reported_and_gives_status_1(capsys, monkeypatch):
     from teleopdesign import papers
 
     monkeypatch.setattr(papers, "STATEMENTS", {"P1": stated(WRONG)})

@@ -24,9 +24,9 @@ def force_rate(speed, force):
     made = controller("dahl", {"level": LEVEL, "stiffness": STIFFNESS}).equation("C", SIGNALS)
     (state,) = made.rates
     names = {"C_dahl_level": f_c, "C_dahl_stiffness": sigma, "travel_rate": speed}
-    given_ = {s: names[s.name] for s in made.rates[state].free_symbols if s.name in names}
+    values = {s: names[s.name] for s in made.rates[state].free_symbols if s.name in names}
     return sp.expand(
-        (sigma * made.rates[state]).subs(given_, simultaneous=True).subs(state, force / sigma)
+        (sigma * made.rates[state]).subs(values, simultaneous=True).subs(state, force / sigma)
     )
 
 
@@ -73,9 +73,9 @@ def test_the_sampled_compensator_is_the_exact_solution_over_the_travel():
     """Eq (9), with s = sgn(x_next - x): the generated code, sample by sample."""
     positions = 1e-4 * np.array([0.0, 0.3, 0.9, 0.9, 0.5, -0.4, -3.0, 2.0, 2.0, 2.1])
     force = 0.0
-    for found, dx in zip(sampled(positions)[1:], np.diff(positions), strict=True):
+    for sample, dx in zip(sampled(positions)[1:], np.diff(positions), strict=True):
         force = exact(force, dx)
-        assert found == pytest.approx(force, abs=1e-14)
+        assert sample == pytest.approx(force, abs=1e-14)
 
 
 def test_eq_9_solves_eq_2_at_any_speed():

@@ -49,5 +49,5 @@ def test_the_force_turns_after_the_travel_that_dahl_says(result, length):
     travel = length * np.log(2 / (1 + study.INERTIA * acceleration / study.LEVEL))
     speed = np.sqrt(2 * acceleration * travel)
     # the acceleration falls by 1 % until there, and a row lies up to a step beyond
-    found = result.crossing[f"presliding {1e3 * length:g} mm"]
-    assert found == pytest.approx(speed, rel=0.01)
+    crossing = result.crossing[f"presliding {1e3 * length:g} mm"]
+    assert crossing == pytest.approx(speed, rel=0.01)

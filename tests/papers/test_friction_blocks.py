@@ -30,10 +30,10 @@ def gain_at_rest_of_time(speed):
 
 
 def renamed(expression, names):
-    found = {
+    replacements = {
         s: new for s in expression.free_symbols for n, new in names.items() if s.name.endswith(n)
     }
-    return expression.subs(found)
+    return expression.subs(replacements)
 
 
 def coulomb(speed):
@@ -104,17 +104,17 @@ def test_the_rod_moves_only_if_the_loop_can_overcome_friction(share, moves):
         / read_open_number("position_pole")
     )
     amplitude = share * read_open_number("coulomb_level") / stiffness
-    give = 1e-5
+    width = 1e-5
     result = simulate(
         diagram,
         duration=2.0,
         inputs={"L_D": lambda t: amplitude * np.sin(2 * np.pi * 0.5 * t)},
         computer="continuous",
-        give=give,
+        give=width,
         jit=False,
         step=2e-4,
         long_step="refine",
     )
     travel = float(np.abs(result["L"]).max())
     # stuck: the bristle gives by give * log(1/(1 - share)), with the inertial force a little more
-    assert (travel > 0.2 * amplitude) if moves else (travel < 5 * give)
+    assert (travel > 0.2 * amplitude) if moves else (travel < 5 * width)

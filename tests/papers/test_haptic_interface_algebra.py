@@ -100,7 +100,7 @@ def test_the_measured_impedance_does_not_contain_the_load():
 
 
 @pytest.mark.parametrize(
-    ("name", "given", "left"),
+    ("name", "values", "left"),
     [
         ("T_MBC", {C: Z_M}, sp.S(1)),
         ("Zhat_M", {C: Z_M}, sp.S(0)),
@@ -109,9 +109,9 @@ def test_the_measured_impedance_does_not_contain_the_load():
         ("T_H", {C: 0, H: 0}, DERIVED["T_o"]),
     ],
 )
-def test_limits_of_the_transfer_functions(name, given, left):
+def test_limits_of_the_transfer_functions(name, values, left):
     """C = Z_M is perfect; with H = 0 or C = 0 the hybrid is MBC, FF or nothing."""
-    assert proved_equal(sp.sympify(DERIVED[name]).subs(given), left)
+    assert proved_equal(sp.sympify(DERIVED[name]).subs(values), left)
 
 
 def test_force_feedback_becomes_perfect_as_its_gain_grows():

@@ -39,18 +39,18 @@ def test_cancellation_brings_no_oscillation(free_space):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("case", "share"), [("no compensation", 0.0), ("90 % cancelled", 0.9)])
-def test_in_contact_the_loop_narrows_to_the_rubbers_own(contact, case, share):
-    own = contact.environment[case]
-    series = 1 + own.stiffness / 2000.0
-    found = contact.loops[case]
+def test_in_contact_the_loop_narrows_to_that_of_the_rubber(contact, case, share):
+    rubber = contact.environment[case]
+    series = 1 + rubber.stiffness / 2000.0
+    loop = contact.loops[case]
     friction = 2 * (1 - share) / series
     # damping of both sides and the rubber's own loop come on top: 0.1 N each
-    assert friction < found.width < friction + 0.25
-    assert found.stiffness == pytest.approx(own.stiffness / series, rel=0.05)
+    assert friction < loop.width < friction + 0.25
+    assert loop.stiffness == pytest.approx(rubber.stiffness / series, rel=0.05)
 
 
 @pytest.mark.slow
-def test_the_rubber_keeps_a_small_loop_of_its_own(contact):
+def test_the_rubber_keeps_a_small_loop(contact):
     for loop in contact.environment.values():
         assert 0.05 < loop.width < 0.2
 

@@ -84,14 +84,14 @@ def _impedance_falsified(c, rng):
 def _storage_falsified(c, rng, tries):
     states, fixed = list(c["rates"]), {*c["rates"], *c["constants"]}
     names = [*c["constants"], *c["signals"], *states]
-    given = {n: Fraction(c["example"].get(n, "0")) for n in names}
+    example = {n: Fraction(c["example"].get(n, "0")) for n in names}
 
     def values(base, slopes=None, signs=None):
-        found = {n: Dual(x, (slopes or {}).get(n, 0)) for n, x in base.items()}
+        point = {n: Dual(x, (slopes or {}).get(n, 0)) for n, x in base.items()}
         for x in c["signs"]:
             s = (signs or {}).get(x) or (1 if base[x] >= 0 else -1)
-            found["sign_" + x], found["abs_" + x] = Dual(s), Dual(s) * found[x]
-        return found
+            point["sign_" + x], point["abs_" + x] = Dual(s), Dual(s) * point[x]
+        return point
 
     def at(text, *arguments):
         return evaluated(text, values(*arguments))
@@ -103,17 +103,17 @@ def _storage_falsified(c, rng, tries):
             and all(at(h["expression"], base).value >= 0 for h in c["invariant"].values())
         )
 
-    rest = given | {x: Fraction(0) for x in (*states, *c["signs"])}
-    if not allowed(given) or not allowed(rest) or at(c["storage"], rest).value != 0:
+    rest = example | {x: Fraction(0) for x in (*states, *c["signs"])}
+    if not allowed(example) or not allowed(rest) or at(c["storage"], rest).value != 0:
         return "the example or rest does not meet what is assumed"
     inner = [c["storage"], *(h["expression"] for h in c["invariant"].values())]
     for _ in range(tries):
-        base = {n: _tried(x, rng) for n, x in given.items()}
+        base = {n: _varied(x, rng) for n, x in example.items()}
         if not allowed(base):
-            base = given | {n: base[n] for n in rng.sample(names, min(len(names), 2))}
+            base = example | {n: base[n] for n in rng.sample(names, min(len(names), 2))}
         if not allowed(base):
             continue
-        other = {n: x if n in fixed else _tried(x, rng) for n, x in base.items()}
+        other = {n: x if n in fixed else _varied(x, rng) for n, x in base.items()}
         if any(at(e, base).value != at(e, other).value for e in inner):
             return "V or h moves with a signal"
         for x in c["signs"]:
@@ -132,7 +132,7 @@ def _storage_falsified(c, rng, tries):
     return None
 
 
-def _tried(x, rng):
+def _varied(x, rng):
     if rng.random() < 0.3:
         return x
     if rng.random() < 0.5:

@@ -38,7 +38,7 @@ class FrictionSystem:
     """A device and its compensator, SI; 0 or None where a part is not there.
 
     level: f_C;  extra: f_S - f_C, over stribeck_velocity;  stiffness: presliding;  damping: B
-    own_level: f_D;  second: sigma_D of `dahl`, a of `smoothed_coulomb`
+    compensator_level: f_D;  second: sigma_D of `dahl`, a of `smoothed_coulomb`
     period: of the computer, 0 in continuous time;  late: whole periods;  time: a scale, s
     """
 
@@ -48,7 +48,7 @@ class FrictionSystem:
     stiffness: float | None
     damping: float
     law: str
-    own_level: float
+    compensator_level: float
     second: float
     period: float
     late: int
@@ -81,7 +81,7 @@ class FrictionSystem:
                 "stribeck_velocity": self.stribeck_velocity,
             }
             body = body.with_effect(td.EFFECTS["stribeck"], values)
-        values = {"level": self.own_level}
+        values = {"level": self.compensator_level}
         if self.law != "coulomb":
             second = {"dahl": "stiffness", "smoothed_coulomb": "smoothing_velocity"}[self.law]
             values[second] = self.second
@@ -100,14 +100,14 @@ def random_system(rng):
     damping = force / speed * 10 ** rng.uniform(-2, 2) if there[2] else 0.0
     smoothing = speed * 10 ** rng.uniform(-2, 2)
     spread = 0.3 if rng.random() < 0.5 else 3.0  # decades beside the limit
-    own = force * 10 ** rng.uniform(-spread, spread)
+    level_of_law = force * 10 ** rng.uniform(-spread, spread)
     if rng.random() < 0.1:
-        own = force  # the limit itself
+        level_of_law = force  # the limit itself
     if law == "smoothed_coulomb" and damping and rng.random() < 0.7:
         least = 0.0 if there[1] else force
-        own = (math.sqrt(least) + math.sqrt(smoothing * damping)) ** 2
-        own *= 10 ** rng.uniform(-spread, spread)
-    stiff = force / length * math.sqrt(own / force) * 10 ** rng.uniform(-spread, spread)
+        level_of_law = (math.sqrt(least) + math.sqrt(smoothing * damping)) ** 2
+        level_of_law *= 10 ** rng.uniform(-spread, spread)
+    stiff = force / length * math.sqrt(level_of_law / force) * 10 ** rng.uniform(-spread, spread)
     return FrictionSystem(
         level=force,
         extra=force * 10 ** rng.uniform(-1.5, 0) if there[0] else 0.0,
@@ -115,7 +115,7 @@ def random_system(rng):
         stiffness=stiffness,
         damping=damping,
         law=law,
-        own_level=own,
+        compensator_level=level_of_law,
         second=stiff if law == "dahl" else smoothing,
         period=time * 10 ** rng.uniform(-2, 0.5) if there[3] else 0.0,
         late=int(rng.integers(3)) if there[3] else 0,
@@ -142,22 +142,22 @@ def verdict(system):
 def _dahl_claims(system):
     """Slow motion meets the static level; every level that occurs; small motion as sampled."""
     pair = {
-        "compensator_level": system.own_level,
+        "compensator_level": system.compensator_level,
         "compensator_stiffness": system.second,
         "presliding_stiffness": system.stiffness,
     }
     static = system.level + system.extra
-    found = [("slow", dahl_compensation(coulomb_level=static, **pair))]
+    claims = [("slow", dahl_compensation(coulomb_level=static, **pair))]
     if system.stiffness is None:
-        every = bounded_compensation(coulomb_level=system.level, bound=system.own_level)
+        every = bounded_compensation(coulomb_level=system.level, bound=system.compensator_level)
         if every.status == "proved":
-            found.append(("every level", every))
-        return found
+            claims.append(("every level", every))
+        return claims
     if not system.period:
         every = dahl_compensation(coulomb_level=system.level, highest_level=static, **pair)
         if every.status == "proved":
-            found.append(("every level", every))
-        return found
+            claims.append(("every level", every))
+        return claims
     small = sampled_passivity(
         -system.second * sp.Symbol("z") ** -system.late,
         damping=system.damping,
@@ -171,14 +171,14 @@ def _dahl_claims(system):
         late=system.late,
         **pair,
     )
-    return [*found, ("small", small), ("trembling", trembling)]
+    return [*claims, ("small", small), ("trembling", trembling)]
 
 
 def _velocity_claims(system):
     """The lowest level, which is necessary too where the level is constant or the contact gives."""
     claim = velocity_compensation(
         coulomb_level=system.level,
-        compensator_level=system.own_level,
+        compensator_level=system.compensator_level,
         smoothing_velocity=system.second if system.law == "smoothed_coulomb" else 0,
         viscous_damping=system.damping,
         presliding_stiffness=system.stiffness,
@@ -200,7 +200,7 @@ def _steady_excess(system):
     scale = system.length / system.time
     best = None
     for speed in scale * np.geomspace(1e-5, 1e5, 200):
-        helped = system.own_level * speed / (smoothing + speed)
+        helped = system.compensator_level * speed / (smoothing + speed)
         gain = helped - system.level_at(speed) - system.damping * speed
         if best is None or gain > best[0]:
             best = gain, float(speed), helped
@@ -209,11 +209,11 @@ def _steady_excess(system):
         return None
     lost = (1 + system.late) * system.period * speed
     if system.law == "dahl":
-        lost += system.own_level / system.second
+        lost += system.compensator_level / system.second
     if system.stiffness is not None:
         lost += system.length
     return SteadyStrokes(
-        system.own_level,
+        system.compensator_level,
         smoothing,
         Coulomb(system.level_at(speed)),
         system.damping,
@@ -249,7 +249,7 @@ def searched_motions(system, rng, number):
     scale = system.length / system.time
     lengths = [system.length]
     if system.law == "dahl":
-        lengths.append(system.own_level / system.second)
+        lengths.append(system.compensator_level / system.second)
     speeds = [scale]
     if system.law == "smoothed_coulomb":
         speeds.append(system.second)
@@ -274,23 +274,23 @@ def give_of(system, strokes):
     """Give of ideal friction: small against the motion and the compensator's bristle."""
     lengths = [max(map(abs, strokes.points))]
     if system.law == "dahl":
-        lengths.append(system.own_level / system.second)
+        lengths.append(system.compensator_level / system.second)
     return min(lengths) / 300
 
 
-def found_by_search(system, rng, *, number):
+def search_motion(system, rng, *, number):
     """A motion that gives out energy beyond doubt in simulation, or None."""
     diagram, good = system.diagram(), []
     for strokes in searched_motions(system, rng, number):
         if not affordable(system, strokes):
             continue
-        give = give_of(system, strokes)
+        width = give_of(system, strokes)
         try:
-            found = released_energy(diagram, strokes, computer=system.computer, give=give)
+            energy = released_energy(diagram, strokes, computer=system.computer, give=width)
         except ModelError:  # a contact too stiff for steps that this search can afford
             continue
-        if found.last_round > 0:
-            good.append((found.last_round / found.turned, strokes))
+        if energy.last_round > 0:
+            good.append((energy.last_round / energy.turned, strokes))
     for _, strokes in sorted(good, key=lambda x: -x[0])[:2]:
         motion = confirmed(system, strokes)
         if motion is not None:

@@ -49,11 +49,11 @@ def semidefinite(rng, rank):
 
 def shapes(rng, *, lossy):
     """Positive-real functions of s: constant, poles at 0, infinity, on the axis, decaying ones."""
-    found = [sp.S(1), 1 / S, S, S / (S**2 + number(rng)), S / (S**2 + number(rng))]
+    entries = [sp.S(1), 1 / S, S, S / (S**2 + number(rng)), S / (S**2 + number(rng))]
     if lossy:
-        found += [1 / (S + number(rng)), (S + 1) / (S**2 + number(rng) * S + number(rng))]
-    chosen = rng.permutation(len(found))[: int(rng.integers(1, 4))]
-    return [found[k] for k in chosen]
+        entries += [1 / (S + number(rng)), (S + 1) / (S**2 + number(rng) * S + number(rng))]
+    chosen = rng.permutation(len(entries))[: int(rng.integers(1, 4))]
+    return [entries[k] for k in chosen]
 
 
 def spoiled(rng, m):
@@ -159,7 +159,7 @@ def _floats(poly):
     return np.array([float(c) for c in poly.all_coeffs()])
 
 
-def own_frequencies(parts):
+def corner_frequencies(parts):
     """Sizes of poles and zeros, 1/s."""
     roots = [r for p in parts if p.degree() > 0 for r in np.roots(_floats(p))]
     return sorted({abs(r) for r in roots if abs(r) > 0}) or [1.0]
@@ -242,7 +242,7 @@ def attack(rng, z, tries):
     """Terminations between which it grows; None where none of so many was found."""
     exact = closed_loop(z)
     parts = [_floats(p) for p in exact]
-    frequencies = own_frequencies(exact)
+    frequencies = corner_frequencies(exact)
     beside = frequencies[len(frequencies) // 2] * (0.1 + 1.1j)  # where no pole on the axis is
     d, *rest = (np.polyval(p, beside) for p in parts)
     size = max(abs(rest[0] / d), abs(rest[1] / d), abs(rest[2]) ** 0.5 / abs(d) ** 0.5) or 1.0
@@ -254,9 +254,9 @@ def attack(rng, z, tries):
     best, held = scored[0]
     for _ in range(tries // 2):  # climb: a step is kept where it grows faster
         near = tuple((a * 10 ** rng.normal(0, 0.3, len(a)), b) for a, b in held)
-        found = growth(characteristic(parts, near))
-        if found > best:
-            best, held = found, near
+        rate = growth(characteristic(parts, near))
+        if rate > best:
+            best, held = rate, near
     suspects = [held, *(h for g, h in scored[:3] if g > 1e-6)]
     for held in suspects if best > 1e-6 else ():
         if surely_grows(exact, held):
@@ -296,8 +296,8 @@ def _distance_from_singular(entries, mode, s):
     ]
     z11, z12, z21, z22 = (e(s) for e in entries)
     if ends[0] is None or ends[1] is None:
-        own, end = (z11, ends[0]) if ends[1] is None else (z22, ends[1])
-        return abs(own + end) / abs(own)
+        impedance, end = (z11, ends[0]) if ends[1] is None else (z22, ends[1])
+        return abs(impedance + end) / abs(impedance)
     left, right = (z11 + ends[0]) * (z22 + ends[1]), z12 * z21
     return abs(left - right) / (abs(left) + abs(right))
 

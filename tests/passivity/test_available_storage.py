@@ -14,30 +14,30 @@ CABLE = [Coulomb(1.0), Spring(2.0, 1e4)]
 
 def test_without_compensation_beyond_friction_the_storage_is_what_the_springs_hold():
     """Beside f_D = 0.5 N <= f_1 nothing but the cable's energy, and the bristle's, comes out."""
-    found = available_storage(Dahl(0.5, 1e4), CABLE, points=31)
-    assert found.is_finite
-    assert found.evidence().holds
+    storage = available_storage(Dahl(0.5, 1e4), CABLE, points=31)
+    assert storage.is_finite
+    assert storage.evidence().holds
     cable = 2.0**2 / (2 * 1e4)
     # released towards its rest the cable has to move the motor against 1 N: less comes out
-    assert 0 < found.storage.max() < cable + 0.5**2 / (2 * 1e4)
-    assert found.storage.min() >= 0
+    assert 0 < storage.storage.max() < cable + 0.5**2 / (2 * 1e4)
+    assert storage.storage.min() >= 0
 
 
-@pytest.mark.parametrize(("level", "settled"), [(1.2, True), (1.4, False), (3.2, False)])
-def test_storage_settles_below_the_limit_of_cycles_and_grows_above(level, settled):
+@pytest.mark.parametrize(("level", "is_finite"), [(1.2, True), (1.4, False), (3.2, False)])
+def test_storage_settles_below_the_limit_of_cycles_and_grows_above(level, is_finite):
     """sigma_D = 3 k: cycles give out energy from (3 - sqrt 3) f_1 on."""
-    found = available_storage(Dahl(level, 3e4), CABLE, points=31)
-    assert found.is_finite is settled
+    storage = available_storage(Dahl(level, 3e4), CABLE, points=31)
+    assert storage.is_finite is is_finite
     refuted = any(
         symmetric_cycle(Dahl(level, 3e4), CABLE, a).energy > 0 for a in np.geomspace(1e-5, 1e0, 60)
     )
-    assert refuted is not settled
+    assert refuted is not is_finite
 
 
 def test_a_gain_is_what_a_sliding_motor_gives_out_per_travel():
-    found = available_storage(Dahl(3.5, 3e3), CABLE, points=31)
+    storage = available_storage(Dahl(3.5, 3e3), CABLE, points=31)
     # so soft a bristle gives most by sliding one way for ever: f_D - f_1 - f_2
-    assert found.gain == pytest.approx(0.5, rel=1e-6)
+    assert storage.gain == pytest.approx(0.5, rel=1e-6)
 
 
 def test_a_contact_pressed_by_the_cable_covers_more():
@@ -85,7 +85,7 @@ def test_a_rigid_contact_behind_a_spring_is_the_spring_that_slides():
         (lambda: available_storage(Dahl(1.0, 1e9), [Spring(1.0, 1e-3)]), "would take minutes"),
     ],
 )
-def test_what_is_no_friction_or_takes_for_ever_is_said_in_one_line(make, words):
+def test_what_is_no_friction_or_takes_for_ever_is_reported_in_one_line(make, words):
     with pytest.raises(ModelError) as caught:
         make()
     assert words in str(caught.value) and "\n" not in str(caught.value)
@@ -109,11 +109,11 @@ def test_a_round_that_springs_still_feed_counts_for_no_more_than_all_rounds():
 
 def test_a_storage_that_still_grows_is_no_evidence_for_a_limit():
     """After few moves the gain is below its tolerance, for what comes out comes out slowly."""
-    found = available_storage(Dahl(1.27, 3e4), CABLE, points=31, moves=200)
-    found = replace(found, round_trip=0.0)  # as for motions of more than two turns
-    settled = replace(found, growth=0.0)
-    slow = replace(found, gain=found.tolerance / 2, growth=float(found.storage.max()) / 10)
-    assert replace(settled, gain=found.tolerance / 2).is_finite
+    storage = available_storage(Dahl(1.27, 3e4), CABLE, points=31, moves=200)
+    storage = replace(storage, round_trip=0.0)  # as for motions of more than two turns
+    final_storage = replace(storage, growth=0.0)
+    slow = replace(storage, gain=storage.tolerance / 2, growth=float(storage.storage.max()) / 10)
+    assert replace(final_storage, gain=storage.tolerance / 2).is_finite
     assert not slow.is_finite
     assert "still growing, by" in slow.evidence().searched
     assert not slow.evidence().holds

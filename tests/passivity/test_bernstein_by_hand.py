@@ -101,8 +101,8 @@ def poly(expression):
 )
 def test_a_sign_over_all_of_x_and_a_box_is_shown_where_it_is_so(expression, holds, scale):
     effort = ProofEffort(left=8_000)
-    found = is_non_negative_over(poly(expression), UNIT, scale, effort)
-    assert found is holds or (holds and expression == X**2 - 2 * X * Y + 1)
+    is_non_negative = is_non_negative_over(poly(expression), UNIT, scale, effort)
+    assert is_non_negative is holds or (holds and expression == X**2 - 2 * X * Y + 1)
     squares = [f.as_expr() for f in effort.squares]
     assert squares == ([X - 2] if (X - 2) ** 2 in sp.Mul.make_args(expression) else [])
 

@@ -66,7 +66,7 @@ PORTS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PORTS)
-def test_nothing_false_is_said_of_a_port_with_modes_inside(name):
+def test_no_false_claim_is_made_on_a_port_with_modes_inside(name):
     diagram, truth = PORTS[name]
     rng = np.random.default_rng(0)
 
@@ -98,7 +98,7 @@ BOXES = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BOXES)
-def test_nothing_false_is_said_of_a_box_that_touches_a_border(name):
+def test_no_false_claim_is_made_on_a_box_that_touches_a_border(name):
     diagram, box, truths = BOXES[name]
     for claim, truth in truths.items():
         assert not contradicts(
@@ -148,7 +148,7 @@ LATE = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LATE)
-def test_nothing_false_is_said_of_a_late_loop_on_a_border(name):
+def test_no_false_claim_is_made_on_a_late_loop_on_a_border(name):
     diagram, box, truth = LATE[name]
     assert not contradicts(
         lambda: claim_over_intervals(diagram, box, claim="stable", points=4), truth

@@ -185,12 +185,12 @@ def contradicts(ask, truth):
 
 
 @pytest.mark.parametrize(("impedance", "truth"), ONE_PORTS, ids=range(len(ONE_PORTS)))
-def test_nothing_false_is_said_of_a_port(impedance, truth):
+def test_no_false_claim_is_made_on_a_port(impedance, truth):
     assert not contradicts(lambda: positive_real(impedance), truth)
 
 
 @pytest.mark.parametrize(("entries", "dies", "bears"), TWO_PORTS, ids=range(len(TWO_PORTS)))
-def test_nothing_false_is_said_of_a_two_port(entries, dies, bears):
+def test_no_false_claim_is_made_on_a_two_port(entries, dies, bears):
     a, b, c, d = entries
     system = two_port([[a, b], [c, d]])
     assert not contradicts(lambda: passive(system), dies)
@@ -202,7 +202,7 @@ def test_nothing_false_is_said_of_a_two_port(entries, dies, bears):
     ("theorem", "numbers", "truth"), NUMBERS, ids=[f"{t.__name__} {k}" for k, (t, *_) in
                                                    enumerate(NUMBERS)]
 )  # fmt: skip
-def test_nothing_false_is_said_on_a_border_of_a_theorem(theorem, numbers, truth):
+def test_nothing_false_is_reported_on_a_border_of_a_theorem(theorem, numbers, truth):
     assert not contradicts(lambda: theorem(**numbers), truth)
 
 
@@ -212,7 +212,7 @@ def test_many_of_these_are_decided():
     assert decided.count("proved") >= len(decided) - 1
 
 
-def test_what_is_proved_holds_what_is_refuted_does_not_and_of_the_unknown_neither_is_said():
+def test_what_is_proved_holds_what_is_refuted_does_not_and_of_the_unknown_neither_is_reported():
     """And of evidence what its numbers say."""
     proved, refuted = positive_real(S + 2), positive_real(S - 2)
     assert (proved.status, proved.holds, proved.heading) == ("proved", True, "proved")
@@ -223,5 +223,5 @@ def test_what_is_proved_holds_what_is_refuted_does_not_and_of_the_unknown_neithe
     unknown = Claim("anything", Unknown("no reason"))
     assert (unknown.status, unknown.holds, unknown.heading) == ("unknown", None, "unknown")
     for holds, heading in ((True, "evidence"), (False, "evidence against")):
-        seen = Claim("anything", Evidence(holds, "a sweep", 0.5, "N s/m"))
-        assert (seen.status, seen.holds, seen.heading) == ("evidence", holds, heading)
+        claim = Claim("anything", Evidence(holds, "a sweep", 0.5, "N s/m"))
+        assert (claim.status, claim.holds, claim.heading) == ("evidence", holds, heading)

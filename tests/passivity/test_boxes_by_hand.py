@@ -169,26 +169,26 @@ def test_the_search_for_the_worst_goes_down_inside_and_along_the_sides(least):
         return float(3.0 + (point[0] - least[0]) ** 2 + 2 * (point[1] - least[1]) ** 2)
 
     nearest = np.clip(least, box.low, box.high)
-    found = search_worst(bowl, box, points=16, seed=0)
-    np.testing.assert_allclose(found.point, nearest, atol=2e-3)
-    assert found.margin == bowl(found.point) <= bowl(nearest) + 1e-5
-    assert np.all(found.point >= box.low) and np.all(found.point <= box.high)
+    minimum = search_worst(bowl, box, points=16, seed=0)
+    np.testing.assert_allclose(minimum.point, nearest, atol=2e-3)
+    assert minimum.margin == bowl(minimum.point) <= bowl(nearest) + 1e-5
+    assert np.all(minimum.point >= box.low) and np.all(minimum.point <= box.high)
     looked = []
     alone = search_worst(lambda p: looked.append(tuple(p)) or bowl(p), box, points=16, seed=0,
                          downhill=False)  # fmt: skip
-    assert alone.points == len(looked) == len({*looked}) == 4 + 1 + 16 < found.points
+    assert alone.points == len(looked) == len({*looked}) == 4 + 1 + 16 < minimum.points
     assert {(0.0, -1.0), (2.0, -1.0), (0.0, 1.0), (2.0, 1.0), (1.0, 0.0)} <= {*looked}
-    assert alone.margin == min(map(bowl, looked)) and found.margin <= alone.margin
+    assert alone.margin == min(map(bowl, looked)) and minimum.margin <= alone.margin
 
 
 def test_where_the_claim_fails_by_more_than_a_number_says_the_search_ends_there():
     box = box_of_values((0.0,), (1.0,))
-    found = search_worst(lambda p: -np.inf if p[0] == 1.0 else 1.0, box, points=4, seed=0)
-    assert found.margin == -np.inf and found.point == [1.0] and found.points == 2 + 1 + 4
+    point = search_worst(lambda p: -np.inf if p[0] == 1.0 else 1.0, box, points=4, seed=0)
+    assert point.margin == -np.inf and point.point == [1.0] and point.points == 2 + 1 + 4
 
 
 @pytest.mark.parametrize("damping", [1e-4, 1e-3, 0.03])
-def test_the_least_margin_beside_a_sharp_resonance_is_found_between_grid_points(damping):
+def test_the_least_margin_beside_a_sharp_resonance_is_detected_between_grid_points(damping):
     """Z = 5 - 1/(s + d + 1/s): a narrow dip of depth 1/d about 1 rad/s, whatever its width."""
     d = sp.Symbol("d")
     z = 5 * damping - damping**2 / (S + d + 1 / S)
@@ -213,7 +213,7 @@ def test_a_negative_spring_leaves_no_margin_though_its_real_part_is_that_of_the_
 
 
 @pytest.mark.slow
-def test_what_is_known_of_a_filtered_damper_is_said_of_each_point_by_itself():
+def test_what_is_known_of_a_filtered_damper_is_reported_for_each_point():
     """Its damper reads the velocity, its spring a filtered position: no family of one form."""
     law = controller("spring_damper", {"stiffness": 0.0, "damping": 1.0})
     low_pass = controller("low_pass", {"bandwidth": 5.0})

@@ -104,8 +104,8 @@ def test_the_checker_is_one_folder_that_imports_only_the_standard_library(file):
     """`__main__.py` imports its own package by a name that it has, and nothing else so."""
     source = file.read_text()
     nodes = [n for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Import | ast.ImportFrom)]
-    own = [n for n in nodes if isinstance(n, ast.ImportFrom) and n.level]
-    assert all(n.level == 1 and (FOLDER / f"{n.module}.py").is_file() for n in own)
+    imports = [n for n in nodes if isinstance(n, ast.ImportFrom) and n.level]
+    assert all(n.level == 1 and (FOLDER / f"{n.module}.py").is_file() for n in imports)
     names = {alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names}
     names |= {str(n.module) for n in nodes if isinstance(n, ast.ImportFrom) and not n.level}
     assert {n.split(".")[0] for n in names} <= sys.stdlib_module_names
@@ -142,11 +142,11 @@ def test_the_statement_is_made_from_the_content_and_holds_its_values(certificate
 
 
 def test_the_statement_names_rates_supply_storage_and_what_is_assumed(certificates):
-    said = certificates["lugre 0"].check()
+    statement = certificates["lugre 0"].check()
     for part in ("d/dt y = ", "V = y**2/(2*sigma_0)", "F_S - y >= 0", "g > 0", "sigma_0 = 100000"):
-        assert part in said
-    said = certificates["two-port 0"].check()
-    assert "[[s + 1 + 10/s, -10/s], [-10/s, s + 2 + 10/s]] is positive real" in said
+        assert part in statement
+    statement = certificates["two-port 0"].check()
+    assert "[[s + 1 + 10/s, -10/s], [-10/s, s + 2 + 10/s]] is positive real" in statement
 
 
 @pytest.mark.slow

@@ -32,8 +32,10 @@ SIZES = [Fraction(0), Fraction(1), Fraction(3, 2), Fraction(2), Fraction(-1), Fr
 
 
 @pytest.mark.parametrize("element", ["{}/s", "{}*s", "({})"])
-@pytest.mark.parametrize("own", [(1, 1), (1, 2), (2, Fraction(9, 8)), (0, 2)])
-def test_springs_masses_and_dampers_across_two_ports_are_stable_as_their_matrix_says(element, own):
+@pytest.mark.parametrize("matrix", [(1, 1), (1, 2), (2, Fraction(9, 8)), (0, 2)])
+def test_springs_masses_and_dampers_across_two_ports_are_stable_as_their_matrix_says(
+    element, matrix
+):
     """Where both ports act on each other alike: as far as the matrix gives out no energy.
 
     Where they act oppositely, as in a gyrator, dampers never give out any, and springs and masses
@@ -41,12 +43,12 @@ def test_springs_masses_and_dampers_across_two_ports_are_stable_as_their_matrix_
     """
     for across in SIZES:
         ways = {
-            (across, across): own[0] * own[1] >= across**2,
+            (across, across): matrix[0] * matrix[1] >= across**2,
             (across, -across): across == 0 or element == "({})",
             (across, 0): True,
         }
         for (forth, back), holds in ways.items():
-            entries = [element.format(x) for x in (own[0], forth, back, own[1])]
+            entries = [element.format(x) for x in (matrix[0], forth, back, matrix[1])]
             assert is_proved(two_port("absolute stability", entries)) == holds, entries
 
 
@@ -65,9 +67,9 @@ def test_a_second_opinion_assumes_no_more_than_the_certificate_says(share):
     """Where a damper is only known not to be negative, half of the supply's claim does not hold."""
     pytest.importorskip("z3")
     less = storage(supply=f"p*v + (b - {share})*v**2")
-    said = second_opinion(Certificate(less))
-    assert said.verdict == ("confirmed" if share == "0" else "refuted")
-    assert bool(said.counterexample) == bool(said.open) == (share != "0")
+    opinion = second_opinion(Certificate(less))
+    assert opinion.verdict == ("confirmed" if share == "0" else "refuted")
+    assert bool(opinion.counterexample) == bool(opinion.open) == (share != "0")
 
 
 def test_the_command_says_by_its_status_whether_all_files_prove_something(tmp_path, capsys):
@@ -87,7 +89,7 @@ small = st.lists(st.integers(-4, 4), min_size=2, max_size=4).filter(lambda p: p[
 
 
 @given(p=small, q=small)
-def test_polynomials_that_share_no_root_are_coprime_and_those_that_do_are_not_said_to_be(p, q):
+def test_only_polynomials_that_share_no_root_are_coprime(p, q):
     """Factors by a prime are lost modulo it: then nothing is said."""
     p, q = [Fraction(x) for x in p], [Fraction(x) for x in q]
     apart = [Fraction(1), Fraction(0), Fraction(1)]  # no real root

@@ -234,7 +234,7 @@ def test_wrong_types_deeper_inside_are_one_line():
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("{", "no certificate"),
         ("[" * 100_000, "no certificate"),
@@ -248,13 +248,13 @@ def test_wrong_types_deeper_inside_are_one_line():
         (" " * 2_000_001, "too long"),
     ],
 )
-def test_a_file_of_any_content_is_one_line_and_status_1(text, said, tmp_path):
+def test_a_file_of_any_content_is_one_line_and_status_1(text, message, tmp_path):
     source = Path(sys.modules[check.__module__].__file__).parent
     (tmp_path / "c.json").write_bytes(text.encode("utf-8", "surrogateescape"))
     command = [sys.executable, "-I", str(source), str(tmp_path / "c.json")]
     run = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert run.returncode == 1 and not run.stderr
-    assert len(run.stdout.splitlines()) == 1 and said in run.stdout
+    assert len(run.stdout.splitlines()) == 1 and message in run.stdout
 
 
 def test_a_certificate_in_deep_or_odd_python_data_is_refused():

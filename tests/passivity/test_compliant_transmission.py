@@ -60,12 +60,12 @@ def test_the_energy_of_a_cycle_is_the_closed_form(u_link, ratio):
     level, f_1, f_2, k = 1.5, 1.0, 2.0, 1e4
     length = f_2 / k / u_link
     amplitude = ratio * f_2 / k
-    found = symmetric_cycle(
+    energy = symmetric_cycle(
         Dahl(level, level / length), [Coulomb(f_1), Spring(f_2, k)], amplitude
     ).energy
     given_out = 4 * level * (amplitude - length * math.tanh(amplitude / length))
-    taken = 4 * f_1 * amplitude + 4 * f_2 * max(0.0, amplitude - f_2 / k)
-    assert found == pytest.approx(given_out - taken, rel=1e-9)
+    loss = 4 * f_1 * amplitude + 4 * f_2 * max(0.0, amplitude - f_2 / k)
+    assert energy == pytest.approx(given_out - loss, rel=1e-9)
 
 
 def test_no_cycle_of_any_amplitude_gives_out_energy_where_the_margin_is_zero():

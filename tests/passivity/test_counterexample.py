@@ -46,11 +46,11 @@ def test_strokes_begin_and_end_at_rest_and_turn_where_they_say():
 
 def test_coulomb_friction_takes_its_level_times_the_way():
     strokes = Strokes((5e-3, -5e-3), speed=0.1, rounds=3)
-    found = released_energy(joint(0.5, None), strokes)
+    energy = released_energy(joint(0.5, None), strokes)
     way = np.abs(np.diff(strokes.path)).sum()
     # 1e-3: friction gives by 0.1 micrometre at each reversal, and steps are a percent of a stroke
-    assert found.total == pytest.approx(-0.5 * way, rel=1e-3)
-    assert found.last_round == pytest.approx(-0.5 * 0.02, rel=1e-3)
+    assert energy.total == pytest.approx(-0.5 * way, rel=1e-3)
+    assert energy.last_round == pytest.approx(-0.5 * 0.02, rel=1e-3)
 
 
 @pytest.mark.slow
@@ -71,7 +71,7 @@ def test_the_search_is_silent_on_passive_systems(diagram):
     [((0.5, None), (0.55, 1e4)), ((0.5, 2e4), (0.2, 1.5e4)), ((0.5, 2e4), (0.55, 1.5e4))],
     ids=["too high a level", "too stiff for its level", "both"],
 )
-def test_a_motion_that_gives_out_energy_is_found_and_replays(friction, compensation):
+def test_a_motion_that_gives_out_energy_is_detected_and_replays(friction, compensation):
     claim = searched(joint(*friction, compensation))
     assert claim.status == "refuted"
     assert claim.record.energy > 0

@@ -25,12 +25,12 @@ def given_out_by_integration(amplitude, phase, *, level, stiffness):
     """Energy per cycle of x = A sin(wt), the Dahl force being that of the position before."""
     n = 20000
     angle = 2 * np.pi * np.arange(3 * n + 1) / n
-    seen = amplitude * np.sin(angle - phase)
+    position = amplitude * np.sin(angle - phase)
     true = amplitude * np.sin(angle)
-    force, element = np.zeros(len(seen)), Dahl(level, stiffness)
+    force, element = np.zeros(len(position)), Dahl(level, stiffness)
     here = 0.0
-    for k in range(1, len(seen)):
-        here, _ = element.leg(here, float(seen[k] - seen[k - 1]))
+    for k in range(1, len(position)):
+        here, _ = element.leg(here, float(position[k] - position[k - 1]))
         force[k] = here
     last = slice(2 * n, 3 * n + 1)
     return np.trapezoid(force[last], true[last])
@@ -40,9 +40,9 @@ def given_out_by_integration(amplitude, phase, *, level, stiffness):
 def test_what_a_late_compensator_gives_out(u, phase):
     """Closed form with a modified Bessel function against integration with 2e4 steps a cycle."""
     amplitude = u * DAHL["level"] / DAHL["stiffness"]
-    found = released_by_delay(**DAHL, amplitude=amplitude, phase=phase)
+    energy = released_by_delay(**DAHL, amplitude=amplitude, phase=phase)
     expected = given_out_by_integration(amplitude, phase, **DAHL)
-    assert found == pytest.approx(expected, rel=1e-3)
+    assert energy == pytest.approx(expected, rel=1e-3)
 
 
 @settings(max_examples=100)
@@ -56,8 +56,8 @@ def test_delay_makes_a_friction_compensator_give_out_less(u, phase):
 
 def test_a_large_motion_gives_out_that_of_coulomb_friction():
     """4 f A cos(w tau) for A far beyond the bristle, where the spring part decays as u^-1/2."""
-    found = released_by_delay(**DAHL, amplitude=1e4, phase=0.4)
-    assert found == pytest.approx(4 * 0.7 * 1e4 * math.cos(0.4), rel=1e-3)
+    energy = released_by_delay(**DAHL, amplitude=1e4, phase=0.4)
+    assert energy == pytest.approx(4 * 0.7 * 1e4 * math.cos(0.4), rel=1e-3)
 
 
 def test_delayed_cancellation_of_inertia_always_gives_out_energy():
@@ -116,13 +116,13 @@ def test_real_part_of_the_impedance_over_frequency():
 
 
 def spring(stiffness, **changes):
-    given_ = {
+    arguments = {
         "damping": 4,
         "sample_time": 1e-3,
         "step": 1e-4,
         "coulomb_level": 0.2,
     } | changes
-    return quantised_spring(stiffness=stiffness, **given_)
+    return quantised_spring(stiffness=stiffness, **arguments)
 
 
 @pytest.mark.parametrize(

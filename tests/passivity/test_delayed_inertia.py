@@ -34,12 +34,12 @@ def test_without_low_pass_it_is_the_energy_of_p48(frequency, delay):
 @settings(max_examples=50)
 @given(delay=times, time_constant=times, order=orders)
 def test_damping_pays_for_no_less_than_the_bound_of_any_delay(delay, time_constant, order):
-    given_ = {"delay": delay, "time_constant": time_constant, "order": order}
-    limit = largest_passive_inertia(damping=1.0, **given_)
+    arguments = {"delay": delay, "time_constant": time_constant, "order": order}
+    limit = largest_passive_inertia(damping=1.0, **arguments)
     assert limit >= order * time_constant * (1 - 1e-9)
     upper = 20 / (2 * np.pi * time_constant)
     frequency = np.linspace(0, upper, 20001)
-    g = damping_given_out(frequency, **given_)
+    g = damping_given_out(frequency, **arguments)
     assert limit * g.max() <= 1 + 1e-9
 
 
@@ -47,13 +47,13 @@ def test_damping_pays_for_no_less_than_the_bound_of_any_delay(delay, time_consta
 @settings(max_examples=30)
 @given(delay=times, time_constant=times, order=orders)
 def test_a_proof_within_the_bound_and_a_wave_beyond_the_limit(delay, time_constant, order):
-    given_ = {"delay": delay, "time_constant": time_constant, "order": order}
+    arguments = {"delay": delay, "time_constant": time_constant, "order": order}
     within = order * time_constant
-    proved = cancelled_inertia(**DEVICE, cancelled=0.999 * within, **given_)
+    proved = cancelled_inertia(**DEVICE, cancelled=0.999 * within, **arguments)
     assert proved.status == "proved"
     proved.certificates[0].check()
-    beyond = 1.01 * largest_passive_inertia(damping=DEVICE["damping"], **given_)
-    refuted = cancelled_inertia(**DEVICE, cancelled=beyond, **given_)
+    beyond = 1.01 * largest_passive_inertia(damping=DEVICE["damping"], **arguments)
+    refuted = cancelled_inertia(**DEVICE, cancelled=beyond, **arguments)
     assert refuted.status == "refuted"
     assert refuted.record.energy > 0
 

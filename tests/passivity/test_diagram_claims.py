@@ -51,9 +51,9 @@ def giving(friction=0.5, stiffness=2e4):
     )
 
 
-def settled(diagram, search=QUICK):
-    found = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
-    claims = {s.topic: s.claim for s in found.claims}
+def checked_claims(diagram, search=QUICK):
+    statuses = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
+    claims = {s.topic: s.claim for s in statuses.claims}
     for claim in claims.values():
         for certificate in claim.certificates:
             certificate.check()
@@ -69,19 +69,19 @@ def test_a_linear_haptic_interface_is_judged_exactly_and_without_its_hand():
         device = body(0.15, damping=damping)
         diagram = haptic_interface(device, hand=HAND, force_feedback=low_pass, analog=("H",))
         exact, _ = hand_port(diagram)
-        claim = settled(diagram)["the port, any motion"]
+        claim = checked_claims(diagram)["the port, any motion"]
         assert str(exact) in claim.statement and claim.status == status
 
 
 def test_the_impedances_of_a_teleoperator_are_those_of_its_symbolic_two_port():
     diagram = teleoperator(body(0.2), body(0.3), coupling=spring(300.0, 2.0))
-    found = impedance_matrix(diagram, ports(diagram))
+    impedance = impedance_matrix(diagram, ports(diagram))
     symbolic = two_port_functions(diagram)
     values = {block_symbol(n): e for n, e in linear_blocks(diagram).blocks.items()}
     for i, row in enumerate("ms"):
         for j, column in enumerate("ms"):
             one = sp.sympify(symbolic[f"Z_{row}{column}"]).subs(values) / S
-            difference = sp.lambdify(S, found[i, j] - one)
+            difference = sp.lambdify(S, impedance[i, j] - one)
             # exact numbers against floats: rounding of some thousand N s/m
             assert abs(difference(2.0 + 7.0j)) < 1e-9
 
@@ -96,14 +96,14 @@ def test_the_impedances_of_a_teleoperator_are_those_of_its_symbolic_two_port():
 def test_masses_on_springs_and_dampers_are_always_proved_passive(stiffness, damping, masses):
     master, slave = (body(m / 10, damping=1.5) for m in masses)
     coupling = spring(float(stiffness), float(damping))
-    claims = settled(teleoperator(master, slave, coupling=coupling, hand=HAND))
+    claims = checked_claims(teleoperator(master, slave, coupling=coupling, hand=HAND))
     assert [c.status for c in claims.values()] == ["proved", "proved"]
 
 
 @pytest.mark.slow
 def test_a_coupling_that_leads_gives_out_energy_which_a_wave_shows():
     lead = controller("lead", {"gain": 300.0, "zero": 10.0, "pole": 1.0})
-    claims = settled(teleoperator(body(0.15), body(0.15), coupling=lead))
+    claims = checked_claims(teleoperator(body(0.15), body(0.15), coupling=lead))
     assert {c.status for c in claims.values()} == {"refuted"}
 
 
@@ -119,8 +119,8 @@ def test_a_coupling_that_leads_gives_out_energy_which_a_wave_shows():
         pytest.param(body(0.15, friction=0.5), dahl(0.6, 1e4), "refuted", marks=pytest.mark.slow),
     ],
 )
-def test_friction_with_its_cancellation_is_settled_as_for_a_diagnosed_device(device, law, status):
-    claims = settled(haptic_interface(device, hand=HAND, cancellation=law))
+def test_friction_with_its_cancellation_is_decided_as_for_a_diagnosed_device(device, law, status):
+    claims = checked_claims(haptic_interface(device, hand=HAND, cancellation=law))
     friction = [c for t, c in claims.items() if t.startswith("friction of Z_M with C")]
     assert [c.status for c in friction] == [status]
     if status == "proved":
@@ -140,12 +140,12 @@ def test_parts_that_are_proved_add_up_on_several_ports():
         slave_cancellation=CANCELLATION,
     )
     for diagram in (held, two_rods()):
-        claim = settled(diagram)["all ports, any motion"]
+        claim = checked_claims(diagram)["all ports, any motion"]
         assert claim.status == "proved" and len(claim.certificates) == 3
 
 
 def test_a_law_of_velocity_on_friction_that_gives_is_refuted_by_theorem_and_by_search():
-    claims = settled(haptic_interface(giving(), cancellation=CANCELLATION))
+    claims = checked_claims(haptic_interface(giving(), cancellation=CANCELLATION))
     assert claims["friction of Z_M with C"].status == "refuted"
     assert claims["port (R_V, L), search by simulation"].status == "refuted"
 
@@ -156,7 +156,7 @@ def test_force_feedback_is_no_sum_of_parts():
     diagram = haptic_interface(
         body(0.15, friction=0.5), cancellation=CANCELLATION, force_feedback=feedback
     )
-    claims = settled(diagram)
+    claims = checked_claims(diagram)
     assert "all ports, any motion" not in claims
     assert "port (R_V, L), search by simulation" in claims
 
@@ -166,15 +166,15 @@ def test_a_compliant_device_has_its_port_at_the_tip():
     device = body(0.15).with_effect(td.EFFECTS["transmission_compliance"], compliance)
     diagram = haptic_interface(device, hand=HAND)
     assert [str(p) for p in ports(diagram)] == ["(R_V, L_tip)"]
-    assert settled(diagram)["the port, any motion"].status == "proved"
+    assert checked_claims(diagram)["the port, any motion"].status == "proved"
 
 
-def test_a_block_without_values_or_a_port_is_told():
+def test_a_block_without_values_or_a_port_is_reported():
     with pytest.raises(ModelError, match="Z_m is known by its name only"):
-        settled(teleoperator(hand=ANY))
+        checked_claims(teleoperator(hand=ANY))
     closed = haptic_interface(body(0.1))
     with pytest.raises(ModelError, match="no force from outside drives a body"):
-        settled(closed.__class__(closed.name, (), (), {"F": "force"}, measured=()))
+        checked_claims(closed.__class__(closed.name, (), (), {"F": "force"}, measured=()))
 
 
 def test_the_command_settles_a_diagram_from_a_file(tmp_path, capsys):
@@ -203,7 +203,7 @@ def test_a_verdict_does_not_change_the_status_of_the_command(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["loop.toml"], "loop.toml: cannot be read"),
         (["teleoperator"], "Z_m is known by its name only"),
@@ -212,10 +212,10 @@ def test_a_verdict_does_not_change_the_status_of_the_command(tmp_path, capsys):
         (["loop.toml", "--speed", "nan"], "--speed: found nan"),
     ],
 )
-def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
+def test_bad_input_is_one_line_and_status_2(arguments, message, capsys):
     assert main(["passivity", *arguments]) == 2
     error = capsys.readouterr().err
-    assert said in error and error.count("\n") == 1
+    assert message in error and error.count("\n") == 1
 
 
 GROWS, ENDS = ([1.0], [1.0, -1.0]), ([1.0, -1.0], [1.0, 1.0])
@@ -261,8 +261,8 @@ def test_a_coupling_with_a_delay_in_series_is_derived_with_its_exponential():
     corner = 2 * np.pi * 100
     link = (200 + 10 * corner * at / (at + corner)) * np.exp(-at * 0.01) / at
     expected = np.array([[0.3 * at + 2 + link, -link], [-link, 0.3 * at + 2 + link]])
-    found = np.array(z.subs(S, at).evalf().tolist(), dtype=complex)
-    assert found == pytest.approx(expected, rel=1e-12)
+    values = np.array(z.subs(S, at).evalf().tolist(), dtype=complex)
+    assert values == pytest.approx(expected, rel=1e-12)
     assert passive(two_port(z.tolist())).status == "refuted"
 
 

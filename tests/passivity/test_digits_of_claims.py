@@ -82,8 +82,8 @@ def test_the_limit_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys,
     """0.19936 was printed as 0.1994, and what is typed so was refuted."""
     answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED | more)
     assert main(["passivity", answer]) == 0
-    said = capsys.readouterr().out
-    limit = re.search(r"passive for every level in the interval: (\S+)", said)[1]
+    output = capsys.readouterr().out
+    limit = re.search(r"passive for every level in the interval: (\S+)", output)[1]
     out = tmp_path / "claims.json"
     assert main(["passivity", answer, "--dahl", limit, "20000", "--json", str(out)]) == 0
     claims = {c["topic"]: c["status"] for c in json.loads(out.read_text())["claims"]}
@@ -94,9 +94,9 @@ def test_the_limit_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys,
 def test_the_wall_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys):
     answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED)
     assert main(["passivity", answer, "--period", "0.001"]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     stiffness, damping = re.search(
-        r"wall (\S+) N\*m/rad with damping (\S+) N\*m\*s/rad", said
+        r"wall (\S+) N\*m/rad with damping (\S+) N\*m\*s/rad", output
     ).groups()
     out = tmp_path / "claims.json"
     wall = ["--period", "0.001", "--wall", stiffness, damping, "--json", str(out)]

@@ -60,17 +60,17 @@ def moved(diagram, push, duration=1.5, **arguments):
     )
 
 
-def given_out(found):
+def given_out(simulation):
     """Energy (J) that both commands gave to their bodies, held over each travel, at each sample."""
     total = 0.0
     for side in "ms":
-        force, position = found[f"U_{side}"].values, found[f"X_{side}"].values
+        force, position = simulation[f"U_{side}"].values, simulation[f"X_{side}"].values
         total = total + np.cumsum(force[:-1] * np.diff(position))
     return total
 
 
-def largest_travel(found):
-    return max(np.abs(np.diff(found[f"X_{x}"].values)).max() for x in "ms")
+def largest_travel(simulation):
+    return max(np.abs(np.diff(simulation[f"X_{x}"].values)).max() for x in "ms")
 
 
 def push(t):
@@ -78,14 +78,14 @@ def push(t):
 
 
 def check_a_run(*, delay, share, seed, **arguments):
-    found = moved(tanked(delay=delay, share=share, seed=seed), push, **arguments)
-    assert largest_travel(found) <= TRAVEL
-    assert given_out(found).max() <= 2 * RESERVE * (1 + 1e-9)
+    simulation = moved(tanked(delay=delay, share=share, seed=seed), push, **arguments)
+    assert largest_travel(simulation) <= TRAVEL
+    assert given_out(simulation).max() <= 2 * RESERVE * (1 + 1e-9)
     for name, other in (("Z_m", "Z_s"), ("Z_s", "Z_m")):
-        arrived, taken = (found[n].values for n in (f"arrived_{name}", f"taken_{other}"))
-        assert np.all(arrived <= taken + 1e-12)
-        assert np.all(found[f"tank_{name}"].values >= -RESERVE - 1e-9)
-    return found
+        arrived, intake = (simulation[n].values for n in (f"arrived_{name}", f"taken_{other}"))
+        assert np.all(arrived <= intake + 1e-12)
+        assert np.all(simulation[f"tank_{name}"].values >= -RESERVE - 1e-9)
+    return simulation
 
 
 def test_without_tanks_the_channel_gives_out_what_it_wants_and_with_them_the_reserve():
@@ -93,8 +93,8 @@ def test_without_tanks_the_channel_gives_out_what_it_wants_and_with_them_the_res
     case = {"delay": 0.03, "share": 0.3, "seed": 0.3}
     bare = moved(position_force(**case), push, jit=False)
     assert given_out(bare).max() > 10 * 2 * RESERVE
-    found = check_a_run(**case, jit=False)
-    assert given_out(found).max() > 0.2 * RESERVE
+    simulation = check_a_run(**case, jit=False)
+    assert given_out(simulation).max() > 0.2 * RESERVE
 
 
 @pytest.mark.slow
@@ -120,7 +120,7 @@ def test_the_count_of_a_held_force_is_its_work_exactly():
     spring = controller("spring_damper", {"stiffness": 200.0, "damping": 0.0})
     sides = body(0.3), body(0.3)
     diagram = energy_tanks(teleoperator(*sides, coupling=spring), reserve=10.0, travel=TRAVEL)
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=0.3,
         motion={"X_m": sine(amplitude=0.01, frequency=7.0)},
@@ -129,10 +129,10 @@ def test_the_count_of_a_held_force_is_its_work_exactly():
         jit=False,
     )
     for side in "ms":
-        force, position = found[f"U_{side}"].values, found[f"X_{side}"].values
+        force, position = simulation[f"U_{side}"].values, simulation[f"X_{side}"].values
         work = np.concatenate([[0], force[:-1] * np.diff(position)])
         for name, sign in (("given", 1), ("taken", -1)):
-            counted = found[f"{name}_Z_{side}"].values
+            counted = simulation[f"{name}_Z_{side}"].values
             np.testing.assert_allclose(counted, np.maximum(sign * work, 0).cumsum(), atol=1e-12)
 
 
@@ -147,12 +147,12 @@ def test_a_travel_above_the_largest_overdraws_a_tank():
     made = energy_tanks(
         position_force(delay=0.03, share=0.3, seed=0.3), reserve=RESERVE, travel=TRAVEL / 100
     )
-    found = moved(made, push, jit=False)
-    assert largest_travel(found) > TRAVEL / 100
-    assert min(found[f"tank_{n}"].values.min() for n in ("Z_m", "Z_s")) < -RESERVE
+    simulation = moved(made, push, jit=False)
+    assert largest_travel(simulation) > TRAVEL / 100
+    assert min(simulation[f"tank_{n}"].values.min() for n in ("Z_m", "Z_s")) < -RESERVE
 
 
-def test_a_second_tank_or_no_body_is_said_in_one_line():
+def test_a_second_tank_or_no_body_is_reported_in_one_line():
     made = energy_tanks(teleoperator(), reserve=1.0, travel=1.0)
     with pytest.raises(ModelError, match="has an energy tank already"):
         energy_tanks(made, reserve=1.0, travel=1.0)

@@ -62,11 +62,11 @@ def determinant(diagram):
 @pytest.mark.parametrize("name", DIAGRAMS)
 def test_the_determinant_has_the_poles_of_the_closed_loop_and_no_others(name):
     diagram = DIAGRAMS[name]
-    found = np.roots([float(c) for c in determinant(diagram).all_coeffs()])
+    roots = np.roots([float(c) for c in determinant(diagram).all_coeffs()])
     system = to_iosystem(diagram)
     linear = ct.linearize(system, np.zeros(system.nstates), np.zeros(system.ninputs))
     expected = list(np.linalg.eigvals(linear.A))
-    assert len(found) == len(expected)
-    for pole in found:
+    assert len(roots) == len(expected)
+    for pole in roots:
         k = int(np.argmin(np.abs(np.array(expected) - pole)))
         assert abs(expected.pop(k) - pole) < 1e-4 * (1 + abs(pole))

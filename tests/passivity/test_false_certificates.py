@@ -129,11 +129,11 @@ def _wrong_rate(rng):
 
 def _overdrawn_supply(rng):
     """More is given than the damper takes."""
-    taken = rng.choice(("v**2", "b", "p**2", "abs_v", "b*v**2", "1"))
+    term = rng.choice(("v**2", "b", "p**2", "abs_v", "b*v**2", "1"))
     a = _number(rng)
     kept = storage()["proofs"]
     proofs = {**kept, "supply": _same([["1", {"b": 1}, "v"], [a, {}, "v"], [a, {"abs_v": 1}, "1"]])}
-    return storage(supply=f"p*v - {a}*({taken})", proofs=proofs)
+    return storage(supply=f"p*v - {a}*({term})", proofs=proofs)
 
 
 def _signs_missing(rng):
@@ -148,12 +148,12 @@ def _state_assumed(rng):
     """What a state does is assumed, in place of shown."""
     e = rng.choice(("1 - p", "p", "p**2 - v**2", "v*p", "-p", "k - p**2"))
     field = rng.choice(("positive", "nonnegative"))
-    given = {**storage()[field], "hope": e}
+    rates = {**storage()[field], "hope": e}
     proofs = {
         **storage()["proofs"],
         "supply": _same([["1", {"b": 1}, "v"], ["1", {"hope": 1}, "1"]]),
     }
-    return storage(**{field: given}, supply=f"p*v + b*v**2 + ({e})", proofs=proofs)
+    return storage(**{field: rates}, supply=f"p*v + b*v**2 + ({e})", proofs=proofs)
 
 
 def _nothing_meets_it(rng):
@@ -165,8 +165,8 @@ def _nothing_meets_it(rng):
         **storage()["proofs"],
         "supply": _same([["1", {"b": 1}, "v"], ["1", {"hope": 1}, "1"]]),
     }
-    given = {**storage()[field], "hope": e}
-    return storage(**{field: given}, supply=f"p*v + b*v**2 + ({e})", proofs=proofs)
+    rates = {**storage()[field], "hope": e}
+    return storage(**{field: rates}, supply=f"p*v + b*v**2 + ({e})", proofs=proofs)
 
 
 def _confused_names(rng):

@@ -37,7 +37,7 @@ def test_the_real_part_and_the_size_go_as_the_stated_power(entry):
 
 
 @pytest.mark.parametrize("entry", [LATE, S + 1 + LATE / S, S - 3, -1 / (S + 1)], ids=str)
-def test_of_a_late_term_or_a_negative_part_no_power_is_said(entry):
+def test_of_a_late_term_or_a_negative_part_no_power_is_reported(entry):
     assert _real_far_out(late_terms(entry)) is None
 
 
@@ -59,7 +59,7 @@ FADING = [
 
 
 @pytest.mark.parametrize("case", range(len(FADING)))
-def test_couplings_fade_before_the_real_parts_do_or_it_is_said_that_they_do_not(case):
+def test_couplings_fade_before_the_real_parts_do_or_the_test_reports_that_they_do_not(case):
     *entries, passive, stable = FADING[case]
     z = [late_terms(sp.sympify(e)) for e in entries]
     assert _fades(z, "passive") == passive
@@ -68,17 +68,17 @@ def test_couplings_fade_before_the_real_parts_do_or_it_is_said_that_they_do_not(
 
 @pytest.mark.parametrize("criterion", ["passive", "absolutely stable"])
 @pytest.mark.parametrize(
-    ("own", "across"), [(5.5, 6), (6.5, 6), (1.1, 1), (0.9, 1), (3, 0), (-1, 0)]
+    ("diagonal", "across"), [(5.5, 6), (6.5, 6), (1.1, 1), (0.9, 1), (3, 0), (-1, 0)]
 )
 @pytest.mark.parametrize("pole", [S, S**2 + 4, S**2 + sp.Rational(7, 3)])
 def test_beside_a_dead_time_what_two_ports_share_without_loss_is_held_against_their_product(
-    criterion, own, across, pole
+    criterion, diagonal, across, pole
 ):
     """Springs, or oscillators, of a network that acts alike both ways: own squared, or nothing."""
     shape = (1 if pole == S else S) / pole
     rest = 5 + sp.exp(-S / 10) / (1 + S) / 10
-    own, across = sp.Rational(str(own)) * shape, across * shape
-    system = two_port([[own + rest, across], [across, own + 5]])
+    diagonal, across = sp.Rational(str(diagonal)) * shape, across * shape
+    system = two_port([[diagonal + rest, across], [across, diagonal + 5]])
     shown = [text for text in obstacles(system, criterion) if text.startswith("the residues at")]
-    is_met = own / shape >= across / shape
+    is_met = diagonal / shape >= across / shape
     assert bool(shown) == (not is_met)

@@ -97,11 +97,11 @@ def test_a_root_at_which_the_other_polynomial_vanishes_is_not_taken_for_the_next
 @given(roots, rows)
 def test_the_first_root_with_a_negative_value_is_located(given_roots, f):
     places = [r for r, _ in given_roots if r > 0 and value(f, r) < 0]
-    found = first_root(f, of_roots(given_roots))
+    root = first_root(f, of_roots(given_roots))
     if places:
-        assert found == pytest.approx(float(min(places)), rel=1e-3)  # shown to four digits
+        assert root == pytest.approx(float(min(places)), rel=1e-3)  # shown to four digits
     else:
-        assert found != found
+        assert root != root
 
 
 @given(roots, st.sampled_from([1, -2]))

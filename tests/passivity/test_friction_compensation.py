@@ -38,8 +38,8 @@ from teleopdesign.simulate import simulate, sine
 
 def compensated(level, stiffness=1e4, **true):
     """True friction of 1 N, unless said otherwise."""
-    given_ = {"coulomb_level": 1} | true
-    return dahl_compensation(compensator_level=level, compensator_stiffness=stiffness, **given_)
+    arguments = {"coulomb_level": 1} | true
+    return dahl_compensation(compensator_level=level, compensator_stiffness=stiffness, **arguments)
 
 
 @pytest.mark.parametrize("level", [0.1, 0.999999, 1])
@@ -124,15 +124,15 @@ ONSETS = {1.02: 51.0, 1.05: 21.0, 1.1: 11.0, 1.2: 6.0, 1.5: 2.985, 2.0: 1.915}
 
 
 @pytest.mark.parametrize("ratio", ONSETS)
-def test_the_onset_is_found_by_search_to_a_tenth_of_a_percent(ratio):
+def test_the_onset_agrees_with_a_search_to_a_tenth_of_a_percent(ratio):
     """f_D (1 - tanh(u)/u) = f_C at u = sigma_D A/f_D; figures of the closed form."""
     from scipy.optimize import brentq
 
     stiffness = 2e4
-    found = onset_amplitude(
+    onset = onset_amplitude(
         coulomb_level=1, compensator_level=ratio, compensator_stiffness=stiffness
     )
-    u = found * stiffness / ratio
+    u = onset * stiffness / ratio
     exact = brentq(lambda x: ratio * (1 - math.tanh(x) / x) - 1, 0.1, 100)
     assert u == pytest.approx(exact, rel=1e-3)
     assert u == pytest.approx(ONSETS[ratio], rel=1e-3)
@@ -198,7 +198,7 @@ def test_viscous_damping_bounds_the_speed_of_self_motion():
 
 
 @pytest.mark.parametrize(
-    ("level", "stiffness", "own", "status"),
+    ("level", "stiffness", "presliding_stiffness", "status"),
     [
         (0.9, 1e3, 2e3, "proved"),
         (1, 1e3, 2e3, "proved"),
@@ -211,9 +211,9 @@ def test_viscous_damping_bounds_the_speed_of_self_motion():
         (1.01, 2e3, 2e3, "refuted"),
     ],
 )
-def test_presliding_asks_for_a_soft_compensator(level, stiffness, own, status):
+def test_presliding_asks_for_a_soft_compensator(level, stiffness, presliding_stiffness, status):
     """Passive iff f_D <= f_C and sigma_D^2/f_D <= sigma_p^2/f_C, equality included."""
-    claim = compensated(level, stiffness, presliding_stiffness=own)
+    claim = compensated(level, stiffness, presliding_stiffness=presliding_stiffness)
     assert claim.status == status
     if status == "refuted":
         assert claim.record.replay() > 0
@@ -228,10 +228,10 @@ def test_less_level_at_the_same_stiffness_is_worse():
 def test_the_region_is_the_wedge_of_the_formula():
     """(sigma_D/sigma_p)^2 <= f_D/f_C <= 1, at every point of a grid."""
     softness, share = np.array([0.2, 0.5, 0.9, 1.1]), np.array([0.1, 0.5, 0.85, 1.0, 1.1])
-    found = region(lambda x, y: compensated(y, 1e3 * x, presliding_stiffness=1e3), softness, share)
+    plane = region(lambda x, y: compensated(y, 1e3 * x, presliding_stiffness=1e3), softness, share)
     expected = (softness[None, :] ** 2 <= share[:, None]) & (share[:, None] <= 1)
-    assert np.array_equal(found.status == "proved", expected)
-    assert np.array_equal(found.status == "refuted", ~expected)
+    assert np.array_equal(plane.status == "proved", expected)
+    assert np.array_equal(plane.status == "refuted", ~expected)
 
 
 @settings(max_examples=100)
@@ -242,10 +242,12 @@ def test_the_region_is_the_wedge_of_the_formula():
 )
 def test_no_closed_path_takes_energy_out_inside_the_wedge(share, softness, points):
     """Random closed paths in bristle lengths: the storage function of the proof forbids it."""
-    own = 1e3
-    stiffness = own * softness * math.sqrt(share)  # inside: (sigma_D/sigma_p)^2 <= f_D/f_C
+    bristle_stiffness = 1e3
+    stiffness = (
+        bristle_stiffness * softness * math.sqrt(share)
+    )  # inside: (sigma_D/sigma_p)^2 <= f_D/f_C
     path = tuple(1e-3 * x for x in points)
-    cycle = Cycle(Dahl(share, stiffness), (Dahl(1.0, own),), path, rounds=40)
+    cycle = Cycle(Dahl(share, stiffness), (Dahl(1.0, bristle_stiffness),), path, rounds=40)
     assert cycle.energy <= 1e-12
 
 
@@ -259,14 +261,14 @@ def test_a_changing_level_never_gives_out_what_was_not_stored(legs, softness):
 
     V starts at 0, so the supply stays >= 0 along any path.
     """
-    own, level = 1e3, 0.5
-    stiffness = softness * own * math.sqrt(level / 0.8)
-    plant = helper = taken = 0.0
+    bristle_stiffness, level = 1e3, 0.5
+    stiffness = softness * bristle_stiffness * math.sqrt(level / 0.8)
+    plant = helper = energy = 0.0
     for travel, now in legs:
-        plant, lost = Dahl(now, own).leg(plant, 1e-3 * travel)
+        plant, lost = Dahl(now, bristle_stiffness).leg(plant, 1e-3 * travel)
         helper, given_out = Dahl(level, stiffness).leg(helper, 1e-3 * travel)
-        taken += lost - given_out
-    assert taken >= -1e-15
+        energy += lost - given_out
+    assert energy >= -1e-15
 
 
 @pytest.mark.parametrize(("top", "status"), [(0.8, "proved"), (0.81, "refuted")])

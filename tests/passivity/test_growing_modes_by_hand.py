@@ -28,7 +28,7 @@ UNSETTLED = {
     "one direction that grows": [[S + 1, 3 / (S - 2)], [0, S + 1]],
     "the other direction": [[S + 1, 0], [3 / (S**2 - S + 5), S + 1]],
 }  # fmt: skip
-SETTLED = {
+DECAYING = {
     "dampers": [[1, R(1, 2)], [R(1, 2), 1]],
     "a gyrator": [[1, 5], [-5, 1]],
     "a coupling of masses": [[S + 1 + 9 / S, -9 / S], [-9 / S, 2 * S + 1 + 9 / S]],
@@ -69,9 +69,9 @@ def test_a_growing_mode_moves_the_closed_loop_by_itself(name, turned):
         assert mode.replay() == pytest.approx(mode.energy, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", SETTLED)
+@pytest.mark.parametrize("name", DECAYING)
 def test_a_two_port_that_is_stable_between_all_terminations_has_no_growing_mode(name):
-    assert growing_mode(two_port(SETTLED[name]).z) is None
+    assert growing_mode(two_port(DECAYING[name]).z) is None
 
 
 @pytest.mark.parametrize("frequency", [Fraction(0), Fraction(3)])

@@ -30,7 +30,7 @@ PASSIVE = {"a mass": S, "a spring and a damper": 1 + 5 / S, "a lag": (S + 3) / (
            "a dip to zero": 1 - S / (S**2 + S + 4)}  # fmt: skip
 
 
-def taken(wave, z, v):
+def energy_out(wave, z, v):
     """Minus the integral of force times velocity of the wave with these velocities, up to now."""
     s = wave.s
     span = -40.0 / s.real
@@ -53,7 +53,9 @@ def test_a_wave_takes_out_of_an_impedance_what_it_says(name):
     assert wave.value[0, 0] == pytest.approx(complex(*map(float, value)), rel=1e-9)
     assert abs(wave.velocity[0]) == pytest.approx(1.0)
     if wave.rate * 1000 > wave.frequency:
-        assert taken(wave, wave.impedance, wave.velocity) == pytest.approx(wave.energy, rel=1e-3)
+        assert energy_out(wave, wave.impedance, wave.velocity) == pytest.approx(
+            wave.energy, rel=1e-3
+        )
         assert wave.replay() == pytest.approx(wave.energy, rel=1e-3)
     t, v, f = wave.samples(501)
     np.testing.assert_allclose(v[-1], np.real(wave.velocity), rtol=1e-9)
@@ -90,7 +92,7 @@ def test_a_wave_of_several_ports_has_the_velocities_and_the_phase_that_release_m
     assert (v.conj() @ real @ v).real == pytest.approx(least[0], rel=1e-9, abs=1e-12)
     assert np.linalg.norm(v) == pytest.approx(1.0)
     if frequency:
-        assert wave.energy == pytest.approx(taken(wave, z, wave.velocity), rel=1e-6, abs=1e-9)
+        assert wave.energy == pytest.approx(energy_out(wave, z, wave.velocity), rel=1e-6, abs=1e-9)
         for turn in np.exp(1j * np.linspace(0, np.pi, 13)):
             turned = replace(wave, velocity=tuple(turn * v))
             assert turned.energy <= wave.energy + 1e-9
@@ -109,12 +111,12 @@ def test_a_slow_wave_is_sampled_over_its_last_periods_alone():
     assert still.replay() == pytest.approx(1 / 6, rel=1e-4) == still.energy
 
 
-def test_a_value_that_digits_decide_is_found_or_is_no_number():
+def test_a_value_that_digits_decide_is_exact_or_is_no_number():
     """(1 + s)^40 - 1 - 40 s near zero: all sixteen digits of plain arithmetic are lost."""
     small = Fraction(1, 10**9)
     z = sp.ImmutableMatrix([[(1 + S) ** 40 - 1 - 40 * S]])
-    found = waves.value_at(z, small, Fraction(0))[0, 0]
-    assert found == pytest.approx(780e-18, rel=1e-6)
+    value = waves.value_at(z, small, Fraction(0))[0, 0]
+    assert value == pytest.approx(780e-18, rel=1e-6)
     pole = waves.value_at(sp.ImmutableMatrix([[1 / (S - 1)]]), Fraction(1), Fraction(0))
     assert np.isnan(pole).all()
 
@@ -122,8 +124,8 @@ def test_a_value_that_digits_decide_is_found_or_is_no_number():
 @pytest.mark.parametrize("x", [Fraction(2), Fraction(1, 3), Fraction(10**40, 7), Fraction(9)])
 @pytest.mark.parametrize("digits", [5, 20])
 def test_a_root_has_the_digits_that_are_asked_for(x, digits):
-    found = waves.square_root(x, digits)
-    assert abs(found**2 / x - 1) <= Fraction(2, 10**digits) * (1 + abs(1 / x))
+    root = waves.square_root(x, digits)
+    assert abs(root**2 / x - 1) <= Fraction(2, 10**digits) * (1 + abs(1 / x))
     assert list(waves.halvings(x, 3)) == [x / 2, x / 4, x / 8]
 
 

@@ -28,7 +28,7 @@ FUNCTIONS = [
 ]
 NAMES = [function.__name__ for _, function in FUNCTIONS]
 #: arguments that no number describes
-GIVEN = {
+ARGUMENTS = {
     "controller": 100,
     "coupling": 100,
     "rng": np.random.default_rng(0),
@@ -40,21 +40,21 @@ NARROW = {"late": 1, "paths": 5}
 
 def inside(function, rng):
     """Arguments within all hypotheses, of sizes that meet in these laws."""
-    found = {}
+    samples = {}
     for name in hypotheses_of(function):
-        if name in GIVEN | NARROW:
-            found[name] = (GIVEN | NARROW)[name]
+        if name in ARGUMENTS | NARROW:
+            samples[name] = (ARGUMENTS | NARROW)[name]
         elif "stiffness" in name:
-            found[name] = round(10 ** rng.uniform(1, 3), 3)
+            samples[name] = round(10 ** rng.uniform(1, 3), 3)
         elif name in ("sample_time", "delay", "time_constant", "step", "smoothing_velocity"):
-            found[name] = round(10 ** rng.uniform(-4, -2), 6)
+            samples[name] = round(10 ** rng.uniform(-4, -2), 6)
         else:
-            found[name] = round(rng.uniform(0.1, 2.0), 3)
-    low = found.get("coulomb_level")
+            samples[name] = round(rng.uniform(0.1, 2.0), 3)
+    low = samples.get("coulomb_level")
     for name in ("highest_level", "static_level"):
-        if name in found:
-            found[name] = low + found[name]
-    return found
+        if name in samples:
+            samples[name] = low + samples[name]
+    return samples
 
 
 def test_every_file_of_theorems_states_one_with_its_mathematics():
@@ -77,15 +77,15 @@ def test_within_its_hypotheses_a_theorem_answers(theorem, function):
 @pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
 def test_outside_of_its_hypotheses_a_theorem_proves_nothing(theorem, function):
     """Each number in turn outside, the others within: refused in one line that names it."""
-    rng, tried = random.Random(5), 0
+    rng, count = random.Random(5), 0
     for name, needs in hypotheses_of(function).items():
         for value in needs.outside:
             arguments = inside(function, rng) | {name: value}
             with pytest.raises(ModelError) as caught:
                 function(**arguments)
             assert "\n" not in str(caught.value)
-            tried += 1
-    assert tried >= 3 * sum(bool(h.outside) for h in hypotheses_of(function).values())
+            count += 1
+    assert count >= 3 * sum(bool(h.outside) for h in hypotheses_of(function).values())
 
 
 @pytest.mark.parametrize("rounds", [1, pytest.param(3, marks=pytest.mark.slow)])
@@ -97,8 +97,8 @@ def test_a_theorem_answers_or_refuses_numbers_of_any_size(theorem, function, rou
         spread = (29, 12, 6, 320)[k % 4]
         numbers = {
             name: 10.0 ** rng.uniform(-spread, min(spread, 300))
-            if name not in GIVEN
-            else GIVEN[name]
+            if name not in ARGUMENTS
+            else ARGUMENTS[name]
             for name in hypotheses_of(function)
         }
         for name in {"late", "paths"} & {*numbers}:
@@ -179,8 +179,8 @@ def test_claims_on_a_revolute_axis_have_its_units(name):
             made = Body("revolute", {"inertia": 0.01})
             made = made.with_effect(EFFECTS["coulomb"], {"level": 0.5})
             made = made.with_effect(EFFECTS["viscous"], {"damping": 0.1})
-            for effect, given in effects.items():
-                made = made.with_effect(EFFECTS[effect], given)
+            for effect, parameters in effects.items():
+                made = made.with_effect(EFFECTS[effect], parameters)
             for computer in (None, Sampling(1e-3, 0.0, 1e-4)):
                 question = Question(identify_device(made), law.stages[0], wall, computer)
                 for one in settle(question, simulated=False):

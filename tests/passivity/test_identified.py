@@ -38,12 +38,12 @@ def body_of(**more):
 
 def claims_on(body, level=0.4, stiffness=1e4, reach=None):
     """Topic -> claim about a Dahl compensator, by theorems."""
-    found = friction_claims(identify_device(body, reach), Compensator("dahl", level, stiffness))
-    return {s.topic: s.claim for s in found}
+    claims = friction_claims(identify_device(body, reach), Compensator("dahl", level, stiffness))
+    return {s.topic: s.claim for s in claims}
 
 
-def statuses(body, **given):
-    return {topic: claim.status for topic, claim in claims_on(body, **given).items()}
+def statuses(body, **arguments):
+    return {topic: claim.status for topic, claim in claims_on(body, **arguments).items()}
 
 
 SLOPE = {"stribeck": {"extra_static_level": 0.2, "stribeck_velocity": 0.01}}
@@ -54,12 +54,12 @@ BRISTLE = {"stiffness": 2e4, "bristle_damping": 30.0}
 def test_bristle_damping_below_a_falling_level_is_not_dropped():
     """The device alone gives out energy in jumps of speed: no pair with it can be proved."""
     body = body_of(**SLOPE, presliding=BRISTLE)
-    (own,) = device_claims(identify_device(body))
-    assert own.claim.status == "refuted"
-    assert own.claim.record.replay() > 0
-    found = claims_on(body)
-    assert found["estimate"].status == found["95 % interval"].status == "unknown"
-    assert "bristle damping may release energy" in str(found["estimate"].verdict)
+    (claim,) = device_claims(identify_device(body))
+    assert claim.claim.status == "refuted"
+    assert claim.claim.record.replay() > 0
+    claims = claims_on(body)
+    assert claims["estimate"].status == claims["95 % interval"].status == "unknown"
+    assert "bristle damping may release energy" in str(claims["estimate"].verdict)
     assert list(margins(identify_device(body))) == []
 
 
@@ -106,17 +106,17 @@ def test_in_a_diagram_bristle_damping_counts_too():
 )  # fmt: skip
 def test_an_effect_that_may_supply_energy_leaves_a_claim_open(effect, values, ideal, gives):
     """Beside ideal friction any law within the level that acts is covered, late or not."""
-    found = statuses(body_of(**{effect: values}))
-    assert found["any law within the level"] == ideal
-    found = statuses(body_of(**{effect: values}, presliding={"stiffness": 2e4}))
-    assert found["estimate"] == found["95 % interval"] == gives
+    claims = statuses(body_of(**{effect: values}))
+    assert claims["any law within the level"] == ideal
+    claims = statuses(body_of(**{effect: values}, presliding={"stiffness": 2e4}))
+    assert claims["estimate"] == claims["95 % interval"] == gives
 
 
 def test_damping_of_one_direction_counts_against_that_of_the_other():
     asymmetric = {"viscous_asymmetry": {"half_difference": -0.5}}
-    found = identify_device(body_of(viscous={"damping": 2.0}, **asymmetric))
-    assert found.set_aside == ()
-    assert found.damping.low == pytest.approx(1.5)
+    device = identify_device(body_of(viscous={"damping": 2.0}, **asymmetric))
+    assert device.set_aside == ()
+    assert device.damping.low == pytest.approx(1.5)
     # alone it pushes one way
     body = body_of(viscous={"damping": 0.2}, **asymmetric)
     assert identify_device(body).set_aside == ("viscous_asymmetry",)
@@ -126,7 +126,7 @@ def test_damping_of_one_direction_counts_against_that_of_the_other():
     assert wall.claim.status == "unknown"
 
 
-def own(role, law, **more):
+def users_effect(role, law, **more):
     parameters = {"size": Parameter("force", "size")}
     made = Effect(role=role, law=law, parameters=parameters, absent={"size": 0.0}, **more)
     return made.named("own", "Own.")
@@ -136,27 +136,27 @@ def test_a_users_force_that_does_not_say_leaves_claims_open():
     def law(now, p):
         return -p.size * now.velocity
 
-    body = body_of().with_effect(own("force", law), {"size": 0.1})
+    body = body_of().with_effect(users_effect("force", law), {"size": 0.1})
     assert identify_device(body).set_aside == ("own",)
-    found = claims_on(body)["any law within the level"]
-    assert found.status == "unknown"
-    assert "own may supply energy" in str(found.verdict)
-    false = body_of().with_effect(own("force", law, energy="dissipates"), {"size": 0.1})
+    claims = claims_on(body)["any law within the level"]
+    assert claims.status == "unknown"
+    assert "own may supply energy" in str(claims.verdict)
+    false = body_of().with_effect(users_effect("force", law, energy="dissipates"), {"size": 0.1})
     assert identify_device(false).set_aside == ("own",)
 
     def damping(now, p):
         return p.size * now.velocity
 
-    true = body_of().with_effect(own("force", damping, energy="dissipates"), {"size": 0.1})
+    true = body_of().with_effect(users_effect("force", damping, energy="dissipates"), {"size": 0.1})
     assert identify_device(true).set_aside == ()
-    damper = own("force", lambda now, p: p.size * now.velocity)
+    damper = users_effect("force", lambda now, p: p.size * now.velocity)
     assert identify_device(body_of().with_effect(damper, {"size": 0.1})).set_aside == (), (
         "it is proved"
     )
 
 
 def test_a_users_shape_of_friction_is_none_that_a_theorem_is_about():
-    shape = own("friction_shape", lambda now, p: now.level * now.velocity / p.size)
+    shape = users_effect("friction_shape", lambda now, p: now.level * now.velocity / p.size)
     assert identify_device(body_of().with_effect(shape, {"size": 0.1})).set_aside == ("own",)
 
 
@@ -166,15 +166,15 @@ def test_design_and_passivity_have_one_interval():
     body = body_of(
         **SLOPE, position_dependent_friction={"amplitude": 0.2, "period": 0.05, "phase": 0.3}
     ).with_values({"position_dependent_friction.period": td.Value(0.05, stderr=0.002)})
-    found = identify_device(body, REACH)
+    device = identify_device(body, REACH)
     same = friction_interval(body, REACH, errors=1.96)
-    assert found.friction == replace(  # with the digits of claims, outward
+    assert device.friction == replace(  # with the digits of claims, outward
         same,
         lowest=same.lowest.round_outward(digits=DIGITS),
         highest=same.highest.round_outward(digits=DIGITS),
     )
     # 0.4 N by hand; what is guaranteed is a hair less, and rounded outward
-    assert found.lowest.low == pytest.approx(0.4, rel=3e-4) and found.lowest.low <= 0.4
+    assert device.lowest.low == pytest.approx(0.4, rel=3e-4) and device.lowest.low <= 0.4
     claim = claims_on(body, level=0.3, reach=REACH)["any law within the level"]
     assert claim.status == "proved"
     assert "levels over speed 0 to 3 m/s, position -0.05 to 0.05 m" in claim.statement
@@ -199,7 +199,7 @@ def test_a_level_without_an_upper_bound_is_refused_where_one_is_needed():
     ("damping", "viscous", "is_known"),
     [(30, 12.01, True), (30, 11.9, False), (0.5, 0.3, True), (0.5, 0.1, False)],
 )
-def test_a_limit_of_design_is_said_where_viscous_damping_makes_up_for_the_bristles(
+def test_a_limit_of_design_is_reported_where_viscous_damping_makes_up_for_the_bristles(
     damping, viscous, is_known
 ):
     """The bristle's damping times what the level falls by, over the level: 0.4 of it."""
@@ -210,20 +210,20 @@ def test_a_limit_of_design_is_said_where_viscous_damping_makes_up_for_the_bristl
 
 @pytest.mark.parametrize("slope", [{}, SLOPE])
 @pytest.mark.parametrize("level", [0.3, 0.45])
-def test_a_claim_is_proved_up_to_the_limit_that_is_said_and_no_further(slope, level):
+def test_a_claim_is_proved_up_to_the_stated_limit_and_no_further(slope, level):
     body = body_of(**slope, presliding={"stiffness": 2e4, "bristle_damping": 0.0})
     device = identify_device(body)
 
     def is_proved(level, stiffness):
         return claims_on(body, level, stiffness)["95 % interval"].status == "proved"
 
-    said = {
+    limits = {
         m.text.partition(" at ")[0]: m.value
         for m in margins(device, Compensator("dahl", level, 1.5e4))
     }
-    softest = said["largest sigma_D"]
+    softest = limits["largest sigma_D"]
     assert is_proved(level, softest) and not is_proved(level, 1.01 * softest)
-    least = said["least f_D"]
+    least = limits["least f_D"]
     if least < 0.5:
         assert is_proved(least, 1.5e4)
     assert not is_proved(0.99 * least, 1.5e4)

@@ -77,15 +77,15 @@ def test_there_is_none_for_an_active_impedance(z, cvxpy):
 
 def test_sums_of_squares_are_exact():
     f = [[fraction(sp.Rational(x)) for x in row] for row in ([4, 2, 0], [2, 1, 0], [0, 0, 3])]
-    found = sum_of_squares(f)
+    squares = sum_of_squares(f)
     x = sp.symbols("x0:3")
     total = sum(
         sp.Rational(str(w)) * sum(sp.Rational(str(c)) * e for c, e in zip(row, x, strict=True)) ** 2
-        for w, row in found
+        for w, row in squares
     )
     expected = sum(sp.Rational(str(f[i][j])) * x[i] * x[j] for i in range(3) for j in range(3))
     assert sp.expand(total - expected) == 0
-    assert len(found) == 2  # it is only semidefinite
+    assert len(squares) == 2  # it is only semidefinite
     assert sum_of_squares([[fraction(sp.Integer(0)), fraction(sp.Integer(1))]] * 2) is None
 
 
@@ -131,15 +131,15 @@ def contradiction(z, *, lmi):
     if claim.status == "proved" and lowest < -1e-7 * scale:
         return f"proved, but the sweep finds {lowest:g}"
     if lmi:
-        found = kyp(z)
+        solution = kyp(z)
         # where the solver calls its own answer inaccurate, some digits less
-        tolerance = 1e-3 if found.status == "optimal" else 0.1
+        tolerance = 1e-3 if solution.status == "optimal" else 0.1
         # -inf: the inequality then fails by as little as one likes, the further below c is
-        none = found.damping_excess < -1e3 * scale
+        none = solution.damping_excess < -1e3 * scale
         if none != np.isinf(excess):
-            return f"exact {excess:g}, inequality {found.damping_excess:g} of {scale:g}"
-        if not none and abs(found.damping_excess - excess) > tolerance * scale:
-            return f"exact {excess:g}, inequality {found.damping_excess:g} ({found.status})"
+            return f"exact {excess:g}, inequality {solution.damping_excess:g} of {scale:g}"
+        if not none and abs(solution.damping_excess - excess) > tolerance * scale:
+            return f"exact {excess:g}, inequality {solution.damping_excess:g} ({solution.status})"
     return ""
 
 
@@ -154,11 +154,11 @@ def test_exact_test_and_sweep_agree_on_random_impedances():
 def test_exact_test_inequality_and_sweep_agree_on_a_hundred_and_more_random_impedances(cvxpy):
     """Seven kinds, 20 each: passive by construction, improper, marginal, growing, badly scaled."""
     rng = np.random.default_rng(11)
-    found, proved = [], 0
+    statuses, proved = [], 0
     for kind in KINDS * 20:
         z = impedance(random_impedance(rng, kind))
         proved += positive_real(z).status == "proved"
         if problem := contradiction(z, lmi=True):
-            found.append(f"{kind}: {z}: {problem}")
-    assert found == []
+            statuses.append(f"{kind}: {z}: {problem}")
+    assert statuses == []
     assert 20 < proved < 120  # both verdicts are exercised

@@ -77,20 +77,20 @@ def test_what_must_not_be_negative_at_low_frequency_is_that_of_both_criteria(shi
                               w**4 * (over**2 - abs(loop) ** 2)],
     }  # fmt: skip
     for criterion, figures in expected.items():
-        found = [
+        values = [
             np.polyval([float(c) for c in reversed(p)], w)
             for p in late._low_frequency(series, criterion)
         ]
-        assert found == pytest.approx(figures, rel=1e-7, abs=1e-9), criterion
+        assert values == pytest.approx(figures, rel=1e-7, abs=1e-9), criterion
 
 
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("s", [2j, 1j])
 def test_a_residue_is_the_limit_of_the_entry_times_the_distance(entry, s):
-    found = late._residue(terms_of(entry), s)
+    residue = late._residue(terms_of(entry), s)
     near = 1e-6
     value = number(entry, sp.nsimplify(s.imag) * sp.I + sp.Rational(1, 10**6)) * near
-    assert found == pytest.approx(value, abs=2e-5)
+    assert residue == pytest.approx(value, abs=2e-5)
 
 
 @pytest.mark.parametrize("entry", ENTRIES)

@@ -27,20 +27,20 @@ def reflected(gain):
 
 def lab(**channels):
     arm = body(0.3, viscous__damping=2.0)
-    own = spring(200.0, 30.0)
+    law = spring(200.0, 30.0)
     laws = {"C_1": spring(200.0, 0.0), "C_4": spring(200.0, 0.0), **channels}
-    return four_channel(arm, arm, master_control=own, slave_control=own, channels=laws, delay=0.005)
+    return four_channel(arm, arm, master_control=law, slave_control=law, channels=laws, delay=0.005)
 
 
 @pytest.mark.slow
 def test_each_point_is_the_two_port_of_the_diagram_at_its_values():
     """Derived once with symbols, and by the exact matrix of one diagram: rounding apart."""
     diagram = lab(C_2=reflected(0.1), C_3=reflected(0.2))
-    found = margin_map(diagram, {GAIN: [0.05, 0.3], DAMPING: [10.0, 60.0]}, frequency=F)
+    margins = margin_map(diagram, {GAIN: [0.05, 0.3], DAMPING: [10.0, 60.0]}, frequency=F)
     for gain in (0.05, 0.3):
         at = diagram.with_values({GAIN: gain, DAMPING: 60.0})
         expected = sweep_margins(two_port(impedance_matrix(at, ports(at)).tolist()), F)
-        here = found.data.sel({GAIN: gain, DAMPING: 60.0})
+        here = margins.data.sel({GAIN: gain, DAMPING: 60.0})
         assert float(here["llewellyn"]) == pytest.approx(expected.llewellyn.min(), rel=1e-9)
         assert float(here["passive"]) == pytest.approx(expected.passive.min(), rel=1e-9)
 
@@ -58,17 +58,17 @@ def test_the_delayed_spring_has_its_known_border():
         delay=0.01,
     )
     names = ("T_1.delay.time", "T_4.delay.time")
-    found = margin_map(bare, {n: [0.009, 0.011] for n in names}, frequency=F)
-    both = [float(found.data["llewellyn"][k, k]) for k in range(2)]
+    margins = margin_map(bare, {n: [0.009, 0.011] for n in names}, frequency=F)
+    both = [float(margins.data["llewellyn"][k, k]) for k in range(2)]
     assert both[0] > 0 > both[1]  # 2 N s/m against K T = 1.8 and 2.2 N s/m
 
 
 def test_a_map_says_that_it_is_no_proof_and_what_it_leaves_out():
     rubbing = body(0.3, viscous__damping=2.0, coulomb__level=0.4)
     diagram = lab(C_2=reflected(0.1)).with_block("Z_m", rubbing)
-    found = margin_map(diagram, {GAIN: [0.05, 0.3], DAMPING: [10.0]}, frequency=F)
-    assert "checked numerically on the axis; left out: Z_m.coulomb" in repr(found)
-    assert found.plot().axes
+    margins = margin_map(diagram, {GAIN: [0.05, 0.3], DAMPING: [10.0]}, frequency=F)
+    assert "checked numerically on the axis; left out: Z_m.coulomb" in repr(margins)
+    assert margins.plot().axes
 
 
 @pytest.mark.slow
@@ -77,7 +77,7 @@ def test_a_late_two_port_is_never_proved():
     assert {c.claim.status for c in claims} <= {"evidence", "refuted", "unknown"}
 
 
-def test_what_is_no_map_is_said_in_one_line():
+def test_what_is_no_map_is_reported_in_one_line():
     one = lab(C_2=reflected(0.1))
     for diagram, values, words in (
         (one, {GAIN: [0.1]}, "expected values of two blocks"),
@@ -109,16 +109,16 @@ def test_a_map_of_two_masses_joined_by_a_damper_has_its_closed_form_and_counts_w
         body(0.2, viscous__damping=1.0), body(0.3, viscous__damping=1.0), coupling=link
     )
     dampings, links = [0.5, 1.0, 3.0], [-0.6, -0.4, -0.2, 2.0]
-    found = margin_map(
+    margins = margin_map(
         diagram, {"Z_m.viscous.damping": dampings, "P.spring_damper.damping": links}, frequency=F
     )
     stable = [[d + c * (d + 1.0) >= 0 for c in links] for d in dampings]
-    np.testing.assert_array_equal(found.data["llewellyn"].values >= 0, stable)
+    np.testing.assert_array_equal(margins.data["llewellyn"].values >= 0, stable)
     least = [
         [np.linalg.eigvalsh(np.diag([d, 1.0]) + c * np.array([[1, -1], [-1, 1]]))[0] for c in links]
         for d in dampings
     ]
-    np.testing.assert_allclose(found.data["passive"].values, least, rtol=1e-6)
-    assert f"not below 0 at {np.sum(stable)} of 12 points" in repr(found)
-    assert "left out" not in repr(found)
-    assert 0 < np.sum(stable) < 12 and set(np.unique(found.data["frequency"])) <= set(F)
+    np.testing.assert_allclose(margins.data["passive"].values, least, rtol=1e-6)
+    assert f"not below 0 at {np.sum(stable)} of 12 points" in repr(margins)
+    assert "left out" not in repr(margins)
+    assert 0 < np.sum(stable) < 12 and set(np.unique(margins.data["frequency"])) <= set(F)

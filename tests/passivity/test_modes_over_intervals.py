@@ -44,7 +44,7 @@ def test_a_root_that_comes_through_zero_is_a_root_on_the_axis(family):
         assert not ask.is_hurwitz(ask.poly(family))
 
 
-def test_a_dip_of_the_constant_coefficient_inside_the_box_is_seen():
+def test_a_dip_of_the_constant_coefficient_inside_the_box_is_detected():
     dip = (Y - sp.Rational(123, 1000)) ** 2 - sp.Rational(1, 10**8)
     ask = over(-1, 2)
     assert not ask.is_hurwitz(ask.poly(sp.expand(S**2 + S + dip)))

@@ -47,9 +47,9 @@ def moved(diagram, strokes=STROKES):
 
 @pytest.mark.parametrize(("level", "stiffness"), [(0.4, 1.5e4), (0.5, 1.9e4), (0.3, 1e4)])
 def test_no_energy_comes_out_where_the_claim_is_proved(level, stiffness):
-    found = observe_simulation(moved(joint(level, stiffness)))
+    simulation = observe_simulation(moved(joint(level, stiffness)))
     # the inertia's energy is held in between; rounding of the steps is a part in 1e6 of it
-    assert found.lowest >= -1e-6 * float(found.data["energy"].max())
+    assert simulation.lowest >= -1e-6 * float(simulation.data["energy"].max())
 
 
 @pytest.mark.parametrize(("level", "stiffness", "size"), [(0.6, 1.5e4, 2e-3), (0.2, 1.5e4, 1e-5)])
@@ -57,18 +57,18 @@ def test_energy_comes_out_along_a_motion_that_refutes(level, stiffness, size):
     diagram = joint(level, stiffness)
     motion = confirmed_motion(diagram, Strokes((size, -size), speed=150 * size))
     assert motion is not None
-    found = observe_simulation(moved(diagram, motion.strokes))
-    assert found.certain
+    simulation = observe_simulation(moved(diagram, motion.strokes))
+    assert simulation.certain
     # trapezoids of steps of another length than those of the search
-    assert float(found.data["energy"][-1]) == pytest.approx(-motion.energy, rel=0.05)
-    assert found.given_out()
+    assert float(simulation.data["energy"][-1]) == pytest.approx(-motion.energy, rel=0.05)
+    assert simulation.given_out()
 
 
 def test_a_held_force_is_counted_exactly():
     """Two samples of 3 N along 0.1 m and back with -1 N: 0.3 + 0.1 J, whatever lies between."""
     t, x, f = np.arange(3.0), np.array([0.0, 0.1, 0.0]), np.array([3.0, -1.0, 9.0])
-    found = observe(t, x, f, held=True)
-    assert found.data["energy"].values == pytest.approx([0.0, 0.3, 0.4])
+    energy = observe(t, x, f, held=True)
+    assert energy.data["energy"].values == pytest.approx([0.0, 0.3, 0.4])
 
 
 @pytest.mark.parametrize("held", [True, False])
@@ -81,9 +81,9 @@ def test_the_error_of_the_energy_is_that_of_noisy_sensors(held):
         return observe(t, x + a, f + b, held=held).data["energy"].values[-1]
 
     drawn = [energy(rng.normal(0, 1e-5, 301), rng.normal(0, 0.02, 301)) for _ in range(600)]
-    told = observe(t, x, f, held=held, position_noise=1e-5, force_noise=0.02)
+    with_noise = observe(t, x, f, held=held, position_noise=1e-5, force_noise=0.02)
     # 600 draws know a standard deviation to 3 %: three of those
-    assert float(told.data["stderr"][-1]) == pytest.approx(np.std(drawn), rel=0.09)
+    assert float(with_noise.data["stderr"][-1]) == pytest.approx(np.std(drawn), rel=0.09)
 
 
 def test_energy_into_a_recorded_device_covers_its_friction_and_is_certain():
@@ -102,10 +102,10 @@ def test_energy_into_a_recorded_device_covers_its_friction_and_is_certain():
 
 
 def test_the_passivity_controller_adds_damping_only_where_energy_would_come_out():
-    found = moved(joint(0.6, 1.5e4))
-    period = float(np.diff(found.data["time"].values[:2])[0])
-    velocity = np.diff(found["L"].values) / period
-    force = found["R_V"].values[:-1]
+    simulation = moved(joint(0.6, 1.5e4))
+    period = float(np.diff(simulation.data["time"].values[:2])[0])
+    velocity = np.diff(simulation["L"].values) / period
+    force = simulation["R_V"].values[:-1]
     assert np.cumsum(period * force * velocity)[-1] < 0
     controlled = passivity_controlled(velocity, force, period=period)
     assert controlled.energy.min() >= -1e-12
@@ -126,23 +126,23 @@ def test_what_cannot_be_observed_is_refused():
     ("stderr", "falls"),
     [(0.0, [(1.0, 2.5, 3.0), (3.0, 3.5, 1.0)]), (0.6, [(1.0, 2.5, 3.0)]), (1.6, [])],
 )
-def test_each_time_in_which_energy_came_out_is_told_with_how_much_beyond_doubt(stderr, falls):
+def test_each_time_in_which_energy_came_out_is_reported_with_how_much_beyond_doubt(stderr, falls):
     """From 5 J to 2 J in three steps, from 4 J to 3 J in one; 1.96 errors are in doubt."""
     time = 0.5 * np.arange(9)
     energy = np.array([0.0, 3.0, 5.0, 4.5, 4.0, 2.0, 4.0, 3.0, 3.0])
     data = {"energy": ("time", energy), "stderr": ("time", np.linspace(0.0, stderr, 9))}
-    found = PortEnergy(xarray.Dataset(data, coords={"time": time}))
-    assert found.given_out() == falls
-    assert (found.lowest, found.when, found.certain) == (0.0, 0.0, False)
+    energies = PortEnergy(xarray.Dataset(data, coords={"time": time}))
+    assert energies.given_out() == falls
+    assert (energies.lowest, energies.when, energies.certain) == (0.0, 0.0, False)
 
 
 @pytest.mark.parametrize(("lowest", "is_certain"), [(-1.95, False), (-1.97, True), (0.5, False)])
 def test_energy_is_surely_below_zero_from_196_errors_of_it(lowest, is_certain):
     energy, stderr = np.array([2.0, 1.0, lowest, 1.5]), np.array([0.0, 0.5, 1.0, 9.0])
     data = {"energy": ("time", energy), "stderr": ("time", stderr)}
-    found = PortEnergy(xarray.Dataset(data, coords={"time": 0.1 * np.arange(4)}))
-    assert found.certain == is_certain
-    assert (found.lowest, found.when) == (lowest, pytest.approx(0.2))
+    energies = PortEnergy(xarray.Dataset(data, coords={"time": 0.1 * np.arange(4)}))
+    assert energies.certain == is_certain
+    assert (energies.lowest, energies.when) == (lowest, pytest.approx(0.2))
 
 
 @settings(max_examples=20)
@@ -160,6 +160,6 @@ def test_the_error_of_the_energy_is_what_noise_of_each_sample_makes_of_it(seed, 
         more = np.eye(n)[k]
         variance += (0.3 * (energy(position + more, force) - now)) ** 2
         variance += (0.7 * (energy(position, force + more) - now)) ** 2
-    said = observe(time, position, force, held=held, position_noise=0.3, force_noise=0.7)
-    assert said.data["stderr"].values == pytest.approx(np.sqrt(variance), abs=1e-12)
-    assert now[0] == 0.0 and said.data["stderr"].values[0] == 0.0
+    observation = observe(time, position, force, held=held, position_noise=0.3, force_noise=0.7)
+    assert observation.data["stderr"].values == pytest.approx(np.sqrt(variance), abs=1e-12)
+    assert now[0] == 0.0 and observation.data["stderr"].values[0] == 0.0

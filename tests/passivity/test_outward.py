@@ -74,22 +74,24 @@ def test_sine_and_cosine_enclose_fifty_digits(largest):
     rng = np.random.default_rng(3)
     at = rng.uniform(-1, 1, 400) * largest
     at[:9] = np.arange(-4, 5) * np.pi / 4
-    found = cosine_and_sine(Outward.exactly(at))
+    enclosure = cosine_and_sine(Outward.exactly(at))
     with mpmath.workdps(60):
-        for made, function in zip(found, (mpmath.cos, mpmath.sin), strict=True):
+        for made, function in zip(enclosure, (mpmath.cos, mpmath.sin), strict=True):
             for low, high, x in zip(made.low, made.high, at, strict=True):
                 assert mpmath.mpf(low) <= function(mpmath.mpf(x)) <= mpmath.mpf(high)
     if largest <= 1e3:  # narrow, or nothing could be shown with them
-        assert max(float((made.high - made.low).max()) for made in found) < 4e-15 * max(largest, 1)
+        assert max(float((made.high - made.low).max()) for made in enclosure) < 4e-15 * max(
+            largest, 1
+        )
 
 
 def test_sine_and_cosine_enclose_all_angles_within():
     rng = np.random.default_rng(4)
     low = rng.uniform(-20, 20, 500)
     high = low + 10 ** rng.uniform(-10, 1, 500)
-    found = cosine_and_sine(Outward(low, high))
+    enclosure = cosine_and_sine(Outward(low, high))
     for share in np.linspace(0, 1, 21):
-        for made, function in zip(found, (np.cos, np.sin), strict=True):
+        for made, function in zip(enclosure, (np.cos, np.sin), strict=True):
             value = function(low + share * (high - low))
             assert (made.low <= value + 1e-15).all() and (value - 1e-15 <= made.high).all()
 

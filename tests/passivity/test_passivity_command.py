@@ -71,7 +71,10 @@ def test_a_compensator_within_all_intervals_is_proved(answer, tmp_path, capsys):
     assert claims["search by simulation"]["status"] == "evidence"
     text = capsys.readouterr().out
     # 0.5 - 1.96 * 0.01 N
-    assert "largest f_D that is passive for every level in the interval: 0.4804 N" in text
+    assert (
+        "largest compensator level f_D for passivity at every level in the interval: 0.4804 N"
+        in text
+    )
     assert main(["passivity", "--check", str(out)]) == 0
     assert "2 certificates of 3 claims verified" in capsys.readouterr().out
 
@@ -111,7 +114,7 @@ def test_a_tampered_certificate_is_refused(answer, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         ([], "expected a folder, an answer"),
         (["missing.json"], "missing.json: cannot be read: No such file"),
@@ -122,33 +125,35 @@ def test_a_tampered_certificate_is_refused(answer, tmp_path, capsys):
         (["diagram.toml"], "diagram.toml: cannot be read"),
     ],
 )
-def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
+def test_bad_input_is_one_line_and_status_2(arguments, message, capsys):
     assert main(["passivity", *arguments]) == 2
     error = capsys.readouterr().err
-    assert said in error
+    assert message in error
     assert error.count("\n") == 1
 
 
 def body_with(**values):
     body = td.Body("prismatic", {"inertia": td.Value(0.1)})
     for effect in dict.fromkeys(n.partition("__")[0] for n in values):
-        own = {n.partition("__")[2]: v for n, v in values.items() if n.startswith(f"{effect}__")}
-        body = body.with_effect(td.EFFECTS[effect], own)
+        parameters = {
+            n.partition("__")[2]: v for n, v in values.items() if n.startswith(f"{effect}__")
+        }
+        body = body.with_effect(td.EFFECTS[effect], parameters)
     return body
 
 
 def test_the_lowest_level_is_that_of_the_whole_law():
     """Stribeck adds at rest, asymmetry takes from one direction."""
-    found = identify_device(
+    device = identify_device(
         body_with(
             coulomb__level=0.5,
             stribeck__extra_static_level=0.2,
             stribeck__stribeck_velocity=0.01,
         )
     )
-    assert (found.lowest.estimate, found.highest.estimate) == pytest.approx((0.5, 0.7))
-    found = identify_device(body_with(coulomb__level=0.5, coulomb_asymmetry__half_difference=0.1))
-    assert (found.lowest.estimate, found.highest.estimate) == pytest.approx((0.4, 0.6))
+    assert (device.lowest.estimate, device.highest.estimate) == pytest.approx((0.5, 0.7))
+    device = identify_device(body_with(coulomb__level=0.5, coulomb_asymmetry__half_difference=0.1))
+    assert (device.lowest.estimate, device.highest.estimate) == pytest.approx((0.4, 0.6))
 
 
 def test_a_level_that_may_be_zero_covers_no_compensation():
@@ -168,13 +173,13 @@ def test_damping_covers_what_the_lowest_level_does_not():
         stribeck__stribeck_velocity=0.05,
         viscous__damping=2.0,
     )
-    found = identify_device(body)
+    device = identify_device(body)
     v = np.linspace(0, 1, 100001)
     least = np.min(0.5 + 0.2 * np.exp(-((v / 0.05) ** 2)) + 2.0 * v)
     # a bound, met within 1e-4
-    assert least * (1 - 1e-4) <= found.least_resistance.estimate <= least
+    assert least * (1 - 1e-4) <= device.least_resistance.estimate <= least
     claims = compensation_claims(
-        found, Compensator("dahl", 0.6, 1e4), rng=np.random.default_rng(1), tries=3
+        device, Compensator("dahl", 0.6, 1e4), rng=np.random.default_rng(1), tries=3
     )
     by_topic = {c.topic: c.claim for c in claims}
     assert by_topic["any law within the level"].status == "refuted"

@@ -53,11 +53,11 @@ def moved(case, friction):
 
 def felt(case, friction):
     """(mean force against the motion, its rms) without that of the inertia, N."""
-    found = moved(case, friction)
-    t = found.data["time"].values
-    inertia = INERTIA * (2 * np.pi * FREQUENCY) ** 2 * -found["L"].values
-    force = (found["R_V"].values - inertia)[t > 0.5]
-    way = np.sign(found["L_velocity"].values[t > 0.5])
+    simulation = moved(case, friction)
+    t = simulation.data["time"].values
+    inertia = INERTIA * (2 * np.pi * FREQUENCY) ** 2 * -simulation["L"].values
+    force = (simulation["R_V"].values - inertia)[t > 0.5]
+    way = np.sign(simulation["L_velocity"].values[t > 0.5])
     return float(np.mean(force * way)), float(np.sqrt(np.mean(force**2)))
 
 
@@ -80,7 +80,7 @@ def test_a_budget_that_counts_too_much_gives_out_what_it_counts_too_much():
     assert lowest("rash budget", 0.5) < -0.5 * 0.08 * 12 * 0.02
 
 
-def test_the_remedies_leave_the_mean_friction_that_they_were_told_to():
+def test_the_remedies_leave_the_mean_friction_that_was_asked_for():
     """No friction is left where the budget is the true level, 0.1 N where it is 0.1 N below.
 
     0.03 N: the compensator's bristles are loaded anew at each reversal.

@@ -32,7 +32,7 @@ def test_hurwitz_is_that_of_the_roots(pairs, sign):
 
 @settings(max_examples=60)
 @given(st.lists(st.tuples(small, st.integers(1, 3)), min_size=1, max_size=4), st.booleans())
-def test_sign_changes_are_found_where_roots_are_odd(roots, negative):
+def test_sign_changes_are_detected_where_roots_are_odd(roots, negative):
     """Products of (x - r)^k: negative somewhere on x > 0 as counted by hand."""
     sign = -1 if negative else 1
     p = sp.Poly(sign * sp.prod([(X - r) ** k for r, k in roots]), X, domain="QQ")
@@ -46,7 +46,7 @@ def test_sign_changes_are_found_where_roots_are_odd(roots, negative):
 
 @settings(max_examples=60)
 @given(st.lists(small, min_size=1, max_size=5), positive)
-def test_positive_roots_are_found_once_each(roots, b):
+def test_positive_roots_are_isolated_once_each(roots, b):
     p = sp.Poly(sp.prod([X - r for r in roots]) * (X**2 + b), X, domain="QQ")
     expected = sorted({float(r) for r in roots if r > 0})
     assert [float(x) for x in positive_roots(p)] == pytest.approx(expected, rel=1e-15)
@@ -79,8 +79,8 @@ def test_roots_are_isolated_quickly_over_twelve_decades(pairs, decade):
 def test_roots_of_very_different_size_are_as_exact():
     roots = [Fraction(1, 10**15), Fraction(1, 3), Fraction(10**15)]
     p = sp.Poly(sp.prod([X - sp.Rational(str(r)) for r in roots]), X, domain="QQ")
-    for found, r in zip(positive_roots(p), roots, strict=True):
-        assert abs(found - r) <= r / 2**79
+    for enclosure, r in zip(positive_roots(p), roots, strict=True):
+        assert abs(enclosure - r) <= r / 2**79
 
 
 @pytest.mark.parametrize(

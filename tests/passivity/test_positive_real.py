@@ -123,19 +123,19 @@ def test_equality_is_named():
 )
 def test_excess_and_shortage_of_damping(z, excess, frequency):
     """The damping that could go (> 0) or is lacking (< 0); worked out by hand."""
-    found = damping_excess(z)
-    assert float(found) == pytest.approx(excess, rel=1e-11, abs=1e-20)
+    margin = damping_excess(z)
+    assert float(margin) == pytest.approx(excess, rel=1e-11, abs=1e-20)
     if frequency is not None:
-        assert found.frequency == pytest.approx(frequency, rel=1e-9)
+        assert margin.frequency == pytest.approx(frequency, rel=1e-9)
 
 
 def test_the_bounds_of_the_excess_are_exact():
     """Z less the lower bound is passive, less the upper it is not: by the same test."""
     for z in (0.3 + (S + 1) / (S**2 + S + 7), (S**2 - 0.1 * S + 1) / (S + 1) ** 2, 2 + 1 / S):
-        found = damping_excess(z)
-        assert isinstance(found.lower, Fraction)
-        assert found.lower < found.upper
-        less = [sp.sympify(z) - sp.Rational(str(c)) for c in (found.lower, found.upper)]
+        excess = damping_excess(z)
+        assert isinstance(excess.lower, Fraction)
+        assert excess.lower < excess.upper
+        less = [sp.sympify(z) - sp.Rational(str(c)) for c in (excess.lower, excess.upper)]
         assert [positive_real(e).status for e in less] == ["proved", "refuted"]
 
 
@@ -200,8 +200,8 @@ def test_state_space_and_transfer_function_agree(entries):
     c, d = np.array(entries[6:8])[None, :], np.array([[entries[8]]])
     s = 3.0 + 20.0j  # away from every pole of such matrices
     direct = (c @ np.linalg.solve(s * np.eye(2) - a, b) + d)[0, 0]
-    found = impedance(control.ss(a, b, c, d))(s)
-    assert found == pytest.approx(direct, rel=1e-9, abs=1e-9)
+    value = impedance(control.ss(a, b, c, d))(s)
+    assert value == pytest.approx(direct, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -235,7 +235,7 @@ def test_a_text_is_refused_and_not_run(accept, capfd):
 
 
 @pytest.mark.slow
-def test_numbers_of_sixteen_digits_are_settled_in_seconds_and_what_is_proved_is_accepted():
+def test_numbers_of_sixteen_digits_are_decided_in_seconds_and_what_is_proved_is_accepted():
     """Twenty-six lags in series with nothing to cancel: remainders would have 10 000 digits."""
     rng = np.random.default_rng(1)
     for number, status in ((18, "proved"), (26, "evidence")):

@@ -7,8 +7,8 @@ import pytest
 from passivity.friction_systems import (
     FrictionSystem,
     confirmed,
-    found_by_search,
     random_system,
+    search_motion,
     theory_motion,
     verdict,
 )
@@ -27,7 +27,7 @@ def one(**changed):
         "stiffness": 1e4,
         "damping": 0.0,
         "law": "dahl",
-        "own_level": 0.8,
+        "compensator_level": 0.8,
         "second": 8e3,
         "period": 0.0,
         "late": 0,
@@ -54,14 +54,14 @@ def test_the_family_has_every_part_alone_and_together():
     ("system", "expected"),
     [
         (one(), "proved"),
-        (one(own_level=0.5), "refuted"),
-        (one(own_level=1.1), "refuted"),
-        (one(stiffness=None, own_level=1.0, period=1e-3, late=2), "proved"),
+        (one(compensator_level=0.5), "refuted"),
+        (one(compensator_level=1.1), "refuted"),
+        (one(stiffness=None, compensator_level=1.0, period=1e-3, late=2), "proved"),
         (one(period=1e-3), "refuted"),
         (one(period=1e-3, late=1), "refuted"),
-        (one(law="coulomb", own_level=0.1), "refuted"),
-        (one(law="smoothed_coulomb", own_level=0.1, second=0.01, damping=10.0), "proved"),
-        (one(stiffness=None, extra=0.5, own_level=1.2), "refuted"),
+        (one(law="coulomb", compensator_level=0.1), "refuted"),
+        (one(law="smoothed_coulomb", compensator_level=0.1, second=0.01, damping=10.0), "proved"),
+        (one(stiffness=None, extra=0.5, compensator_level=1.2), "refuted"),
     ],
     ids=str,
 )
@@ -75,15 +75,15 @@ def test_theorems_refutations_and_search_never_contradict_each_other():
     rng, counts, contradictions = np.random.default_rng(SEED), Counter(), []
     for _ in range(SEARCHED):
         system = random_system(rng)
-        said, by, record = verdict(system)
-        motion = found_by_search(system, rng, number=8)
-        if said == "proved" and motion is not None:
+        status, by, record = verdict(system)
+        motion = search_motion(system, rng, number=8)
+        if status == "proved" and motion is not None:
             contradictions.append((system, by, motion))
         if record is not None:
             assert record.replay() > 0, (system, by)
             if motion is None:
                 motion = confirmed(system, theory_motion(system, record))
-        counts[said, motion is not None] += 1
+        counts[status, motion is not None] += 1
     assert not contradictions
     assert counts["proved", False] > SEARCHED / 5
     assert counts["refuted", True] > 0.4 * SEARCHED

@@ -21,13 +21,13 @@ def motions(tmp_path_factory):
             coulomb_level=0.5, compensator_level=0.6, compensator_stiffness=1e4
         ),
     }
-    found = {}
+    strokes = {}
     for name, claim in claims.items():
         path = folder / f"{name}.json"
         write_record(claim.record, path)
         assert read_record(path).replay() > 0
-        found[name] = json.loads(path.read_text())
-    return found
+        strokes[name] = json.loads(path.read_text())
+    return strokes
 
 
 @pytest.mark.parametrize(

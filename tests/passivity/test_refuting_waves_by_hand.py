@@ -32,9 +32,9 @@ def test_an_active_first_port_is_refuted_with_the_second_clamped():
 
 def test_an_active_second_port_is_moved_itself_with_the_first_clamped():
     system = two_port_of([[S + 1, 0], [0, S - 1]])
-    found = dict(waves.terminate(system, 0.1))
-    assert set(found) == {"moved, port 1 clamped"}
-    assert taken_out(found["moved, port 1 clamped"], S - 1)
+    terminations = dict(waves.terminate(system, 0.1))
+    assert set(terminations) == {"moved, port 1 clamped"}
+    assert taken_out(terminations["moved, port 1 clamped"], S - 1)
 
 
 @pytest.mark.parametrize("turn", [1, 2])
@@ -46,12 +46,14 @@ def test_ports_that_are_passive_alone_are_refuted_by_a_held_second_one(turn, fac
     frequency = 1 / (2 * np.pi)
     z = system.over(np.array([frequency]))[0]
     margin = (2 * z[0, 0].real * z[1, 1].real - (z[0, 1] * z[1, 0]).real) / abs(z[0, 1] * z[1, 0])
-    found = dict(waves.terminate(system, frequency))
-    assert "clamped" not in found
+    terminations = dict(waves.terminate(system, frequency))
+    assert "clamped" not in terminations
     if margin < 1:
-        (text,) = found
+        (text,) = terminations
         assert (
-            text.startswith("held by ") and text.endswith(" N s/m") and taken_out(found[text], None)
+            text.startswith("held by ")
+            and text.endswith(" N s/m")
+            and taken_out(terminations[text], None)
         )
 
 
@@ -100,12 +102,12 @@ CABLE = [Coulomb(1.0), Spring(2.0, 1e4)]
 
 @pytest.mark.parametrize(("level", "holds"), [(0.5, True), (1.4, False), (3.5, False)])
 def test_the_margin_of_a_storage_has_the_sign_of_its_verdict(level, holds):
-    found = available_storage(Dahl(level, 3e4), CABLE, points=21)
-    verdict = found.evidence()
+    storage = available_storage(Dahl(level, 3e4), CABLE, points=21)
+    verdict = storage.evidence()
     assert verdict.holds is holds and (verdict.margin > 0) is holds
-    turned = replace(found, gain=2 * found.tolerance, round_trip=0.0).evidence()
-    assert not turned.holds and turned.margin == pytest.approx(-found.tolerance)
-    released = replace(found, gain=0.0, round_trip=0.3, stroke=0.01).evidence()
+    turned = replace(storage, gain=2 * storage.tolerance, round_trip=0.0).evidence()
+    assert not turned.holds and turned.margin == pytest.approx(-storage.tolerance)
+    released = replace(storage, gain=0.0, round_trip=0.3, stroke=0.01).evidence()
     assert not released.holds and released.margin == -0.3
     assert "0.01 m forth and back release 0.3 N" in released.searched
 

@@ -127,5 +127,5 @@ def test_a_damper_that_another_outdoes_by_rounding_alone_is_not_refuted(damping,
     minus = Junction("u", {"F": -1})
     control_block = Control("P", law, "x", "F", "x", analog=True)
     diagram = Diagram("held", (device, control_block), (minus,), {"f": "force"}, ("x",))
-    found = [claim.status for claim in claims(diagram)]
-    assert found[0] == status and ("refuted" in found) is (status == "refuted")
+    statuses = [claim.status for claim in claims(diagram)]
+    assert statuses[0] == status and ("refuted" in statuses) is (status == "refuted")

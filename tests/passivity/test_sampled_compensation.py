@@ -42,7 +42,7 @@ def stroke_by_stroke(record):
 
 
 @given(
-    own=sizes,
+    level=sizes,
     stiffness=sizes,
     path=sizes,
     drift=st.floats(0.01, 0.99),
@@ -50,9 +50,9 @@ def stroke_by_stroke(record):
     samples=st.integers(3, 40),
     late=st.integers(0, 2),
 )
-def test_the_sum_is_that_of_every_stroke(own, stiffness, path, drift, damping, samples, late):
+def test_the_sum_is_that_of_every_stroke(level, stiffness, path, drift, damping, samples, late):
     record = Trembling(
-        Dahl(own, 1e4 * stiffness),
+        Dahl(level, 1e4 * stiffness),
         Dahl(1.0, 1e4),
         damping,
         1e-3,
@@ -61,20 +61,20 @@ def test_the_sum_is_that_of_every_stroke(own, stiffness, path, drift, damping, s
         samples,
         late,
     )
-    turned = samples * (1.0 + own) * record.path
+    turned = samples * (1.0 + level) * record.path
     assert record.replay() == pytest.approx(stroke_by_stroke(record), abs=1e-12 * turned)
 
 
 @settings(max_examples=25)
 @given(
-    own=st.floats(-1, 0.5).map(lambda x: 10**x),
+    level=st.floats(-1, 0.5).map(lambda x: 10**x),
     soft=sizes,
     damping=dampings,
 )
-def test_beside_a_contact_that_gives_no_numbers_are_passive(own, soft, damping):
+def test_beside_a_contact_that_gives_no_numbers_are_passive(level, soft, damping):
     claim = sampled_compensation(
         **JOINT,
-        compensator_level=own,
+        compensator_level=level,
         compensator_stiffness=1e4 * soft,
         sample_time=1e-3,
         viscous_damping=damping,
@@ -82,7 +82,7 @@ def test_beside_a_contact_that_gives_no_numbers_are_passive(own, soft, damping):
     assert claim.status == "refuted"
     assert claim.record.replay() > 0
     if damping:  # no law within f_D gives out more
-        assert claim.record.power < own**2 / (4 * damping)
+        assert claim.record.power < level**2 / (4 * damping)
 
 
 def test_ideal_friction_keeps_its_bound_in_a_computer():

@@ -83,12 +83,12 @@ def test_the_motion_gives_out_what_a_plain_simulation_finds():
     """Sample by sample, in a loop: held force, damping at constant speed, spring of the body."""
     late = float(T)
     claim = sampled_passivity(K + B * DIFFERENCE, damping=0.6, sample_time=T)
-    position, before, taken = 0.0, 0.0, 0.0
+    position, before, energy = 0.0, 0.0, 0.0
     for d in claim.record.travel:
         force = K * position + float(B) * (position - before) / late
-        taken += force * d + 0.6 * d * d / late
+        energy += force * d + 0.6 * d * d / late
         position, before = position + d, position
-    assert -taken == pytest.approx(claim.record.energy, rel=1e-9)
+    assert -energy == pytest.approx(claim.record.energy, rel=1e-9)
 
 
 @settings(max_examples=25)
@@ -104,9 +104,9 @@ def test_no_motion_takes_energy_out_at_the_limit(stiffness, delay, travel):
     position = np.concatenate([[0.0], np.cumsum(travel)])
     late = np.concatenate([np.zeros(delay), position])[: len(position)]
     force = float(stiffness) * late[:-1]
-    taken = force @ np.array(travel) + b * (np.array(travel) @ np.array(travel))
+    energy = force @ np.array(travel) + b * (np.array(travel) @ np.array(travel))
     # with the body held until the delayed force has settled nothing more flows
-    assert taken >= -1e-9 * float(stiffness) * (1 + np.abs(position).max() ** 2)
+    assert energy >= -1e-9 * float(stiffness) * (1 + np.abs(position).max() ** 2)
 
 
 def test_the_condition_over_frequency_is_that_of_the_paper():
@@ -121,39 +121,39 @@ def test_the_condition_over_frequency_is_that_of_the_paper():
 
 def test_a_sampled_coupling_needs_the_parallel_damping():
     """b_m b_s/(b_m + b_s) >= P T/2: 2 and 2 N s/m carry 2000 N/m at 1 ms, not more."""
-    given_ = {"master_damping": 2, "slave_damping": 2, "sample_time": T}
-    assert sampled_coupling(2000, **given_).status == "proved"
-    assert sampled_coupling(2001, **given_).status == "refuted"
+    arguments = {"master_damping": 2, "slave_damping": 2, "sample_time": T}
+    assert sampled_coupling(2000, **arguments).status == "proved"
+    assert sampled_coupling(2001, **arguments).status == "refuted"
     assert sampled_coupling(1, master_damping=0, slave_damping=9, sample_time=T).holds is False
 
 
 def test_the_z_width_of_a_wall_without_delay():
     """K = 2 (b - B)/T for wall dampings from 0 to b."""
-    found = z_width(damping=5.0, sample_time=1e-3, inertia=0.15, wall_damping=np.linspace(0, 4, 5))
-    assert found.verified
-    assert found.stiffness == pytest.approx(2 * (5 - found.wall_damping) / 1e-3, rel=1e-7)
-    assert found.stiffest == pytest.approx((1e4, 0.0))
+    width = z_width(damping=5.0, sample_time=1e-3, inertia=0.15, wall_damping=np.linspace(0, 4, 5))
+    assert width.verified
+    assert width.stiffness == pytest.approx(2 * (5 - width.wall_damping) / 1e-3, rel=1e-7)
+    assert width.stiffest == pytest.approx((1e4, 0.0))
     free = 5 + 0.15 * 2j * np.pi  # m s + b at 1 Hz, and the wall beside it
     wall = abs(free + 1e4 / (2j * np.pi)) / abs(free)
-    assert found.width(1.0) == pytest.approx(20 * np.log10(wall))
-    assert "K (N/m)" in found.graph().y_label
+    assert width.width(1.0) == pytest.approx(20 * np.log10(wall))
+    assert "K (N/m)" in width.graph().y_label
 
 
 def test_delay_narrows_the_z_width_and_then_some_damping_widens_it():
     """One sample late: 2 b/(3 T) without wall damping, more with some; verified exactly."""
-    found = z_width(damping=5.0, sample_time=1e-3, delay=1, wall_damping=np.linspace(0, 4, 5))
-    assert found.verified
-    assert found.stiffness[0] == pytest.approx(2 * 5 / 3e-3, rel=1e-6)
-    assert found.stiffness[1] > found.stiffness[0]
+    width = z_width(damping=5.0, sample_time=1e-3, delay=1, wall_damping=np.linspace(0, 4, 5))
+    assert width.verified
+    assert width.stiffness[0] == pytest.approx(2 * 5 / 3e-3, rel=1e-6)
+    assert width.stiffness[1] > width.stiffness[0]
 
 
-def test_a_wall_with_filtered_velocity_is_a_law_of_its_own():
+def test_a_wall_with_filtered_velocity_is_a_separate_law():
     """Any law linear in K and B; a first-order filter of the velocity."""
     a = sp.Rational(9, 10)
     law = WALL_STIFFNESS + WALL_DAMPING * (1 - a) / (1 - a / Z) * DIFFERENCE
-    found = z_width(damping=5.0, sample_time=1e-3, law=law, wall_damping=np.array([0.0, 5.0, 20.0]))
-    assert found.verified
-    assert found.stiffness[0] == pytest.approx(1e4, rel=1e-6)
+    width = z_width(damping=5.0, sample_time=1e-3, law=law, wall_damping=np.array([0.0, 5.0, 20.0]))
+    assert width.verified
+    assert width.stiffness[0] == pytest.approx(1e4, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -174,5 +174,5 @@ def test_wrong_input_is_one_clear_line(law, sample_time, message):
 def test_a_wall_of_damping_alone_is_passive_up_to_that_of_the_device():
     """No stiffness is asked for, so none is too large."""
     law = WALL_DAMPING * (Z - 1) / (sp.Rational(1, 1000) * Z)
-    found = z_width(damping=5, sample_time=0.001, law=law, wall_damping=np.array([0, 4.9, 5.1, 50]))
-    assert np.isinf(found.stiffness[:2]).all() and np.isnan(found.stiffness[2:]).all()
+    width = z_width(damping=5, sample_time=0.001, law=law, wall_damping=np.array([0, 4.9, 5.1, 50]))
+    assert np.isinf(width.stiffness[:2]).all() and np.isnan(width.stiffness[2:]).all()

@@ -24,9 +24,9 @@ FORMS = {
 def test_the_claim_is_that_on_its_transfer_function(form, damping):
     """About the limit K T/2 + B = 2.25 N s/m of a wall."""
     known = sampled_passivity(WALL, damping=damping, sample_time=PERIOD)
-    found = sampled_passivity(FORMS[form], damping=damping, sample_time=PERIOD)
-    assert (found.status, found.statement) == (known.status, known.statement)
-    assert found.status == ("proved" if damping >= 2.25 else "refuted")
+    claim = sampled_passivity(FORMS[form], damping=damping, sample_time=PERIOD)
+    assert (claim.status, claim.statement) == (known.status, known.statement)
+    assert claim.status == ("proved" if damping >= 2.25 else "refuted")
 
 
 def test_the_least_damping_is_that_of_its_transfer_function():

@@ -77,7 +77,7 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
     """Against eigenvalues of Z + Z^H at random points of the right half plane."""
     rng = np.random.default_rng(size)
     points = 10.0 ** rng.uniform(-3, 3, 4000) * np.exp(0.5j * np.pi * rng.random(4000))
-    seen = set()
+    kinds = set()
     for less in (0, 0, sp.Rational(1, 50), 3):
         z = random_matrix(rng, size, less)
         claim = passive_together(z)
@@ -89,8 +89,8 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
         beaten = (lowest < -1e-12 * np.abs(values).max(axis=(1, 2))).any()
         assert not (claim.status == "proved" and beaten)
         assert not (claim.status == "refuted" and claim.record.replay() <= 0)
-        seen.add(claim.status)
-    assert seen >= {"proved", "refuted"}
+        kinds.add(claim.status)
+    assert kinds >= {"proved", "refuted"}
 
 
 def test_with_dead_times_nothing_is_claimed_of_three_ports():
@@ -104,7 +104,7 @@ LINKS = Arm((JOINT, JOINT), tip_coordinates([[0.3, 0.1], [0.0, 0.2]]))
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("stiffness", "status"), [(0.0, "proved"), (150.0, "refuted")])
-def test_two_arms_of_two_joints_behind_fixed_jacobians_are_settled_at_all_four_ports(
+def test_two_arms_of_two_joints_behind_fixed_jacobians_are_decided_at_all_four_ports(
     stiffness, status
 ):
     """A coupling whose matrix is not symmetric is no spring."""

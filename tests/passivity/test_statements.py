@@ -20,7 +20,7 @@ SMALL = {
 
 
 def proved_claims(function, number=3, tries=60):
-    rng, found = random.Random(7), []
+    rng, theorem_claims = random.Random(7), []
     for _ in range(tries):
         arguments = inside(function, rng)
         if function.__name__ == "sampled_compensation":
@@ -29,19 +29,19 @@ def proved_claims(function, number=3, tries=60):
             arguments[name] *= share
         claim = function(**arguments)
         if claim.status == "proved":
-            found.append((arguments, claim))
-        if len(found) == number:
+            theorem_claims.append((arguments, claim))
+        if len(theorem_claims) == number:
             break
-    return found
+    return theorem_claims
 
 
 @pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
 def test_the_statement_of_every_theorem_holds_its_values_and_no_words_of_a_file(theorem, function):
     if function.__name__ in NEVER_PROVED:
         pytest.skip("a search: nothing is proved")
-    found = proved_claims(function)
-    assert found, f"{function.__name__} proved nothing of what was drawn"
-    for arguments, claim in found:
+    claims = proved_claims(function)
+    assert claims, f"{function.__name__} proved nothing of what was drawn"
+    for arguments, claim in claims:
         assert claim.certificates
         statements = [check(dict(c.content)) for c in claim.certificates]
         for certificate, statement in zip(claim.certificates, statements, strict=True):
@@ -51,6 +51,6 @@ def test_the_statement_of_every_theorem_holds_its_values_and_no_words_of_a_file(
             assert check(sealed(edited)) == statement and "500 N" not in statement
         # another value is another statement: it comes from the content and not from the function
         changed = [a for n, a in arguments.items() if isinstance(a, float) and n != "rng"]
-        said = " ".join(statements)
+        whole_text = " ".join(statements)
         exact = {str(Fraction(repr(a))) for a in changed} | {str(a) for a in changed}
-        assert any(text in said for text in exact) or "positive real" in said
+        assert any(text in whole_text for text in exact) or "positive real" in whole_text

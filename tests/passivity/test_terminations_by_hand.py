@@ -87,9 +87,9 @@ def test_velocities_have_their_ratio_and_the_phase_in_which_terminations_take_mo
         assert v1.imag == v2.imag == 0 and v2.real == pytest.approx(v1.real * ratio.real)
         return
     assert v2 == pytest.approx(v1 * ratio, rel=1e-9, abs=1e-12)
-    taken = (near.at(s) * v1**2 + far.at(s) * v2**2) / s
-    assume(abs(taken) > 1e-6)
-    assert abs(cmath.phase(taken)) < 1e-6
+    power = (near.at(s) * v1**2 + far.at(s) * v2**2) / s
+    assume(abs(power) > 1e-6)
+    assert abs(cmath.phase(power)) < 1e-6
 
 
 @settings(max_examples=20)
@@ -117,11 +117,11 @@ EXCESS = {
 @pytest.mark.parametrize("name", EXCESS)
 def test_the_excess_of_damping_is_the_least_real_part(name):
     z, least = EXCESS[name]
-    found = damping_excess(z)
-    assert float(found) == pytest.approx(least, abs=1e-9)
-    assert found.lower <= found.upper
-    if np.isfinite(least) and np.isfinite(found.frequency):
-        there = complex(z.subs(S, sp.I * found.frequency)) if found.frequency else z.subs(S, 0)
+    excess = damping_excess(z)
+    assert float(excess) == pytest.approx(least, abs=1e-9)
+    assert excess.lower <= excess.upper
+    if np.isfinite(least) and np.isfinite(excess.frequency):
+        there = complex(z.subs(S, sp.I * excess.frequency)) if excess.frequency else z.subs(S, 0)
         if there.is_finite if isinstance(there, sp.Expr) else True:
             assert sp.re(there) == pytest.approx(least, abs=1e-6)
 
@@ -135,8 +135,8 @@ def test_the_excess_of_a_mobility_is_the_least_real_part_of_the_inverse(name):
 
 
 def test_an_impedance_of_nothing_has_a_mobility_without_bound():
-    found = mobility_excess(sp.S(0))
-    assert found.lower == found.upper == np.inf and found.frequency == 0.0
+    excess = mobility_excess(sp.S(0))
+    assert excess.lower == excess.upper == np.inf and excess.frequency == 0.0
 
 
 def test_a_sampled_coupling_between_two_undamped_masses_has_no_damping_to_count_on():
@@ -212,7 +212,7 @@ def test_a_value_that_has_to_be_positive_is_refused_by_name_at_zero_too(wrong):
         ([-1], [0, 1], "no residue > 0"),
     ],
 )
-def test_why_a_port_is_not_positive_real_is_said(p, q, words):
+def test_why_a_port_is_not_positive_real_is_reported(p, q, words):
     """Coefficients from the lowest power: s + 1, 1/(s - 1), s - 1 and -1/s."""
     ratio = tuple([Fraction(c) for c in one] for one in (p, q))
     condition = absolute_stability._positive_real("Z", ratio)

@@ -28,8 +28,8 @@ MASTER, SLAVE = 0.2 * S + 1, 0.5 * S + 1
 
 def coupled(**changes):
     """A spring of 1000 N/m between dampings of 1 N s/m, unless changed."""
-    given = {"master": MASTER, "slave": SLAVE, "stiffness": 1000} | changes
-    return teleoperator_two_port(**given)
+    arguments = {"master": MASTER, "slave": SLAVE, "stiffness": 1000} | changes
+    return teleoperator_two_port(**arguments)
 
 
 def delayed(stiffness=1000, delay=1e-3, dampings=(1, 1)):
@@ -141,11 +141,11 @@ def test_margins_over_frequency_change_sign_where_the_criterion_says():
 def test_the_region_of_stable_couplings_is_that_of_the_formula():
     """Stiffness and delay: proved or refuted at every point, as P T <= sqrt(b_m b_s) says."""
     stiffness, delay = np.array([300.0, 700.0, 1500.0]), np.array([0.5e-3, 1e-3, 2e-3])
-    found = region(lambda k, late: delayed(k, late), stiffness, delay)
+    plane = region(lambda k, late: delayed(k, late), stiffness, delay)
     expected = stiffness[None, :] * delay[:, None] <= 1.0
-    assert np.array_equal(found.status == "proved", expected)
-    assert np.array_equal(found.holds == 1, expected)
-    assert "proved" in repr(found)
+    assert np.array_equal(plane.status == "proved", expected)
+    assert np.array_equal(plane.holds == 1, expected)
+    assert "proved" in repr(plane)
 
 
 @pytest.mark.parametrize("number", [4, pytest.param(60, marks=pytest.mark.slow)])
@@ -314,11 +314,11 @@ def test_with_delay_the_limit_of_low_frequency_counts():
         (1 - sp.Rational(1, 10**6), False),
     ):
         z = [[1 + 1 / S, late / S], [late / S, product + 1 / S]]
-        found = obstacles(two_port(z), "absolutely stable")
-        assert bool(found) is not evidence
+        reasons = obstacles(two_port(z), "absolutely stable")
+        assert bool(reasons) is not evidence
 
 
-def test_with_delay_a_residue_that_refutes_is_found():
+def test_with_delay_a_residue_that_refutes_is_detected():
     claim = absolutely_stable(two_port([[1, LATE / S], [LATE / S, 1]]))
     assert claim.status == "refuted"
     assert claim.record.replay() > 0

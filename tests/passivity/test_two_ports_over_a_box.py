@@ -125,26 +125,28 @@ def exact(number):
 
 @pytest.mark.parametrize("case", TRANSFERS)
 @pytest.mark.parametrize("turned", [False, True])
-def test_terminations_between_which_it_grows_are_found_however_little_is_too_much(case, turned):
+def test_terminations_between_which_the_motion_grows_are_detected_however_little_is_too_much(
+    case, turned
+):
     transfer, grows = TRANSFERS[case]
     above, below = (9 * transfer, sp.S(1)) if not turned else (sp.S(1), 9 * transfer)
     z = sp.ImmutableMatrix([[3, above], [below, 3]])
     mode = growing_mode(z)
     assert (mode is not None) == grows
     near = _narrow(z, entries_of(z))
-    for found in filter(None, (mode, near)):
-        assert grows and found.is_confirmed() and found.rate > 0 and found.energy > 0
+    for candidate in filter(None, (mode, near)):
+        assert grows and candidate.is_confirmed() and candidate.rate > 0 and candidate.energy > 0
         # both terminations take energy, and with them the loop is singular where it grows
-        s = exact(found.rate) + sp.I * exact(found.frequency)
+        s = exact(candidate.rate) + sp.I * exact(candidate.frequency)
         first, second = (exact(t.damping) + exact(t.inertia) * s + exact(t.stiffness) / s
-                         for t in found.terminations)  # fmt: skip
+                         for t in candidate.terminations)  # fmt: skip
         entries = z.subs(S, s)
         products = (
             (entries[0, 0] + first) * (entries[1, 1] + second),
             entries[0, 1] * entries[1, 0],
         )
         passing, back = (sp.N(product, 60) for product in products)
-        if not any(t.clamped for t in found.terminations):
+        if not any(t.clamped for t in candidate.terminations):
             assert abs(passing - back) < 1e-40 * abs(passing)
     if "band" in case or "gap" in case:
         assert near is not None

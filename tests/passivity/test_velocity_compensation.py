@@ -19,26 +19,34 @@ JOINT = {"coulomb_level": 0.5, "smoothing_velocity": 0.01}
 sizes = st.floats(-3, 3).map(lambda x: 10**x)
 
 
-@given(level=sizes, own=sizes, smoothing=sizes, damping=sizes | st.just(0.0), gives=st.booleans())
-def test_the_condition_is_that_of_the_square_roots(level, own, smoothing, damping, gives):
+@given(
+    level=sizes,
+    compensator_level=sizes,
+    smoothing=sizes,
+    damping=sizes | st.just(0.0),
+    gives=st.booleans(),
+)
+def test_the_condition_is_that_of_the_square_roots(
+    level, compensator_level, smoothing, damping, gives
+):
     claim = velocity_compensation(
         coulomb_level=level,
-        compensator_level=own,
+        compensator_level=compensator_level,
         smoothing_velocity=smoothing,
         viscous_damping=damping,
         presliding_stiffness=1e4 * level if gives else None,
     )
     least = 0.0 if gives else level
-    room = math.sqrt(least) + math.sqrt(smoothing * damping) - math.sqrt(own)
+    room = math.sqrt(least) + math.sqrt(smoothing * damping) - math.sqrt(compensator_level)
     # at 1e-9 of the levels the float formula may sit on the other side
-    if abs(room) > 1e-9 * math.sqrt(own):
+    if abs(room) > 1e-9 * math.sqrt(compensator_level):
         assert claim.status == ("proved" if room > 0 else "refuted")
     if claim.status == "refuted":
         assert claim.record.replay() > 0
 
 
 @pytest.mark.parametrize(
-    ("own", "damping", "gives", "status"),
+    ("compensator_level", "damping", "gives", "status"),
     [
         (0.5, 0.0, None, "proved"),
         (0.51, 0.0, None, "refuted"),
@@ -50,10 +58,10 @@ def test_the_condition_is_that_of_the_square_roots(level, own, smoothing, dampin
     ],
 )
 @pytest.mark.parametrize("computer", [{}, {"sample_time": 1e-3, "late": 2}], ids=["", "sampled"])
-def test_a_case_on_the_limit_stays_there(own, damping, gives, status, computer):
+def test_a_case_on_the_limit_stays_there(compensator_level, damping, gives, status, computer):
     claim = velocity_compensation(
         **JOINT,
-        compensator_level=own,
+        compensator_level=compensator_level,
         viscous_damping=damping,
         presliding_stiffness=gives,
         **computer,
@@ -66,14 +74,14 @@ def test_a_case_on_the_limit_stays_there(own, damping, gives, status, computer):
         assert claim.verdict.margin == pytest.approx(0.0, abs=1e-12)
 
 
-def device(own, damping, gives):
+def device(compensator_level, damping, gives):
     body = td.Body("prismatic", {"inertia": td.Value(1e-3)})
     body = body.with_effect(td.EFFECTS["coulomb"], {"level": 0.5})
     body = body.with_effect(td.EFFECTS["viscous"], {"damping": damping})
     if gives:
         presliding = td.EFFECTS["presliding"].without("bristle_damping")
         body = body.with_effect(presliding, {"stiffness": gives})
-    law = controller("smoothed_coulomb", {"level": own, "smoothing_velocity": 0.01})
+    law = controller("smoothed_coulomb", {"level": compensator_level, "smoothing_velocity": 0.01})
     return haptic_interface(body, cancellation=law)
 
 
@@ -93,10 +101,10 @@ def test_a_contact_that_gives_is_driven_by_a_tenth_of_its_friction(computer):
 def test_the_energy_of_small_strokes_is_that_of_a_negative_damper():
     """Of a sinusoid: pi (f_D/a) A V a cycle, less what the bristles of the contact lose."""
     a, peak = 1e-7, 1e-5
-    found = released_energy(device(0.05, 1e-9, 2e4), Strokes((a, -a), speed=peak))
+    energy = released_energy(device(0.05, 1e-9, 2e4), Strokes((a, -a), speed=peak))
     expected = np.pi * 0.05 / 0.01 * a * peak - dahl_loss(0.5, 2e4, a)
     # 1 %: the law bends by a thousandth at that speed, the first rounds load the bristle
-    assert found.last_round == pytest.approx(expected, rel=0.01)
+    assert energy.last_round == pytest.approx(expected, rel=0.01)
 
 
 def test_values_that_make_no_sense_are_refused():

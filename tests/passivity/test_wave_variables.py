@@ -77,13 +77,13 @@ def test_the_wiring_is_that_of_the_printed_equations_and_passive(b, gain, rate, 
     """
     s = real + 1j * way
     blocks = {"Z_m": s * s, "Z_s": s * s, "b_m": b * s, "b_s": b * s, "P": gain * (1 + rate / s)}
-    found = np.array(derived()(s, *blocks.values(), delay, delay)).reshape(2, 2) / s
+    matrix = np.array(derived()(s, *blocks.values(), delay, delay)).reshape(2, 2) / s
     late = np.exp(-s * delay)
     expected = by_hand(s, b, b * blocks["P"], s, s, late)
     size = np.abs(expected).max()
-    assert np.abs(found - expected).max() < 1e-9 * size / abs(late) ** 2
+    assert np.abs(matrix - expected).max() < 1e-9 * size / abs(late) ** 2
     if abs(late) > 1e-3:
-        assert np.linalg.eigvalsh(found + found.conj().T).min() > -1e-9 * size / abs(late) ** 2
+        assert np.linalg.eigvalsh(matrix + matrix.conj().T).min() > -1e-9 * size / abs(late) ** 2
 
 
 def teleoperator(**arguments):
@@ -112,11 +112,11 @@ def test_a_simulated_motion_of_waves_gives_out_nothing_at_both_ports(delay):
         name: (lambda t, k=k: np.sin(np.multiply.outer(t, tones[k]) + phases[k]).sum(axis=-1))
         for k, name in enumerate(("F_u", "F_d"))
     }
-    found = simulate(
+    simulation = simulate(
         teleoperator(delay=delay), duration=2.0, inputs=push, computer="continuous", every_step=True
     )
     both = [
-        observe_simulation(found, motion=f"X_{side}", force=f"F_{side}").data["energy"].values
+        observe_simulation(simulation, motion=f"X_{side}", force=f"F_{side}").data["energy"].values
         for side in "ms"
     ]
     assert sum(both).min() > -1e-6 * np.abs(both).max()
@@ -178,17 +178,17 @@ def any_body(*names):
 def test_no_effect_of_the_catalogue_is_passed_over_by_the_proof(beside):
     """Proved for what is linear at one motion, and Coulomb friction; else unknown."""
     counted = {"viscous", "coulomb", "added_inertia", "spring"}
-    tried = 0
+    count = 0
     for name in sorted({*EFFECTS} - {*beside}):
         try:
             made = any_body(*beside, name)
         except ModelError:  # it needs another effect, or does not stand beside these
             continue
-        tried += 1
+        count += 1
         diagram = wave_variables(made, body(0.1), wave_impedance=10.0, coupling=MATCHED)
         expected = "proved" if {*beside, name} <= counted else "unknown"
         assert wave_claim(diagram).status == expected, name
-    assert tried > 10
+    assert count > 10
 
 
 def test_a_mode_that_grows_within_the_coupling_leaves_the_whole_unknown():
@@ -247,7 +247,7 @@ def test_growing_delays_without_a_scale_give_out_energy_and_nothing_is_proved():
     assert wave_channel(wave_impedance=3, scale=1.01).status == "unknown"
 
 
-def test_a_wave_impedance_or_way_that_cannot_be_is_said_in_one_line():
+def test_a_wave_impedance_or_way_that_cannot_be_is_reported_in_one_line():
     for arguments, words in (
         ({"wave_impedance": 0.0}, "expected > 0"),
         ({"delay": {"T_3": 0.1}}, 'no way "T_3"'),

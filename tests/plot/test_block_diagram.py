@@ -189,7 +189,7 @@ def test_a_matrix_of_many_motions_gathers_them_by_bars():
     assert sum(not b.block for b in of(drawing, Box)) == 2
 
 
-def test_a_title_with_marks_of_its_own_is_escaped(tmp_path):
+def test_a_title_with_markup_is_escaped(tmp_path):
     odd = '<a & "b"$x$\x07'
     diagram = Diagram(
         odd,

@@ -38,7 +38,7 @@ def test_fonts_that_are_not_here_are_not_asked_for(caplog):
     assert not caplog.records
 
 
-def test_letters_without_a_font_are_said_in_one_line_with_what_helps():
+def test_letters_without_a_font_are_reported_in_one_line_with_what_helps():
     line = explain_boxes(["time (s)", f"{CUNEIFORM} (deg)"])
     assert CUNEIFORM in line and "install" in line and "\n" not in line
     assert explain_boxes(["Zeit (µs)", "Händkraft", ARABIC]) == ""

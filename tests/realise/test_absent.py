@@ -33,5 +33,5 @@ def test_friction_without_a_level_is_none():
     assert [e.name for e in without_absent(still).effects] == ["viscous"]
     run = dict(duration=0.02, inputs={"R_V": 1.0}, jit=False)
     plain = simulate(haptic_interface(body(0.15, viscous__damping=0.1)), **run)
-    found = simulate(haptic_interface(still), **run)
-    np.testing.assert_array_equal(found["L"], plain["L"])
+    simulation = simulate(haptic_interface(still), **run)
+    np.testing.assert_array_equal(simulation["L"], plain["L"])

@@ -92,7 +92,7 @@ def test_where_every_sample_tells_its_motion_friction_is_its_bound():
 
 
 @pytest.mark.parametrize("named", [(True, True), (True, False), (False, True)])
-def test_which_tangents_may_move_changes_nothing_whether_it_is_said_or_not(named):
+def test_declaring_which_tangents_may_move_changes_nothing(named):
     """Bounds that are alike in value, and differ in one tangent of the three, are open there."""
     needed, low, _ = bounded(6, 0.2)
     low = Traced(low.value, low.tangent * np.array([[0.0], [1.0], [0.0]]))
@@ -103,7 +103,7 @@ def test_which_tangents_may_move_changes_nothing_whether_it_is_said_or_not(named
     plain = balance_within_bounds(needed, low, high, **of)
     assert (plain.value == low.value).all() and (plain.tangent != low.tangent).any()
     low, high = (
-        Traced(s.value, s.tangent, (1,) if said else None)
-        for s, said in zip((low, high), named, strict=True)
+        Traced(s.value, s.tangent, (1,) if is_moving else None)
+        for s, is_moving in zip((low, high), named, strict=True)
     )
     assert (balance_within_bounds(needed, low, high, **of).rows() == plain.rows()).all()

@@ -41,14 +41,14 @@ def test_where_no_damping_is_known_it_is_zero_and_what_may_push_is_named(damping
     body = with_law(lambda now, p: -p.size * now.velocity, "force")
     if damping:
         body = body.with_effect(EFFECTS["viscous"], {"damping": damping})
-    found = damping_interval(body, errors=0.0)
-    assert found.least == Interval(damping, damping, damping)
-    assert found.supplying == ("own",)
+    interval = damping_interval(body, errors=0.0)
+    assert interval.least == Interval(damping, damping, damping)
+    assert interval.supplying == ("own",)
     if not damping:
         body = body.with_effect(EFFECTS["viscous"], {"damping": 0.0})
     braked = body.with_values({"viscous.damping": td.Value(0.7)})
-    found = damping_interval(braked, errors=0.0)
-    assert found.least.low == pytest.approx(0.2) and found.supplying == ()
+    interval = damping_interval(braked, errors=0.0)
+    assert interval.least.low == pytest.approx(0.2) and interval.supplying == ()
 
 
 @pytest.mark.parametrize("is_even", [True, False])

@@ -64,7 +64,7 @@ def library(text, folder):
 def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):
     """Along a motion from rest, 100 samples; 1e-9 of the range: rounding, and order of sums."""
     block = BLOCKS[name]
-    found = simulate(
+    simulation = simulate(
         haptic_interface(body(0.1), cancellation=block),
         duration=0.1,
         motion={"L": MOTION},
@@ -72,12 +72,12 @@ def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):
         step=PERIOD,
         jit=False,
     )
-    x = np.ascontiguousarray(found["L"].values)
+    x = np.ascontiguousarray(simulation["L"].values)
     v = np.diff(x, prepend=x[0]) / PERIOD
     out = np.zeros_like(x)
     pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (x, v, out)]
     library(as_c_header(block, period=PERIOD, name="law"), tmp_path).run(len(x), *pointers)
-    expected = found["R_MBC"].values
+    expected = simulation["R_MBC"].values
     assert np.abs(out - expected).max() <= 1e-9 * max(np.ptp(expected), 1e-12)
 
 

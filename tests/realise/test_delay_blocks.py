@@ -54,15 +54,15 @@ def step_response(time, t):
 @pytest.mark.parametrize("time", [0.02, 0.0255, 0.0204321])
 def test_a_delayed_loop_is_its_analytic_solution(time):
     """1e-9 of the range: order four at steps of 0.1 ms; the last T is no whole number of them."""
-    found = simulate(held(time), duration=0.3, inputs={"f": 1.0}, computer="continuous")
-    expected = step_response(time, found["time"].values)
-    assert np.abs(found["x"].values - expected).max() < 1e-9 * np.ptp(expected)
+    simulation = simulate(held(time), duration=0.3, inputs={"f": 1.0}, computer="continuous")
+    expected = step_response(time, simulation["time"].values)
+    assert np.abs(simulation["x"].values - expected).max() < 1e-9 * np.ptp(expected)
 
 
 def test_the_step_is_divided_so_that_a_delay_is_whole_steps():
     """25.25 ms at steps of 0.1 ms: 303 steps of 1/12 ms."""
-    found = simulate(held(0.02525), duration=0.05, computer="continuous")
-    assert found.data.attrs["step_s"] == pytest.approx(1e-3 / 12)
+    simulation = simulate(held(0.02525), duration=0.05, computer="continuous")
+    assert simulation.data.attrs["step_s"] == pytest.approx(1e-3 / 12)
 
 
 def test_a_jump_passes_an_analog_delay_as_a_jump():
@@ -78,30 +78,30 @@ def test_a_jump_passes_an_analog_delay_as_a_jump():
         {"f": "force", "w": "force"},
         measured=("x",),
     )
-    found = simulate(free, duration=0.05, inputs={"w": 1.0}, computer="continuous", jit=False)
-    t = found["time"].values
+    simulation = simulate(free, duration=0.05, inputs={"w": 1.0}, computer="continuous", jit=False)
+    t = simulation["time"].values
     expected = np.maximum(t - time, 0.0) ** 2 / (2 * MASS)
-    np.testing.assert_allclose(found["x"].values, expected, atol=1e-14)
-    assert not found["u"].values[t < time].any()
-    assert (found["u"].values[t >= time] == 1.0).all()
+    np.testing.assert_allclose(simulation["x"].values, expected, atol=1e-14)
+    assert not simulation["u"].values[t < time].any()
+    assert (simulation["u"].values[t >= time] == 1.0).all()
 
 
 @given(samples=st.integers(1, 40))
 @settings(max_examples=8, deadline=None)
 def test_whole_samples_are_exact_in_a_computer(samples):
     diagram = held(samples * 1e-3, analog=False)
-    found = simulate(diagram, duration=0.08, inputs={"f": 1.0}, jit=False)
-    x, x_late = found["x"].values, found["x_late"].values
+    simulation = simulate(diagram, duration=0.08, inputs={"f": 1.0}, jit=False)
+    x, x_late = simulation["x"].values, simulation["x_late"].values
     assert not x_late[:samples].any()
     np.testing.assert_array_equal(x_late[samples:], x[: len(x) - samples])
 
 
 def test_between_samples_a_computers_delay_lies_on_the_line_that_joins_them():
     diagram = held(5.25e-3, analog=False)
-    found = simulate(diagram, duration=0.05, inputs={"f": 1.0}, jit=False)
-    x = found["x"].values
+    simulation = simulate(diagram, duration=0.05, inputs={"f": 1.0}, jit=False)
+    x = simulation["x"].values
     between = 0.75 * x[1:-5] + 0.25 * x[:-6]
-    np.testing.assert_allclose(found["x_late"].values[6:], between, rtol=1e-14)
+    np.testing.assert_allclose(simulation["x_late"].values[6:], between, rtol=1e-14)
 
 
 def test_two_delays_in_series_are_one_of_their_sum():
@@ -206,7 +206,7 @@ def test_python_control_has_a_pade_approximation_where_its_order_is_asked_for():
     )
 
 
-def test_what_a_delay_cannot_be_is_said_in_one_line():
+def test_an_impossible_delay_is_reported_in_one_line():
     cases = [
         (lambda: late(-1.0), "outside 0"),
         (lambda: simulate(held(5e-4, analog=False), duration=0.01), "below the computer's period"),
@@ -230,11 +230,11 @@ SPRING = {"stiffness": 1.0, "damping": 1.0}
 
 def test_a_delay_of_the_computer_adds_to_one_of_its_samples():
     """Sampling at 2 ms: 10 ms are five samples."""
-    found = simulate(
+    simulation = simulate(
         held(0.01, analog=False),
         duration=0.05,
         inputs={"f": 1.0},
         computer=Sampling(period=2e-3),
         jit=False,
     )
-    np.testing.assert_array_equal(found["x_late"].values[5:], found["x"].values[:-5])
+    np.testing.assert_array_equal(simulation["x_late"].values[5:], simulation["x"].values[:-5])

@@ -62,14 +62,14 @@ def test_no_value_of_a_law_leaves_its_interval(law, x, y, shares):
 @settings(max_examples=50)
 @given(law=laws, x=ranges, y=ranges, shares=shares)
 def test_no_value_is_below_the_least_and_the_least_is_met(law, x, y, shares):
-    found = least_value(law, {X: tuple(x), Y: tuple(y)})
+    lowest = least_value(law, {X: tuple(x), Y: tuple(y)})
     for a, b in shares:
         px = min(max(x[0] + a * (x[1] - x[0]), x[0]), x[1])
         py = min(max(y[0] + b * (y[1] - y[0]), y[0]), y[1])
-        assert found.bound <= exact(law, px, py)
-    if found.point and found.met < inf:
-        here = exact(law, found.point.get(X, 0), found.point.get(Y, 0))
-        assert found.bound <= here <= found.met
+        assert lowest.bound <= exact(law, px, py)
+    if lowest.point and lowest.met < inf:
+        here = exact(law, lowest.point.get(X, 0), lowest.point.get(Y, 0))
+        assert lowest.bound <= here <= lowest.met
 
 
 def test_ends_beyond_the_range_of_floats_lie_outside():
@@ -95,10 +95,10 @@ def test_ends_beyond_the_range_of_floats_lie_outside():
     ],
 )
 def test_the_least_value_is_known_to_the_stated_tightness(law, over, least):
-    found = least_value(law, over)
+    lowest = least_value(law, over)
     # what a law is compared with: its value at the middle of the ranges, at most 3 here
-    assert least - 3 * TIGHTNESS <= found.bound <= least + 1e-14
-    assert found.met >= least - 1e-14
+    assert least - 3 * TIGHTNESS <= lowest.bound <= least + 1e-14
+    assert lowest.met >= least - 1e-14
 
 
 def test_a_jump_is_not_taken_for_a_slope():
@@ -163,11 +163,11 @@ relations = [sp.StrictLessThan, sp.StrictGreaterThan, sp.LessThan, sp.GreaterTha
 def test_a_relation_can_hold_or_fail_where_points_of_the_ranges_do(relation, x, y):
     """Whether any point does is seen on a grid of halves: ranges end at whole numbers."""
     condition = relation(X, Y, evaluate=False)
-    found = enclosure_of(condition, [X, Y])([interval(*x), interval(*y)])
+    enclosure = enclosure_of(condition, [X, Y])([interval(*x), interval(*y)])
     points = [(a / 2, b / 2) for a in range(2 * x[0], 2 * x[1] + 1)
               for b in range(2 * y[0], 2 * y[1] + 1)]  # fmt: skip
     holds = {bool(relation(sp.Rational(a), sp.Rational(b))) for a, b in points}
-    assert found == (True in holds, False in holds)
+    assert enclosure == (True in holds, False in holds)
 
 
 @given(x=corners, y=corners, z=st.sampled_from(["and", "or", "not", "if"]))
@@ -185,12 +185,12 @@ def test_conditions_are_joined_as_the_possibilities_of_their_parts(x, y, z):
         "not": lambda a, b: not (a < 0 and b < 0),
         "if": lambda a, b: b < 0 if a < 0 else b > 0,
     }[z]
-    found = enclosure_of(joined, [X, Y])([interval(*x), interval(*y)])
+    enclosure = enclosure_of(joined, [X, Y])([interval(*x), interval(*y)])
     points = [(a / 2, b / 2) for a in range(2 * x[0], 2 * x[1] + 1)
               for b in range(2 * y[0], 2 * y[1] + 1)]  # fmt: skip
     holds = {rule(a, b) for a, b in points}
     # x and y are free of each other, so no possibility is counted that is none
-    assert found == (True in holds, False in holds)
+    assert enclosure == (True in holds, False in holds)
 
 
 STEP = sp.Heaviside(X, sp.Rational(1, 2))
@@ -226,8 +226,8 @@ STEP = sp.Heaviside(X, sp.Rational(1, 2))
 )
 def test_steps_pieces_poles_and_empty_products_have_their_range(law, over, expected):
     """y is anywhere on the line."""
-    found = ends(enclosure_of(law, [X, Y])([interval(*over), interval(-inf, inf)]))
-    assert found == pytest.approx(expected, abs=1e-14, rel=1e-13)
+    bounds = ends(enclosure_of(law, [X, Y])([interval(*over), interval(-inf, inf)]))
+    assert bounds == pytest.approx(expected, abs=1e-14, rel=1e-13)
 
 
 @pytest.mark.parametrize("law", [1 / X, sp.sqrt(X), sp.log(X), X ** sp.Rational(-1, 3), X**-2])
@@ -251,17 +251,17 @@ def test_an_exponential_stays_on_its_side_of_one_and_of_zero(x):
 
 @pytest.mark.parametrize("range_", [(0.0, inf), (0.5, inf), (-2.0, inf), (-inf, inf), (1.0, 9.0)])
 @pytest.mark.parametrize("place", [3.0, 7e3])
-def test_a_least_value_is_as_well_found_to_the_left_as_to_the_right(range_, place):
+def test_a_least_value_is_as_exact_to_the_left_as_to_the_right(range_, place):
     """A valley at some place of a line that has no end: the same with the axis turned round."""
     x = sp.Symbol("x")
     low, high = range_
     law = (x - place) ** 2 / (1 + (x - place) ** 2)
     there = least_value(law, {x: (low, high)})
     back = least_value(law.subs(x, -x), {x: (-high, -low)})
-    for found, at in ((there, place), (back, -place)):
+    for bound, at in ((there, place), (back, -place)):
         if low <= place <= high:
-            assert -0.01 < found.bound <= found.met < 0.01
-            assert found.point[x] == pytest.approx(at, abs=0.1)
+            assert -0.01 < bound.bound <= bound.met < 0.01
+            assert bound.point[x] == pytest.approx(at, abs=0.1)
         else:
-            assert found.bound == pytest.approx(1 - 1 / (1 + (high - place) ** 2), rel=1e-3)
-            assert abs(found.point[x]) == high
+            assert bound.bound == pytest.approx(1 - 1 / (1 + (high - place) ** 2), rel=1e-3)
+            assert abs(bound.point[x]) == high

@@ -32,8 +32,8 @@ def body_of(values, errors=None):
     """A body of 0.1 kg with these parameters, {"coulomb.level": 0.5, ...}, and standard errors."""
     body = td.Body("prismatic", {"inertia": td.Value(0.1)})
     for name in dict.fromkeys(n.partition(".")[0] for n in values):
-        own = {n.partition(".")[2]: v for n, v in values.items() if n.startswith(f"{name}.")}
-        body = body.with_effect(EFFECTS[name], own)
+        parameters = {n.partition(".")[2]: v for n, v in values.items() if n.startswith(f"{name}.")}
+        body = body.with_effect(EFFECTS[name], parameters)
     errors = errors or {}
     return body.with_values({n: td.Value(values[n], stderr=e) for n, e in errors.items()})
 
@@ -75,18 +75,18 @@ def levels_at(body, rng, number, errors):
 
 
 def check_levels_within(body, seed):
-    found = friction_interval(body, REACH, errors=2.0)
-    rounding = 1e-13 * abs(found.highest.high)  # of the law in floats
+    interval = friction_interval(body, REACH, errors=2.0)
+    rounding = 1e-13 * abs(interval.highest.high)  # of the law in floats
     rng = np.random.default_rng(seed)
     within = levels_at(body, rng, 4000, errors=2.0)
-    assert found.lowest.low - rounding <= within.min()
-    assert within.max() <= found.highest.high + rounding
+    assert interval.lowest.low - rounding <= within.min()
+    assert within.max() <= interval.highest.high + rounding
     at_estimate = levels_at(body, rng, 4000, errors=0.0)
-    assert found.lowest.estimate - rounding <= at_estimate.min()
-    assert at_estimate.max() <= found.highest.estimate + rounding
-    assert found.lowest.low <= found.lowest.estimate <= found.lowest.high
-    assert found.highest.low <= found.highest.estimate <= found.highest.high
-    return found
+    assert interval.lowest.estimate - rounding <= at_estimate.min()
+    assert at_estimate.max() <= interval.highest.estimate + rounding
+    assert interval.lowest.low <= interval.lowest.estimate <= interval.lowest.high
+    assert interval.highest.low <= interval.highest.estimate <= interval.highest.high
+    return interval
 
 
 # 3 here and 8 in the slow run: each asks a new law
@@ -100,20 +100,20 @@ def test_no_level_within_reach_and_errors_leaves_the_interval(body, seed):
 @settings(max_examples=8)
 @given(body=bodies(), seed=st.integers(0, 2**31))
 def test_a_wider_reach_has_no_narrower_interval(body, seed):
-    found = check_levels_within(body, seed)
+    interval = check_levels_within(body, seed)
     everywhere = friction_interval(body, None, errors=2.0)
     # both are bounds, met within 1e-4 of a level
-    assert everywhere.lowest.low <= found.lowest.low + 1e-4 * found.highest.high
+    assert everywhere.lowest.low <= interval.lowest.low + 1e-4 * interval.highest.high
 
 
 def test_a_constant_level_is_the_number_that_was_given():
-    found = friction_interval(body_of({"coulomb.level": 0.3}), errors=1.96)
-    assert (found.lowest.low, found.lowest.estimate, found.lowest.high) == (0.3, 0.3, 0.3)
-    assert found.over == found.where_lowest == "any motion"
+    interval = friction_interval(body_of({"coulomb.level": 0.3}), errors=1.96)
+    assert (interval.lowest.low, interval.lowest.estimate, interval.lowest.high) == (0.3, 0.3, 0.3)
+    assert interval.over == interval.where_lowest == "any motion"
     stribeck = {"stribeck.extra_static_level": 0.2, "stribeck.stribeck_velocity": 0.01}
-    found = friction_interval(body_of({"coulomb.level": 0.3} | stribeck), errors=1.96)
-    assert found.lowest.low == 0.3
-    assert found.highest.high == pytest.approx(0.5, rel=1e-14)
+    interval = friction_interval(body_of({"coulomb.level": 0.3} | stribeck), errors=1.96)
+    assert interval.lowest.low == 0.3
+    assert interval.highest.high == pytest.approx(0.5, rel=1e-14)
 
 
 WAVE = {
@@ -136,14 +136,16 @@ WAVE_ERRORS = {
 @pytest.mark.parametrize("reach", [REACH, None])
 def test_a_wave_of_unknown_phase_counts_for_its_amplitude(reach):
     """A slope in the period times ten metres of position would make it -2.7 N."""
-    found = friction_interval(body_of(WAVE, WAVE_ERRORS), reach, errors=2.0)
-    assert found.lowest.low == pytest.approx(0.9 * (1 - 0.24), rel=1e-4)
-    assert found.highest.high == pytest.approx(1.1 * (1 + 0.24) + 0.4, rel=1e-4)
+    interval = friction_interval(body_of(WAVE, WAVE_ERRORS), reach, errors=2.0)
+    assert interval.lowest.low == pytest.approx(0.9 * (1 - 0.24), rel=1e-4)
+    assert interval.highest.high == pytest.approx(1.1 * (1 + 0.24) + 0.4, rel=1e-4)
 
 
 def test_a_parameter_stays_within_its_declared_bounds():
-    found = friction_interval(body_of({"coulomb.level": 0.5}, {"coulomb.level": 1.0}), errors=2.0)
-    assert found.lowest.low == 0.0
+    interval = friction_interval(
+        body_of({"coulomb.level": 0.5}, {"coulomb.level": 1.0}), errors=2.0
+    )
+    assert interval.lowest.low == 0.0
 
 
 def test_a_level_at_zero_with_an_error_may_be_there():
@@ -155,9 +157,9 @@ def test_a_level_at_zero_with_an_error_may_be_there():
 def test_friction_of_the_load_has_no_upper_bound_until_the_load_has():
     values = {"coulomb.level": 0.5, "load_dependent_friction.coefficient": 0.1}
     assert friction_interval(body_of(values), errors=2.0).highest.estimate == inf
-    found = friction_interval(body_of(values), REACH, errors=2.0)
-    assert found.highest.estimate == pytest.approx(0.8)
-    assert found.over == "acting force -3 to 3 N"
+    interval = friction_interval(body_of(values), REACH, errors=2.0)
+    assert interval.highest.estimate == pytest.approx(0.8)
+    assert interval.over == "acting force -3 to 3 N"
     values["presliding.stiffness"] = 1e4
     with pytest.raises(ModelError, match="no upper bound of the friction level.*give the experi"):
         identify_device(body_of(values))
@@ -171,7 +173,7 @@ def user(law, role="friction_level", **more):
     return made.named("own", "Own.")
 
 
-def with_own(effect, size=0.1, base=None):
+def with_users_effect(effect, size=0.1, base=None):
     body = body_of(base or {"coulomb.level": 0.5})
     return body.with_effect(effect, {"size": size})
 
@@ -179,27 +181,29 @@ def with_own(effect, size=0.1, base=None):
 def test_a_level_that_falls_without_end_is_refused_with_what_to_give():
     falling = user(lambda now, p: -p.size * now.position)
     with pytest.raises(ModelError, match="no lower bound over any position: give the experiment"):
-        friction_interval(with_own(falling), errors=2.0)
-    found = friction_interval(with_own(falling), REACH, errors=2.0)
-    assert found.lowest.low == pytest.approx(0.5 - 0.1 * 0.05, rel=1e-4)
-    assert found.where_lowest == "position 0.05 m"
+        friction_interval(with_users_effect(falling), errors=2.0)
+    interval = friction_interval(with_users_effect(falling), REACH, errors=2.0)
+    assert interval.lowest.low == pytest.approx(0.5 - 0.1 * 0.05, rel=1e-4)
+    assert interval.where_lowest == "position 0.05 m"
     assert REACH.travel == 0.1 and replace(REACH, low=0.2, high=0.5).travel == pytest.approx(0.3)
 
 
 def test_a_law_without_known_bounds_is_refused_by_name():
     with pytest.raises(ModelError, match="erf"):
-        friction_interval(with_own(user(lambda now, p: p.size * sp.erf(now.velocity))), errors=2.0)
+        friction_interval(
+            with_users_effect(user(lambda now, p: p.size * sp.erf(now.velocity))), errors=2.0
+        )
 
 
 def test_a_speed_that_overshoots_is_no_lagging_speed():
     def faster(now, p):
         return (2 * abs(now.velocity) - now.film) / p.size
 
-    own = user(
+    effect = user(
         lambda now, p: now.film, role="friction_speed", states={"film": State("velocity", faster)}
     )
     stribeck = {"stribeck.extra_static_level": 0.2, "stribeck.stribeck_velocity": 0.02}
-    body = with_own(own, base={"coulomb.level": 0.5} | stribeck)
+    body = with_users_effect(effect, base={"coulomb.level": 0.5} | stribeck)
     with pytest.raises(ModelError, match="can leave those of the motion"):
         friction_interval(body, REACH, errors=2.0)
 
@@ -225,7 +229,7 @@ def test_an_actuation_makes_no_more_of_a_command_than_its_bound():
         role="actuation",
         states={"out": State("force", lambda now, p: (2 * now.command - now.out) / p.size)},
     )
-    assert largest_acting_force(with_own(resonant), 1.0, errors=2.0) == inf
+    assert largest_acting_force(with_users_effect(resonant), 1.0, errors=2.0) == inf
 
 
 def test_damping_is_that_of_the_worse_direction_at_every_speed():
@@ -234,24 +238,24 @@ def test_damping_is_that_of_the_worse_direction_at_every_speed():
         "viscous_asymmetry.half_difference": -0.5,
         "quadratic_drag.drag": 1.0,
     }
-    found = damping_interval(body_of(values, {"viscous.damping": 0.1}), errors=2.0)
-    assert (found.least.low, found.least.estimate) == pytest.approx((1.3, 1.5))
-    assert found.supplying == ()
+    interval = damping_interval(body_of(values, {"viscous.damping": 0.1}), errors=2.0)
+    assert (interval.least.low, interval.least.estimate) == pytest.approx((1.3, 1.5))
+    assert interval.supplying == ()
     values["viscous_asymmetry.half_difference"] = -3.0
-    found = damping_interval(body_of(values), errors=2.0)
-    assert found.supplying == ("viscous_asymmetry",)
-    assert found.least.low == pytest.approx(2.0)
+    interval = damping_interval(body_of(values), errors=2.0)
+    assert interval.supplying == ("viscous_asymmetry",)
+    assert interval.least.low == pytest.approx(2.0)
 
 
 def test_a_users_damper_counts_in_small_motion_under_any_name():
     damper = user(lambda now, p: p.size * now.velocity, role="force", energy="dissipates")
-    body = with_own(damper, size=1.5, base={"coulomb.level": 0.5, "viscous.damping": 2.0})
+    body = with_users_effect(damper, size=1.5, base={"coulomb.level": 0.5, "viscous.damping": 2.0})
     assert small_motion_damping(body, errors=0.0) == pytest.approx(3.5)
     presliding = {"stiffness": 1e4, "bristle_damping": 4.0}
     bristle = body.with_effect(EFFECTS["presliding"], presliding)
     assert small_motion_damping(bristle, errors=0.0) == pytest.approx(7.5)
     pushing = user(lambda now, p: -p.size * now.velocity, role="force")
-    undeclared = with_own(pushing)
+    undeclared = with_users_effect(pushing)
     assert damping_interval(undeclared, errors=0.0).supplying == ("own",)
 
 
@@ -266,10 +270,10 @@ def test_a_users_damper_counts_in_small_motion_under_any_name():
     ],
 )
 def test_a_value_is_within_two_errors_and_not_below_zero(value, ends):
-    found = value_interval(value, errors=2.0)
-    assert found.estimate == 0.5 and (found.low, found.high) == pytest.approx(ends)
+    interval = value_interval(value, errors=2.0)
+    assert interval.estimate == 0.5 and (interval.low, interval.high) == pytest.approx(ends)
     alone = f"{0.5:.4g}"
-    assert str(found) == (
+    assert str(interval) == (
         alone if ends[0] == ends[1] else f"{alone} ({ends[0]:.4g} to {ends[1]:.4g})"
     )
 
@@ -280,10 +284,10 @@ def test_a_value_is_within_two_errors_and_not_below_zero(value, ends):
 def test_friction_is_known_where_a_motion_turns_the_bristles_round(travel, lengths, slides):
     """Of 0.5 N over 500 N/m: a bristle length is 1 mm, and each way counts half of the travel."""
     values = {"coulomb.level": 0.5, "presliding.stiffness": 500.0}
-    found = friction_interval(body_of(values), errors=2.0)
-    assert found.presliding.estimate == 500.0
-    assert found.bristle_lengths(travel) == pytest.approx(lengths)
-    assert found.slides_within(travel) == slides
+    interval = friction_interval(body_of(values), errors=2.0)
+    assert interval.presliding.estimate == 500.0
+    assert interval.bristle_lengths(travel) == pytest.approx(lengths)
+    assert interval.slides_within(travel) == slides
     ideal = friction_interval(body_of({"coulomb.level": 0.5}), errors=2.0)
     assert ideal.presliding is None and ideal.bristle_lengths(1e-9) == inf
 
@@ -304,8 +308,8 @@ def test_a_damping_that_differs_with_the_direction_takes_from_one_of_them(asymme
     values = {"viscous.damping": 2.0, "quadratic_drag.drag": 5.0}
     assert damping_interval(body_of(values), errors=2.0).least.low == pytest.approx(2.0)
     values["viscous_asymmetry.half_difference"] = asymmetry
-    found = damping_interval(body_of(values), errors=2.0)
-    assert found.least.low == pytest.approx(1.5) and found.supplying == ()
+    interval = damping_interval(body_of(values), errors=2.0)
+    assert interval.least.low == pytest.approx(1.5) and interval.supplying == ()
     values["viscous_asymmetry.half_difference"] = 5.0 * asymmetry
     supplied = damping_interval(body_of(values), errors=2.0)
     assert supplied.least.low == pytest.approx(2.0)

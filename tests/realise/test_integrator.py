@@ -69,8 +69,8 @@ def test_the_weights_of_a_step_integrate_rates_that_are_parabolas(z):
     with mpmath.workdps(30):
         for power in range(3):
             expected = mpmath.quad(lambda t, p=power: mpmath.exp(z * (1 - t)) * t**p, [0, 1])
-            found = first * 0.0**power + 2.0 * middle * 0.5**power + last
-            assert found == pytest.approx(float(expected), rel=1e-12)
+            integral = first * 0.0**power + 2.0 * middle * 0.5**power + last
+            assert integral == pytest.approx(float(expected), rel=1e-12)
 
 
 def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductions=()):
@@ -123,9 +123,9 @@ def test_a_command_acts_after_its_delay():
 def test_reductions_are_those_of_the_rows():
     """Last, largest, least, largest size, sum, sum of a product, its integral by trapezia."""
     which = [(0, 0, 0), (1, 1, 0), (2, 1, 0), (3, 1, 0), (4, 1, 0), (5, 0, 1), (6, 0, 1)]
-    columns, found = advance(lambda t: np.cos(500.0 * t), 0.0, reductions=which)
+    columns, values = advance(lambda t: np.cos(500.0 * t), 0.0, reductions=which)
     x, v = columns[:2]
     # accumulators begin at zero here: what is larger or less than the start counts
     expected = [x[-1], max(v.max(), 0.0), min(v.min(), 0.0), np.abs(v).max()]
     expected += [v.sum(), np.sum(x * v), np.trapezoid(x * v)]
-    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(values, expected, rtol=1e-12, atol=1e-20)

@@ -67,12 +67,12 @@ def test_between_nodes_a_late_signal_is_the_polynomial_through_those_that_there_
 
     both = signal(np.arange(9.0))
     arguments = ring(monkeypatch, both, both)
-    found = integrator.earlier(0, node, part, *arguments)
-    assert found == pytest.approx(signal(node + part), rel=1e-13)
+    value = integrator.earlier(0, node, part, *arguments)
+    assert value == pytest.approx(signal(node + part), rel=1e-13)
     if part:  # a polynomial of one degree more is not met
         wrong = both + 0.1 * np.arange(9.0) ** (degree + 1)
-        found = integrator.earlier(0, node, part, wrong, wrong, 9)
-        assert abs(found - signal(node + part) - 0.1 * (node + part) ** (degree + 1)) > 1e-3
+        value = integrator.earlier(0, node, part, wrong, wrong, 9)
+        assert abs(value - signal(node + part) - 0.1 * (node + part) ** (degree + 1)) > 1e-3
 
 
 @pytest.mark.parametrize("jump", [1, 2, 3, 4, 5])
@@ -92,8 +92,8 @@ def test_a_jump_at_a_node_is_smeared_to_neither_side(jump, monkeypatch):
     for node in range(7):
         for part in (0.0, 0.3, 0.8):
             expected = (right if node >= jump else left)(node + part)
-            found = integrator.earlier(0, node, part, *arguments)
-            assert found == pytest.approx(expected, rel=1e-13), (node, part)
+            value = integrator.earlier(0, node, part, *arguments)
+            assert value == pytest.approx(expected, rel=1e-13), (node, part)
     assert integrator.earlier(0, -1, 0.5, *arguments) == 0.0
 
 
@@ -115,8 +115,8 @@ def test_a_late_cubic_force_moves_a_mass_by_its_integrals(delay):
     late = np.maximum(1e-3 * np.arange(31) - delay, 0.0)
     column = setup.program.layout.columns.index
     for name, expected in (("x", late**5 / 20), ("x_velocity", late**4 / 4)):
-        found = rows[:, column(name)]
-        assert np.abs(found - 1e6 * expected).max() < 1e-7 * 1e6 * expected.max(), name
+        values = rows[:, column(name)]
+        assert np.abs(values - 1e6 * expected).max() < 1e-7 * 1e6 * expected.max(), name
 
 
 def bristle(step):
@@ -127,18 +127,18 @@ def bristle(step):
         lambda t: 0.9 * np.cos(90 * t),
     )
     diagram = haptic_interface(body(0.2, coulomb__level=0.5, presliding__stiffness=2e3))
-    found = simulate(diagram, duration=0.012, motion={"L": moved}, step=step, jit=False)
+    simulation = simulate(diagram, duration=0.012, motion={"L": moved}, step=step, jit=False)
     known = solve_ivp(
         lambda t, z: moved.velocity(t) * (1.0 - 2e3 / 0.5 * z),
         (0, 0.012), [0.0], t_eval=1e-3 * np.arange(13), rtol=1e-11, atol=1e-15,
     ).y[0]  # fmt: skip
-    return found["Z_M_presliding_bristle"].values, known
+    return simulation["Z_M_presliding_bristle"].values, known
 
 
 def test_a_bristle_is_stepped_to_fourth_order():
     errors = []
     for step in (1e-3, 5e-4):
-        found, known = bristle(step)
-        errors.append(np.abs(found - known).max())
+        forces, known = bristle(step)
+        errors.append(np.abs(forces - known).max())
     assert errors[0] < 1e-4 * known.max()
     assert errors[0] / errors[1] > 8.0

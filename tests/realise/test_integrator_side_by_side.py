@@ -105,11 +105,11 @@ def alone(setup, timing, row, start=None, **more):
 
 
 def together(setup, timing, cases, *, reductions=(), begin=0, start=None, **more):
-    given = setup.arguments(timing)
-    run = GridRun(cases, timing, given["inputs"], given["sampled"], **more)
+    arguments = setup.arguments(timing)
+    run = GridRun(cases, timing, arguments["inputs"], arguments["sampled"], **more)
     kept = range(len(setup.program.layout.columns))
-    asked = {"kept": kept, "reductions": reductions, "begin": begin, "start": start or {}}
-    return execute_many(setup.program, [run], **asked)[0]
+    options = {"kept": kept, "reductions": reductions, "begin": begin, "start": start or {}}
+    return execute_many(setup.program, [run], **options)[0]
 
 
 @pytest.mark.parametrize("name", SETUPS)
@@ -149,7 +149,7 @@ def test_numbers_over_time_are_those_of_the_rows_of_each_case():
         assert len(set(expected)) >= len(reductions) - 1
 
 
-def test_a_case_beyond_all_numbers_is_said_and_spoils_no_other():
+def test_a_case_beyond_all_numbers_is_reported_and_spoils_no_other():
     setup = SETUPS["continuous"]()
     timing, cases = setup.timing(setup.inner()), four_cases(setup)
     cases[2, setup.program.layout.parameters.index("M.inertia")] = 1e-300
@@ -187,7 +187,7 @@ def test_slopes_at_rest_are_those_of_the_equations_of_motion():
     """Of each body: what its bristle, its damping, and its springs do to it."""
     setup = SETUPS["continuous"]()
     names, cases = setup.program.layout.parameters, four_cases(setup)[:3]
-    found = slopes_at_rest(setup.program, plain_loop(setup.program.laws, 3),
+    slopes = slopes_at_rest(setup.program, plain_loop(setup.program.laws, 3),
                            np.ascontiguousarray(cases.T).reshape(-1))  # fmt: skip
     state = setup.program.layout.states.index
     for case, row in enumerate(cases):
@@ -203,4 +203,4 @@ def test_slopes_at_rest_are_those_of_the_equations_of_motion():
             ("N_presliding_bristle", "N_presliding_bristle"): 0.0,
         }
         for (of, by), slope in expected.items():
-            assert found[case, state(of), state(by)] == pytest.approx(slope, rel=1e-6), (of, by)
+            assert slopes[case, state(of), state(by)] == pytest.approx(slope, rel=1e-6), (of, by)

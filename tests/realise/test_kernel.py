@@ -59,23 +59,23 @@ def radau():
 
 def test_force_is_within_1e_4_and_position_within_1e_6_of_radau(hybrid, radau):
     """Default step; the bounds are those asked of a kernel for figures of a paper."""
-    found = simulate(
+    simulation = simulate(
         hybrid, duration=0.25, inputs={"L_D": REFERENCE.position}, computer="continuous"
     )
-    force = found["Z_M_friction"].values
-    assert found.data.attrs["step_s"] == pytest.approx(1e-4)
+    force = simulation["Z_M_friction"].values
+    assert simulation.data.attrs["step_s"] == pytest.approx(1e-4)
     assert np.abs(force - 1e5 * radau[2]).max() < 1e-4 * np.abs(force).max()
-    assert np.abs(found["L"].values - radau[0]).max() < 1e-6 * np.abs(radau[0]).max()
+    assert np.abs(simulation["L"].values - radau[0]).max() < 1e-6 * np.abs(radau[0]).max()
 
 
 @pytest.mark.parametrize("step", [1e-3, 5e-4])
 def test_a_step_too_long_for_the_bristle_is_refined(hybrid, radau, step):
     """At 1 ms the unguarded force is wrong by 5e-3; refined it keeps its bound."""
-    found = simulate(
+    simulation = simulate(
         hybrid, duration=0.25, inputs={"L_D": REFERENCE.position}, computer="continuous", step=step
     )
-    assert found.data.attrs["step_s"] < 3e-4
-    error = np.abs(found["Z_M_friction"].values - 1e5 * radau[2]).max()
+    assert simulation.data.attrs["step_s"] < 3e-4
+    error = np.abs(simulation["Z_M_friction"].values - 1e5 * radau[2]).max()
     assert error < 2e-4 * 1e5 * np.abs(radau[2]).max()  # 10 steps a reload: 1e-4 at 14 steps
 
 
@@ -111,7 +111,7 @@ def test_the_error_falls_with_the_step(hybrid, radau):
 
 def test_the_error_of_the_step_can_be_asked_for(hybrid, radau):
     """Half the step has a third to a quarter of the error: the estimate is of its size."""
-    found = simulate(
+    simulation = simulate(
         hybrid,
         duration=0.25,
         inputs={"L_D": REFERENCE.position},
@@ -119,8 +119,8 @@ def test_the_error_of_the_step_can_be_asked_for(hybrid, radau):
         estimate_error=True,
     )
     force = 1e5 * radau[2]
-    error = np.abs(found["Z_M_friction"].values - force).max() / np.abs(force).max()
-    assert 0.3 * error < found["Z_M_friction"].attrs["step_error"] < 2 * error
+    error = np.abs(simulation["Z_M_friction"].values - force).max() / np.abs(force).max()
+    assert 0.3 * error < simulation["Z_M_friction"].attrs["step_error"] < 2 * error
 
 
 def test_values_are_arguments_of_one_kernel(hybrid):
@@ -163,13 +163,13 @@ def test_the_command_is_held_and_acts_after_the_delay():
 
 def test_velocity_is_the_filtered_difference_of_encoder_steps():
     step, period = 1e-4, 1e-3
-    found = moved(encoder_step=step, velocity_bandwidth=50.0)
-    x = np.floor(found["L"].values[::10] / step + 0.5) * step
+    simulation = moved(encoder_step=step, velocity_bandwidth=50.0)
+    x = np.floor(simulation["L"].values[::10] / step + 0.5) * step
     keep, v, forces = np.exp(-2 * np.pi * 50 * period), 3 * np.pi * 0.01, []
     for n in range(len(x)):
         v = v if n == 0 else keep * v + (1 - keep) * (x[n] - x[n - 1]) / period
         forces.append(0.5 * v / (0.015 + abs(v)))
-    np.testing.assert_allclose(found["R_MBC"].values[::10], forces, atol=1e-12)
+    np.testing.assert_allclose(simulation["R_MBC"].values[::10], forces, atol=1e-12)
 
 
 def test_a_delay_that_is_no_whole_number_of_steps_is_refused():
@@ -179,9 +179,11 @@ def test_a_delay_that_is_no_whole_number_of_steps_is_refused():
 
 def test_force_feedback_may_be_analog_beside_a_sampled_cancellation():
     diagram = world_haptics_2005()
-    found = simulate(diagram, duration=0.02, motion={"L": REFERENCE}, every_step=True, jit=False)
-    changes = np.abs(np.diff(found["R_FF"].values)) > 0
-    held = np.abs(np.diff(found["R_MBC"].values)) > 0
+    simulation = simulate(
+        diagram, duration=0.02, motion={"L": REFERENCE}, every_step=True, jit=False
+    )
+    changes = np.abs(np.diff(simulation["R_FF"].values)) > 0
+    held = np.abs(np.diff(simulation["R_MBC"].values)) > 0
     assert changes.sum() > 150 and held.sum() <= 20
 
 
@@ -218,7 +220,7 @@ def test_actuation_delay_and_lag_act_between_command_and_body():
         ({"inputs": {"R_V": np.zeros(3)}}, "has 3 samples, expected"),
     ],
 )
-def test_what_cannot_be_simulated_is_said_in_one_line(arguments, words):
+def test_what_cannot_be_simulated_is_reported_in_one_line(arguments, words):
     with pytest.raises(ModelError) as caught:
         simulate(haptic_interface(body(0.1)), duration=0.01, jit=False, **arguments)
     assert words in str(caught.value) and "\n" not in str(caught.value)
@@ -239,18 +241,22 @@ def test_an_unstable_loop_is_no_result():
 def test_fast_sliding_does_not_overflow_the_stribeck_level():
     """At 60 times the Stribeck velocity exp(-(v/v_S)^2) is 0, and was once written 1/inf."""
     moved = sine(amplitude=0.01, frequency=5.0)
-    found = simulate(haptic_interface(body(**LUGRE)), duration=0.1, motion={"L": moved}, jit=False)
-    assert np.abs(found["Z_M_friction"]).max() < 0.56
+    simulation = simulate(
+        haptic_interface(body(**LUGRE)), duration=0.1, motion={"L": moved}, jit=False
+    )
+    assert np.abs(simulation["Z_M_friction"]).max() < 0.56
 
 
 def test_results_are_labelled_and_can_be_kept(hybrid, tmp_path):
-    found = simulate(hybrid, duration=0.05, inputs={"L_D": REFERENCE.position}, jit=False)
-    assert found["L"].attrs["units"] == "m" and found["R_M"].attrs["units"] == "N"
-    assert found["L_E"].attrs["units"] == "m" and found["L_velocity"].attrs["units"] == "m/s"
-    assert "haptic interface" in repr(found) and "R_MBC" in repr(found)
-    found.to_netcdf(tmp_path / "run.nc")
+    simulation = simulate(hybrid, duration=0.05, inputs={"L_D": REFERENCE.position}, jit=False)
+    assert simulation["L"].attrs["units"] == "m" and simulation["R_M"].attrs["units"] == "N"
+    assert (
+        simulation["L_E"].attrs["units"] == "m" and simulation["L_velocity"].attrs["units"] == "m/s"
+    )
+    assert "haptic interface" in repr(simulation) and "R_MBC" in repr(simulation)
+    simulation.to_netcdf(tmp_path / "run.nc")
     assert (tmp_path / "run.nc").stat().st_size > 1000
-    assert len(found.plot("L", "R_M").axes) == 2
+    assert len(simulation.plot("L", "R_M").axes) == 2
 
 
 def test_feedback_needs_its_measured_signal(hybrid):
@@ -278,25 +284,25 @@ def test_dahl_cancellation_is_sampled_exactly_in_a_closed_loop():
     diagram = haptic_interface(
         body(**LUGRE), hand=body(0.5), cancellation=dahl, force_feedback=FEEDBACK
     )
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=0.2,
         inputs={"R_D": lambda t: 2 * np.sin(2 * np.pi * 5 * t)},
         computer=Sampling(encoder_step=2e-5, delay=1e-3),
         jit=False,
     )
-    assert 0.3 < np.abs(found["R_MBC"]).max() <= 0.4 * (1 + 1e-12)
+    assert 0.3 < np.abs(simulation["R_MBC"]).max() <= 0.4 * (1 + 1e-12)
 
 
 def test_a_saturated_actuator_acts_behind_the_command():
     """Commanded 2 N, limited to 0.5 N, on 1 kg: 0.5 m/s^2, sampled or not."""
     made = haptic_interface(body(1.0, actuator_saturation__limit=0.5))
     for computer in ("continuous", Sampling()):
-        found = simulate(
+        simulation = simulate(
             made, duration=0.02, inputs={"R_D": 2.0}, computer=computer, jit=False, step=1e-3
         )
-        np.testing.assert_allclose(found["L_acceleration"].values[1:], 0.5, rtol=1e-12)
-        np.testing.assert_allclose(found["R_A"].values, 2.0)
+        np.testing.assert_allclose(simulation["L_acceleration"].values[1:], 0.5, rtol=1e-12)
+        np.testing.assert_allclose(simulation["R_A"].values, 2.0)
 
 
 def test_a_simulation_that_would_fill_the_memory_is_refused():
@@ -371,13 +377,13 @@ def test_what_has_no_state_has_no_fastest_rate():
 
 @given(needed=st.integers(1, 4000), least=st.integers(1, 20))
 def test_a_grid_has_as_many_steps_as_needed_or_the_next_number_that_is_allowed(needed, least):
-    found = round_up_steps(needed, least)
+    count = round_up_steps(needed, least)
     allowed = [least * f for f in FINER]
     if needed > allowed[-1]:
-        assert found is None
+        assert count is None
     else:
-        assert found in allowed and found >= needed
-        assert not any(needed <= a < found for a in allowed)
+        assert count in allowed and count >= needed
+        assert not any(needed <= a < count for a in allowed)
 
 
 @given(least=st.integers(1, 50), share=st.sampled_from([0.999, 1.001]))

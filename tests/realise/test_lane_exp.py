@@ -39,8 +39,8 @@ def test_what_is_no_number_stays_none():
 
 def test_numbers_end_where_the_power_of_two_does():
     """Below the least normal number it is zero, and beyond the largest whole power infinite."""
-    found = exponentials(np.array([-708.5, -708.0, 709.0, 709.3]))
-    assert found[0] == 0.0 and found[3] == np.inf
+    values = exponentials(np.array([-708.5, -708.0, 709.0, 709.3]))
+    assert values[0] == 0.0 and values[3] == np.inf
     expected = [math.exp(-708.0), math.exp(709.0)]
-    np.testing.assert_allclose(found[1:3], expected, rtol=1e-15)
+    np.testing.assert_allclose(values[1:3], expected, rtol=1e-15)
     assert [exp.py_func(x) for x in (-708.5, 709.3)] == [0.0, np.inf]

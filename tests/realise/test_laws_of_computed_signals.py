@@ -16,7 +16,7 @@ DOUBLED = controller("gain", {"gain": 2.0})
 
 
 def moved(diagram, computer):
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=0.05,
         inputs={"R_D": lambda t: np.sin(60 * t)},
@@ -24,7 +24,7 @@ def moved(diagram, computer):
         computer=computer,
         jit=False,
     )
-    return found["R_MBC"].values
+    return simulation["R_MBC"].values
 
 
 def in_two_blocks():
@@ -61,19 +61,22 @@ def test_a_limit_by_another_signal_is_exact():
             Junction("R_A", {"more_half": 1, "less_half": -1}),
         ),
     )
-    found = simulate(
+    simulation = simulate(
         bounded,
         duration=0.2,
         inputs={"R_D": lambda t: np.sin(60 * t)},
         motion={"L": sine(amplitude=0.01, frequency=5.0)},
         jit=False,
     )
-    wanted, limit = (found["more"].values + found["less"].values) / 2, found["R_MBC"].values
+    wanted, limit = (
+        (simulation["more"].values + simulation["less"].values) / 2,
+        simulation["R_MBC"].values,
+    )
     expected = np.clip(wanted, -limit, limit)
-    np.testing.assert_allclose(found["R_A"].values, expected, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(simulation["R_A"].values, expected, rtol=0, atol=1e-12)
 
 
-def test_a_law_of_its_own_output_is_refused_in_one_line():
+def test_a_law_of_the_output_of_that_law_is_refused_in_one_line():
     made = in_two_blocks()
     loop = replace(
         made,

@@ -156,11 +156,15 @@ def test_a_diagram_with_other_names_gives_the_same_numbers_to_the_last_bit(
     diagram = DIAGRAMS[name]
     names = other_names(data.draw, diagram)
     try:
-        found = run(renamed(diagram, names), **({"computer": "continuous"} if continuous else {}))
+        simulation = run(
+            renamed(diagram, names), **({"computer": "continuous"} if continuous else {})
+        )
     except ModelError as error:  # "x" and "x_velocity": two signals of one name
         assert "call the signal otherwise" in str(error) or "is made by" in str(error)
         return
-    for old, new in zip(before[name, continuous].data_vars.values(), found.values(), strict=True):
+    for old, new in zip(
+        before[name, continuous].data_vars.values(), simulation.values(), strict=True
+    ):
         np.testing.assert_array_equal(old, new)
 
 
@@ -171,9 +175,11 @@ def test_no_word_is_taken(before, word):
     names = {n: n for n in (*diagram.signals, *(b.name for b in diagram.blocks))} | {"L": word}
     if word in diagram.signals:
         pytest.skip("another signal has it already")
-    found = run(renamed(diagram, names))
-    np.testing.assert_array_equal(found[word], before["hybrid", False]["L"])
-    np.testing.assert_array_equal(found[f"{word}_velocity"], before["hybrid", False]["L_velocity"])
+    simulation = run(renamed(diagram, names))
+    np.testing.assert_array_equal(simulation[word], before["hybrid", False]["L"])
+    np.testing.assert_array_equal(
+        simulation[f"{word}_velocity"], before["hybrid", False]["L_velocity"]
+    )
 
 
 def test_diagrams_that_differ_by_names_alone_share_one_kernel():
@@ -195,10 +201,10 @@ def test_the_python_control_form_takes_any_word_too(words):
         """Rates and outputs where each state and input has a value by its name."""
         states = [s.split("_", 1)[1] for s in system.state_labels]
         back = {new: old for old, new in names.items()}
-        plain = [_said(s, back) for s in states]
+        plain = [_old_label(s, back) for s in states]
         x = np.array([1e-3 * (1 + len(s)) for s in plain])
         u = np.array([0.1 * len(back.get(s, s)) for s in system.input_labels])
-        outputs = [_said(s, back) for s in system.output_labels]
+        outputs = [_old_label(s, back) for s in system.output_labels]
         rates = dict(zip(plain, system.dynamics(0.0, x, u), strict=True))
         return rates, dict(zip(outputs, system.output(0.0, x, u), strict=True))
 
@@ -208,7 +214,7 @@ def test_the_python_control_form_takes_any_word_too(words):
             assert value == yours[key], key
 
 
-def _said(label, back):
+def _old_label(label, back):
     """A label made from one of the new names, with the old one in its place."""
     for new in sorted(back, key=len, reverse=True):
         if label == new or label.startswith(f"{new}_"):
@@ -245,10 +251,10 @@ def test_errors_speak_of_the_users_names():
 
 
 #: what the source of the laws holds itself, and the beginnings of private names
-OWN = {*dir(math), *keyword.kwlist, *dir(builtins), *ANALOG, *DIGITAL, "jitted", "lane", "phi"}
-OWN |= set("rates slopes signals late_values motions record held_commands".split())
-OWN |= set("computer_before computer_signals computer_after e f _".split())
-OWN |= set("to to_states to_bristles to_positions to_velocities table column".split())
+RESERVED = {*dir(math), *keyword.kwlist, *dir(builtins), *ANALOG, *DIGITAL, "jitted", "lane", "phi"}
+RESERVED |= set("rates slopes signals late_values motions record held_commands".split())
+RESERVED |= set("computer_before computer_signals computer_after e f _".split())
+RESERVED |= set("to to_states to_bristles to_positions to_velocities table column".split())
 PRIVATE = re.compile(r"v\d+_|(p|k|out|a|b)\d+|j\d*_|i\d+_|[A-Z][A-Z_]+(_\d)?")
 
 
@@ -262,4 +268,4 @@ def test_generated_source_holds_private_words_alone(name, sampled):
     tree = ast.parse(generator.source())
     words = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
     words |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)}
-    assert not [w for w in words - OWN if not PRIVATE.fullmatch(w)]
+    assert not [w for w in words - RESERVED if not PRIVATE.fullmatch(w)]

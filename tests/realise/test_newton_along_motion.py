@@ -26,16 +26,16 @@ def test_the_residual_is_what_forces_leave_of_the_acceleration():
     motion = recorded()
     values = {"viscous.damping": 3.0, "spring.stiffness": 40.0, "bias.force": 0.2,
               "coulomb.level": 0.5}  # fmt: skip
-    found = residual_along(body_of("coulomb", "viscous", "spring", "bias", values=values), motion)
-    taken = 0.15 * motion.acceleration + 3.0 * motion.velocity + 40.0 * motion.position + 0.2
-    given = motion.at_rows(motion.command) + motion.interaction
+    along = residual_along(body_of("coulomb", "viscous", "spring", "bias", values=values), motion)
+    force = 0.15 * motion.acceleration + 3.0 * motion.velocity + 40.0 * motion.position + 0.2
+    acting_force = motion.at_rows(motion.command) + motion.interaction
     np.testing.assert_allclose(
-        found.residual.value, given - taken - found.friction.value, atol=1e-9
+        along.residual.value, acting_force - force - along.friction.value, atol=1e-9
     )
-    np.testing.assert_allclose(found.acting.value, motion.at_rows(motion.command), atol=1e-12)
+    np.testing.assert_allclose(along.acting.value, motion.at_rows(motion.command), atol=1e-12)
     moves = motion.direction != 0
     np.testing.assert_allclose(
-        found.friction.value[moves], 0.5 * motion.direction[moves], atol=1e-12
+        along.friction.value[moves], 0.5 * motion.direction[moves], atol=1e-12
     )
     assert moves.mean() > 0.9 and np.ptp(motion.direction) == 2
 
@@ -46,11 +46,11 @@ def test_what_is_touched_takes_its_force_only_where_it_is_touched():
              "environment.contact_position": 2e-3}  # fmt: skip
     body = body_of("viscous", "environment", values=named)
     free = residual_along(body_of("viscous"), motion).residual.value
-    taken = free - residual_along(body, motion).residual.value
+    force = free - residual_along(body, motion).residual.value
     beyond = motion.position > 2e-3
     assert 0.1 < beyond.mean() < 0.9
     expected = np.where(beyond, 500.0 * (motion.position - 2e-3), 0.0)
-    np.testing.assert_allclose(taken, expected, atol=1e-9)
+    np.testing.assert_allclose(force, expected, atol=1e-9)
 
 
 def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
@@ -59,10 +59,10 @@ def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
     named = {"load_dependent_friction.coefficient": 0.2}
     others = ("driving_difference", "extra_at_rest", "output_share")
     named |= {f"load_dependent_friction.{n}": 0.0 for n in others}
-    found = residual_along(body_of("coulomb", "load_dependent_friction", values=named), motion)
+    along = residual_along(body_of("coulomb", "load_dependent_friction", values=named), motion)
     moves = motion.direction != 0
-    lost = found.acting.value - found.moving.value
-    expected = 0.2 * np.abs(found.acting.value) * motion.direction
+    lost = along.acting.value - along.moving.value
+    expected = 0.2 * np.abs(along.acting.value) * motion.direction
     np.testing.assert_allclose(lost[moves], expected[moves], atol=1e-9)
 
 
@@ -76,8 +76,8 @@ def test_what_moves_the_body_has_its_slopes_too(parameter):
         for e in (1e-6, -1e-6)
     ]
     slope = (sides[0] - sides[1]) / (2e-6 * value)
-    found = residual_along(body, motion, [parameter]).moving.tangent[0]
-    np.testing.assert_allclose(found, slope, atol=1e-5 * (1 + np.abs(slope).max()))
+    along = residual_along(body, motion, [parameter]).moving.tangent[0]
+    np.testing.assert_allclose(along, slope, atol=1e-5 * (1 + np.abs(slope).max()))
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +130,7 @@ def test_what_a_slower_sensor_of_the_hand_changes_is_a_slope_of_the_residual(nam
     """The hand's force is that of the log and T times its rate: by T, through hidden states too."""
     motion = replace(recorded(), interaction_late=late)
     body, h = unled(body_of(*names)), 1e-6
-    found = residual_along(body, motion, ["viscous.damping", INTERACTION_SHIFT]).residual.tangent
+    along = residual_along(body, motion, ["viscous.damping", INTERACTION_SHIFT]).residual.tangent
     s = motion.spectrum.derivative(1)
     logged = motion.spectrum.multiply(motion.interaction, s / (1.0 + late * s))
     sides = [
@@ -139,8 +139,8 @@ def test_what_a_slower_sensor_of_the_hand_changes_is_a_slope_of_the_residual(nam
     ]
     slope = (sides[0].residual.value - sides[1].residual.value) / (2 * h)
     assert np.linalg.norm(slope) > 0
-    assert np.linalg.norm(found[1] - slope) < 5e-3 * np.linalg.norm(slope)
-    assert np.abs(found[0]).max() > 0
+    assert np.linalg.norm(along[1] - slope) < 5e-3 * np.linalg.norm(slope)
+    assert np.abs(along[0]).max() > 0
 
 
 @pytest.mark.parametrize("names", [("viscous",), ("viscous", "actuator_lag", "actuator_gain")])
@@ -148,9 +148,9 @@ def test_what_a_late_log_of_the_command_changes_is_the_slope_of_the_force_in_tim
     motion = recorded()
     body = body_of(*names)
     along = residual_along(body, motion, [RECORD_SHIFT, "viscous.damping"])
-    found = along.residual.tangent[0]
+    slope = along.residual.tangent[0]
     expected = np.gradient(along.acting.value, motion.sample_time)
-    assert np.abs(found - expected)[INSIDE].max() < 0.02 * np.abs(expected).max()
+    assert np.abs(slope - expected)[INSIDE].max() < 0.02 * np.abs(expected).max()
     np.testing.assert_allclose(along.residual.tangent[1], -motion.velocity, atol=1e-9)
 
 
@@ -159,12 +159,12 @@ def test_friction_of_each_side_is_its_level_and_none_where_that_is_below_zero(di
     motion = recorded()
     named = {"coulomb.level": 0.5, "coulomb_asymmetry.half_difference": difference}
     body = body_of("coulomb", "coulomb_asymmetry", values=named)
-    found = residual_along(body, motion, ["coulomb.level", "coulomb_asymmetry.half_difference"])
+    along = residual_along(body, motion, ["coulomb.level", "coulomb_asymmetry.half_difference"])
     ahead, back = motion.direction > 0, motion.direction < 0
     most, least = 0.5 + difference, max(0.5 - difference, 0.0)
-    np.testing.assert_allclose(found.friction.value[ahead], most, rtol=1e-12)
-    np.testing.assert_allclose(found.friction.value[back], -least, atol=1e-12)
-    by_level, by_difference = found.friction.tangent
+    np.testing.assert_allclose(along.friction.value[ahead], most, rtol=1e-12)
+    np.testing.assert_allclose(along.friction.value[back], -least, atol=1e-12)
+    by_level, by_difference = along.friction.tangent
     assert np.all(by_level[ahead] == 1.0) and np.all(by_difference[ahead] == 1.0)
     assert np.all(by_level[back] == (-1.0 if least else 0.0))
     assert np.all(by_difference[back] == (1.0 if least else 0.0))
@@ -178,12 +178,12 @@ def test_the_slope_by_the_strength_of_what_is_absent_holds_at_the_probes_other_v
     symbols = body.symbols()
     at = {symbols["cogging.period"]: 0.004, symbols["cogging.phase"]: 1.1}
     probe = Probe("device", symbols["cogging.amplitude"], at)
-    found = residual_along(body, motion, ["viscous.damping", probe]).residual.tangent
+    along = residual_along(body, motion, ["viscous.damping", probe]).residual.tangent
     there = {"cogging.amplitude": 1.0, "cogging.period": 0.004, "cogging.phase": 1.1}
     sides = [residual_along(b, motion).residual.value for b in (body.with_values(there), body)]
-    np.testing.assert_allclose(found[1], sides[0] - sides[1], atol=1e-9)
-    np.testing.assert_allclose(found[0], -motion.velocity, atol=1e-9)
-    assert np.ptp(found[1]) > 1.5
+    np.testing.assert_allclose(along[1], sides[0] - sides[1], atol=1e-9)
+    np.testing.assert_allclose(along[0], -motion.velocity, atol=1e-9)
+    assert np.ptp(along[1]) > 1.5
 
 
 #: a user's damping k that is there under some condition on the motion and on k: law, and where
@@ -211,17 +211,17 @@ def test_a_users_law_may_join_conditions_on_the_motion_and_on_its_parameters(nam
     ).named("mine", "")
     motion = recorded()
     body = Body("prismatic", {"inertia": Value(0.2), "mine.k": Value(2.0)}, (effect,))
-    found = residual_along(body, motion, ["mine.k"])
+    along = residual_along(body, motion, ["mine.k"])
     bare = residual_along(Body("prismatic", {"inertia": Value(0.2)}), motion).residual.value
     there = where(motion.velocity)
     assert 0.1 < there.mean() < 0.9
     expected = np.where(there, 2.0 * motion.velocity, 0.0)
-    np.testing.assert_allclose(bare - found.residual.value, expected, atol=1e-9)
+    np.testing.assert_allclose(bare - along.residual.value, expected, atol=1e-9)
     slope = np.where(there, -motion.velocity, 0.0)
-    np.testing.assert_allclose(found.residual.tangent[0], slope, atol=1e-9)
+    np.testing.assert_allclose(along.residual.tangent[0], slope, atol=1e-9)
     probe = Probe("device", body.symbols()["mine.k"], {})
-    asked = residual_along(body, motion, [probe]).residual.tangent[0]
-    np.testing.assert_allclose(asked, slope, atol=1e-9)
+    tangent = residual_along(body, motion, [probe]).residual.tangent[0]
+    np.testing.assert_allclose(tangent, slope, atol=1e-9)
 
 
 def test_levels_of_many_cases_may_join_conditions_on_what_differs_and_what_does_not():

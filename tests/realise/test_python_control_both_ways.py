@@ -82,9 +82,11 @@ def compare(diagram, inputs, motions, step=STEP):
     )
     time = GRID
     system = to_iosystem(diagram)
-    given = [np.asarray(inputs[n](time)) if n in inputs else 0 * time for n in system.input_labels]
+    signals = [
+        np.asarray(inputs[n](time)) if n in inputs else 0 * time for n in system.input_labels
+    ]
     answer = control.input_output_response(
-        system, time, given, solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-14, "max_step": 5e-4}
+        system, time, signals, solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-14, "max_step": 5e-4}
     )
     at = np.rint(kernel["time"].values / GRID[1]).astype(int)  # each time of it is on the grid
     worst = 0.0
@@ -109,13 +111,13 @@ def test_a_controller_of_several_signals_is_the_same_through_both(name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("plant", [PLANT, control.ss(PLANT), control.tf([1.0], [0.2, 3.0, 50.0])])
-def test_a_plant_is_the_same_through_both_and_its_own_transfer_function(plant):
+def test_a_plant_is_the_same_through_both_and_its_transfer_function(plant):
     diagram = with_plant(plant)
     assert compare(diagram, {"f": push}, ["x"]) < 1e-6
     alone = diagram.without("K")
-    found, left_out = transfer_function(alone, output="x", input="f")
+    transfer, left_out = transfer_function(alone, output="x", input="f")
     points = 1j * np.array([0.3, 20.0, 70.0, 400.0])
-    np.testing.assert_allclose(found(points), control.tf(plant)(points), rtol=1e-6)
+    np.testing.assert_allclose(transfer(points), control.tf(plant)(points), rtol=1e-6)
     assert left_out == ()
 
 
@@ -143,9 +145,9 @@ def test_in_discrete_time_a_block_steps_as_python_control_steps_it(name, form):
     """Its answer to the reading of every sample, to 1e-9 of the range."""
     system = form(control.sample_system(control.ss(SISO[name]), PERIOD, method="zoh"))
     device = body(0.15, viscous__damping=2.0)
-    found = stepped(haptic_interface(device, cancellation=from_control(system)), ["L"])
-    answer = control.forced_response(system, found["time"].values, found["L"].values).outputs
-    assert np.abs(found["R_MBC"].values - answer).max() < 1e-9 * np.ptp(answer)
+    steps = stepped(haptic_interface(device, cancellation=from_control(system)), ["L"])
+    answer = control.forced_response(system, steps["time"].values, steps["L"].values).outputs
+    assert np.abs(steps["R_MBC"].values - answer).max() < 1e-9 * np.ptp(answer)
 
 
 @pytest.mark.parametrize("name", MIMO)
@@ -169,14 +171,14 @@ def test_in_discrete_time_several_signals_step_as_python_control_steps_them(name
             [[e.den[0][0] for e in row] for row in entries],
             PERIOD,
         )
-    found = stepped(two_rods(system, analog=False), ["x1", "x2"])
-    time = found["time"].values
+    steps = stepped(two_rods(system, analog=False), ["x1", "x2"])
+    time = steps["time"].values
     for output, row in zip(("u1", "u2"), entries, strict=True):
         answer = sum(
-            control.forced_response(entry, time, found[x].values).outputs
+            control.forced_response(entry, time, steps[x].values).outputs
             for entry, x in zip(row, ("x1", "x2"), strict=True)
         )
-        assert np.abs(found[output].values - answer).max() < 1e-9 * np.ptp(answer)
+        assert np.abs(steps[output].values - answer).max() < 1e-9 * np.ptp(answer)
 
 
 def test_transfer_functions_join_by_the_names_of_signals():
@@ -206,13 +208,13 @@ def test_parameters_of_the_system_are_its_params():
     system = to_iosystem(diagram)
     assert set(system.params) == set(diagram.values)
     time = np.linspace(0.0, 0.1, 101)
-    given = [push(time) * (n == "R_V") for n in system.input_labels]
+    inputs = [push(time) * (n == "R_V") for n in system.input_labels]
     tight = {"solve_ivp_kwargs": {"rtol": 1e-10, "atol": 1e-13}}
-    ours = control.input_output_response(system, time, given, params=changed, **tight)
+    ours = control.input_output_response(system, time, inputs, params=changed, **tight)
     other = to_iosystem(diagram.with_values(changed))
-    theirs = control.input_output_response(other, time, given, **tight)
+    theirs = control.input_output_response(other, time, inputs, **tight)
     np.testing.assert_allclose(ours.outputs, theirs.outputs, rtol=0, atol=1e-12)
-    plain = control.input_output_response(system, time, given, **tight)
+    plain = control.input_output_response(system, time, inputs, **tight)
     assert np.abs(plain.outputs - ours.outputs).max() > 1e-4
 
 
@@ -278,13 +280,13 @@ def test_every_law_of_the_catalogue_is_the_same_in_a_computer_through_both(name)
     diagram = with_law(name, analog=False)
     forces = {"R_V": 1.5, "R_D": 0.5}
     computer = Sampling(period=PERIOD)
-    found = simulate(diagram, duration=0.02, inputs=forces, computer=computer, jit=False)
+    simulation = simulate(diagram, duration=0.02, inputs=forces, computer=computer, jit=False)
     time = PERIOD * np.arange(21)
     system = to_iosystem(diagram, dt=PERIOD)
-    given = [np.full(21, forces[n]) for n in system.input_labels]
-    answer = control.input_output_response(system, time, given)
+    inputs = [np.full(21, forces[n]) for n in system.input_labels]
+    answer = control.input_output_response(system, time, inputs)
     theirs = answer.outputs[system.output_labels.index("L")]
-    assert np.abs(found["L"].values - theirs).max() < 1e-9 * np.ptp(theirs)
+    assert np.abs(simulation["L"].values - theirs).max() < 1e-9 * np.ptp(theirs)
 
 
 def exact_loop(plants, entries, forces):
@@ -318,9 +320,9 @@ def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, d
     """Rods under held forces, laws discrete or continuous in the computer; 1e-6 of the range."""
     if name in SISO:
         entries = [[control.ss(control.sample_system(control.ss(SISO[name]), PERIOD, "zoh"))]]
-        given = form(entries[0][0]) if discrete else form(SISO[name])
+        system = form(entries[0][0]) if discrete else form(SISO[name])
         diagram = haptic_interface(
-            body(0.15, viscous__damping=2.0), cancellation=from_control(given)
+            body(0.15, viscous__damping=2.0), cancellation=from_control(system)
         )
         motions, inputs, rods = ("L",), ("R_V",), [(0.15, 2.0)]
     else:
@@ -330,12 +332,12 @@ def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, d
         tfs = [[control.tf(e) for e in row] for row in entries]
         parts = ([[getattr(e, n)[0][0] for e in row] for row in tfs] for n in ("num", "den"))
         whole = control.tf(*parts, PERIOD)
-        given = whole if discrete else square
-        diagram = two_rods(given, analog=False)
+        system = whole if discrete else square
+        diagram = two_rods(system, analog=False)
         motions, inputs, rods = ("x1", "x2"), ("f1", "f2"), [(0.1, 3.0), (0.2, 3.0)]
     forces = dict(zip(inputs, (1.5, -0.7), strict=False))
     computer = Sampling(period=PERIOD)
-    found = simulate(diagram, duration=0.05, inputs=forces, computer=computer, jit=False)
+    simulation = simulate(diagram, duration=0.05, inputs=forces, computer=computer, jit=False)
     plants = [
         control.sample_system(control.ss(control.tf([1.0], [m, d, 0.0])), PERIOD, "zoh")
         for m, d in rods
@@ -343,7 +345,7 @@ def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, d
     held = np.tile(list(forces.values()), (51, 1))
     expected = exact_loop(plants, entries, held)
     for k, motion in enumerate(motions):
-        difference = np.abs(found[motion].values - expected[:, k]).max()
+        difference = np.abs(simulation[motion].values - expected[:, k]).max()
         assert difference < 1e-6 * np.ptp(expected[:, k])
 
 
@@ -356,7 +358,7 @@ def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, d
         (control.tf([1.0], [1.0, 1.0, 3.0], 1e-3), "continuous time"),
     ],
 )
-def test_what_is_no_plant_is_said_in_one_line(plant, words):
+def test_what_is_no_plant_is_reported_in_one_line(plant, words):
     with pytest.raises(ModelError, match=words) as caught:
         plant_parts(plant, name="P", motion="x", command="u", driver="f")
     assert "\n" not in str(caught.value)
@@ -428,24 +430,26 @@ def opened(diagram):
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=pytest.mark.slow) if n == "three axes" else n for n in COUPLED]
 )
-def test_a_plant_of_several_axes_is_its_own_transfer_functions(name):
+def test_a_plant_of_several_axes_has_its_transfer_functions(name):
     """Matrices in, transfer functions out: 1e-6 of each entry, over four decades."""
     alone = opened(with_axes(COUPLED[name]))
     points = 1j * np.array([0.3, 20.0, 70.0, 400.0])
     for i in range(COUPLED[name].noutputs):
         for j in range(COUPLED[name].ninputs):
-            found, left_out = transfer_function(alone, output=f"x{i + 1}", input=f"f{j + 1}")
-            given = np.array([COUPLED[name](p)[i, j] for p in points])
-            np.testing.assert_allclose(found(points), given, rtol=1e-6)
+            transfer, left_out = transfer_function(alone, output=f"x{i + 1}", input=f"f{j + 1}")
+            expected = np.array([COUPLED[name](p)[i, j] for p in points])
+            np.testing.assert_allclose(transfer(points), expected, rtol=1e-6)
             assert left_out == ()
 
 
-def test_the_bode_plot_of_a_plant_of_several_axes_is_its_own_response():
+def test_the_bode_plot_of_a_plant_of_several_axes_is_its_response():
     frequency = np.array([0.1, 3.0, 30.0])
-    found = bode(opened(with_axes(TWO_AXES)), output="x1", input="f2", frequency=frequency)
-    given = [TWO_AXES(2j * np.pi * f)[0, 1] for f in frequency]
-    np.testing.assert_allclose(found.data["magnitude"].values.ravel(), np.abs(given), rtol=1e-9)
-    turned = np.exp(1j * (np.radians(found.data["phase"].values.ravel()) - np.angle(given)))
+    response = bode(opened(with_axes(TWO_AXES)), output="x1", input="f2", frequency=frequency)
+    expected = [TWO_AXES(2j * np.pi * f)[0, 1] for f in frequency]
+    np.testing.assert_allclose(
+        response.data["magnitude"].values.ravel(), np.abs(expected), rtol=1e-9
+    )
+    turned = np.exp(1j * (np.radians(response.data["phase"].values.ravel()) - np.angle(expected)))
     np.testing.assert_allclose(turned, 1.0, atol=1e-9)
 
 
@@ -463,13 +467,15 @@ def test_a_plant_of_several_axes_in_discrete_time_is_the_one_before_its_hold():
     diagram = opened(with_axes(sampled))
     forces = {"f1": 1.5, "f2": -0.7}
     computer = Sampling(period=PERIOD)
-    found = simulate(diagram, duration=0.1, inputs=forces, computer=computer, step=1e-4, jit=False)
+    simulation = simulate(
+        diagram, duration=0.1, inputs=forces, computer=computer, step=1e-4, jit=False
+    )
     time = PERIOD * np.arange(101)
     held = np.tile([[1.5], [-0.7]], (1, 101))
     answer = control.forced_response(sampled, time, held).outputs
-    at = np.searchsorted(found["time"].values, time - PERIOD / 1e3)
+    at = np.searchsorted(simulation["time"].values, time - PERIOD / 1e3)
     for k, motion in enumerate(("x1", "x2")):
-        assert np.abs(found[motion].values[at] - answer[k]).max() < 1e-6 * np.ptp(answer[k])
+        assert np.abs(simulation[motion].values[at] - answer[k]).max() < 1e-6 * np.ptp(answer[k])
 
 
 @pytest.mark.slow
@@ -503,7 +509,7 @@ UNSTABLE_ZERO = control.tf(
         (control.tf([1.0], [1.0, 1.0, 3.0]), "1 inputs and 1 outputs, found 2 commands"),
     ],
 )
-def test_what_is_no_plant_of_two_axes_is_said_in_one_line(plant, words):
+def test_what_is_no_plant_of_two_axes_is_reported_in_one_line(plant, words):
     with pytest.raises(ModelError, match=words) as caught:
         coupled_plant_parts(
             plant, name="P", motions=("x1", "x2"), commands=("u1", "u2"), drivers=("f1", "f2")

@@ -69,7 +69,7 @@ def body_with(effect, values):
 
 
 @pytest.mark.parametrize("name", PASSING)
-def test_an_error_of_the_command_is_seen_as_what_it_was(name):
+def test_an_error_of_the_command_is_led_back_as_what_it_was(name):
     """r(u + d) - r(u) mapped back is d, by every law that could stand between, a user's own too."""
     effect = {**EFFECTS, **CHEATS}[name]
     motion, body = one_way(), body_with(effect, PASSING[name])
@@ -78,15 +78,18 @@ def test_an_error_of_the_command_is_seen_as_what_it_was(name):
     after = residual_along(body, replace(motion, command=motion.command + error))
     made = after.residual.value - before.residual.value
     along = replace(before, residual=Traced(made, before.residual.tangent))
-    seen = residual_at_command(body, motion, along)
+    command_error = residual_at_command(body, motion, along)
     # a slow memory begins with the record, and is forgotten after some seconds
     inside = slice(4 * int(RATE), -int(RATE))
-    told = ~seen.blind[inside]
-    left = motion.lowpassed(seen.residual - motion.at_rows(error))[inside][told]
-    assert np.mean(told) > 0.6
+    valid_rows = ~command_error.blind[inside]
+    left = motion.lowpassed(command_error.residual - motion.at_rows(error))[inside][valid_rows]
+    assert np.mean(valid_rows) > 0.6
     if name == "actuator_saturation":
         # the low-pass smears what is blind into what is not, a fifth of a second to either side
-        near = np.convolve(seen.blind, np.ones(int(0.4 * RATE)), "same")[inside][told] > 0
+        near = (
+            np.convolve(command_error.blind, np.ones(int(0.4 * RATE)), "same")[inside][valid_rows]
+            > 0
+        )
         left = left[~near]
     # coefficients of what has a memory are taken at their mean: 6 % where a gain varies by 20 %
     assert np.sqrt(np.mean(left**2)) < 0.06 * np.std(error)
@@ -107,18 +110,20 @@ def test_actuation_is_led_back_as_the_format_says():
         body = body_with(EFFECTS[name], PASSING[name])
         along = residual_along(body, motion)
         along = replace(along, residual=Traced(wave, along.residual.tangent))
-        found = residual_at_command(body, motion, along)
-        assert not found.blind.any()
+        forces = residual_at_command(body, motion, along)
+        assert not forces.blind.any()
         # the lag is simulated on quarters of a sample, exactly: what differs is the ends' echo
-        np.testing.assert_allclose(found.residual[inside], known[inside], atol=0.01)
+        np.testing.assert_allclose(forces.residual[inside], known[inside], atol=0.01)
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_samples_beyond_a_limit_are_blind(side):
     motion = one_way(side)
-    seen = residual_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
-    np.testing.assert_array_equal(seen.blind, side * motion.command > 3.0)
-    assert not seen.weak
+    command_error = residual_at_command(
+        body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion
+    )
+    np.testing.assert_array_equal(command_error.blind, side * motion.command > 3.0)
+    assert not command_error.weak
     # beside friction of 1 N
     for limit, is_weak in ((0.5, True), (0.9, True), (1.1, False)):
         held = residual_at_command(
@@ -168,8 +173,8 @@ def test_an_actuator_that_is_strongest_for_a_small_command_is_judged_there(side,
     values |= {"inertia": Value(0.2 * unit), "coulomb.level": Value(level * unit)}
     body = Body("prismatic", values, (EFFECTS["coulomb"], *effects))
     motion = one_way(side)
-    seen = residual_at_command(body, replace(motion, command=unit * motion.command))
-    assert seen.blind.any() and seen.weak == weak
+    command_error = residual_at_command(body, replace(motion, command=unit * motion.command))
+    assert command_error.blind.any() and command_error.weak == weak
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -193,8 +198,8 @@ def test_what_else_acts_counts_when_it_is_asked_whether_an_actuator_can_slide_th
             },
             (EFFECTS["coulomb"], EFFECTS["bias"], EFFECTS["actuator_saturation"]),
         )
-        seen = residual_at_command(body, motion)
-        assert seen.blind.all() and seen.weak == (weak and against > 0)
+        command_error = residual_at_command(body, motion)
+        assert command_error.blind.all() and command_error.weak == (weak and against > 0)
 
 
 def test_stages_in_series_are_led_back_one_by_one():
@@ -210,11 +215,11 @@ def test_stages_in_series_are_led_back_one_by_one():
         },
         (EFFECTS["actuator_gain"], EFFECTS["actuation_delay"]),
     )
-    found = led_back(body, motion, np.sin(omega * motion.time))
+    forces = led_back(body, motion, np.sin(omega * motion.time))
     inside = slice(int(RATE), -int(RATE))
     expected = 2.0 * np.sin(omega * (motion.time + 0.04))
-    np.testing.assert_allclose(found.residual[inside], expected[inside], atol=0.02)
-    assert not found.blind.any() and not found.weak
+    np.testing.assert_allclose(forces.residual[inside], expected[inside], atol=0.02)
+    assert not forces.blind.any() and not forces.weak
 
 
 def test_a_delay_behind_a_limit_moves_no_blind_sample():
@@ -230,10 +235,10 @@ def test_a_delay_behind_a_limit_moves_no_blind_sample():
         },
         (EFFECTS["coulomb"], EFFECTS["actuator_saturation"], EFFECTS["actuation_delay"]),
     )
-    seen = residual_at_command(body, motion)
+    command_error = residual_at_command(body, motion)
     alone = residual_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
     assert 0.2 < alone.blind.mean() < 0.8
-    np.testing.assert_array_equal(seen.blind, alone.blind)
+    np.testing.assert_array_equal(command_error.blind, alone.blind)
 
 
 def test_without_a_law_between_nothing_is_changed():
@@ -241,9 +246,9 @@ def test_without_a_law_between_nothing_is_changed():
     body = Body("prismatic", {"inertia": Value(0.2), "coulomb.level": Value(1.0)},
                 (EFFECTS["coulomb"],))  # fmt: skip
     before = residual_along(body, motion)
-    seen = residual_at_command(body, motion)
-    assert not is_between(body) and not seen.blind.any() and not seen.weak
-    np.testing.assert_array_equal(seen.residual, before.residual.value)
+    command_error = residual_at_command(body, motion)
+    assert not is_between(body) and not command_error.blind.any() and not command_error.weak
+    np.testing.assert_array_equal(command_error.residual, before.residual.value)
     for name in PASSING:
         effect = {**EFFECTS, **CHEATS}[name]
         assert is_between(body_with(effect, PASSING[name])), name
@@ -256,9 +261,9 @@ def test_friction_that_grows_with_the_acting_force_takes_its_part_of_each_error(
         motion = one_way(side)
         body = body_with(EFFECTS["load_dependent_friction"], {"coefficient": 0.25})
         wave = np.sin(2 * np.pi * motion.time)
-        found = led_back(body, motion, wave)
+        forces = led_back(body, motion, wave)
         inside = slice(int(RATE), -int(RATE))
-        np.testing.assert_allclose(found.residual[inside], wave[inside] / 0.75, atol=0.01)
+        np.testing.assert_allclose(forces.residual[inside], wave[inside] / 0.75, atol=0.01)
 
 
 def test_a_way_that_is_open_somewhere_passes_a_hands_force_whole_there():
@@ -279,12 +284,12 @@ def test_the_blind_share_counts_samples_that_slide_and_all_where_none_does():
         )
 
     first, second = stretch([1, 1, 0, 0], [1, 0, -1, 1]), stretch([1, 0], [0, 1])
-    seen, motions = zip(first, second, strict=True)
-    assert blind_share(seen, motions) == pytest.approx(1 / 4)
-    seen, motions = zip(stretch([1, 0, 0], [0, 0, 0]), strict=True)
-    assert blind_share(seen, motions) == pytest.approx(1 / 3)
-    seen, motions = zip(stretch([], []), strict=True)
-    assert blind_share(seen, motions) == 0.0
+    errors, motions = zip(first, second, strict=True)
+    assert blind_share(errors, motions) == pytest.approx(1 / 4)
+    errors, motions = zip(stretch([1, 0, 0], [0, 0, 0]), strict=True)
+    assert blind_share(errors, motions) == pytest.approx(1 / 3)
+    errors, motions = zip(stretch([], []), strict=True)
+    assert blind_share(errors, motions) == 0.0
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -302,9 +307,11 @@ def test_a_command_within_a_dead_zone_is_blind_and_a_larger_one_is_judged(side, 
     values |= {"inertia": Value(0.2), "coulomb.level": Value(1.0)}
     motion = one_way(side)
     for order in ((zone, CHEATS["soft_limit"]), (CHEATS["soft_limit"], zone)):
-        seen = residual_at_command(Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion)
+        command_error = residual_at_command(
+            Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion
+        )
         # a limit in front of the zone never leaves it
-        assert seen.blind.all() and seen.weak == (weak or order[0] is not zone)
+        assert command_error.blind.all() and command_error.weak == (weak or order[0] is not zone)
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -321,7 +328,7 @@ def test_samples_in_which_friction_takes_up_the_whole_force_are_blind_then_and_n
     motion = one_way(side)
     held = np.abs(motion.position) > 1.5
     assert 0.2 < held.mean() < 0.8
-    seen = residual_at_command(body_with(brake, {"part": 1.0}), motion)
+    command_error = residual_at_command(body_with(brake, {"part": 1.0}), motion)
     moves = motion.direction != 0  # all samples but the last
-    np.testing.assert_array_equal(seen.blind[moves], held[moves])
+    np.testing.assert_array_equal(command_error.blind[moves], held[moves])
     assert not residual_at_command(body_with(brake, {"part": 0.5}), motion).blind.any()

@@ -38,8 +38,8 @@ def rod(law, *, analog=False, late=0.0, damping=DAMPING):
 
 def discrete_steps(system, forces, **options):
     time = DT * np.arange(len(forces))
-    found = control.input_output_response(system, time, [forces], **options)
-    return found, {name: found.outputs[i] for i, name in enumerate(system.output_labels)}
+    response = control.input_output_response(system, time, [forces], **options)
+    return response, {name: response.outputs[i] for i, name in enumerate(system.output_labels)}
 
 
 def exact_steps(law, forces):
@@ -70,10 +70,10 @@ def test_it_is_the_exact_discrete_system_where_that_is_known():
 def test_its_linearisation_has_the_poles_of_the_exact_loop():
     """Poles by differences, 1e-5; a state that is only remembered adds poles at zero."""
     system = to_iosystem(rod(from_control(DISCRETE)), dt=DT)
-    found = control.linearize(system, np.zeros(system.nstates), [0.0], eps=1e-6).poles()
+    poles = control.linearize(system, np.zeros(system.nstates), [0.0], eps=1e-6).poles()
     plant = control.sample_system(control.tf([1.0], [MASS, DAMPING, 0.0]), DT, method="zoh")
     for pole in control.feedback(plant, DISCRETE, sign=1).poles():
-        assert np.abs(found - pole).min() < 1e-5
+        assert np.abs(poles - pole).min() < 1e-5
 
 
 LAWS = {
@@ -110,10 +110,10 @@ def test_friction_and_a_reading_of_force_are_there_too():
     run = simulate(diagram, duration=0.03, inputs=inputs, computer=Sampling(DT), jit=False)
     system = to_iosystem(diagram, dt=DT)
     time = DT * np.arange(31)
-    given = [np.full(31, inputs.get(name, 0.0)) for name in system.input_labels]
-    found = control.input_output_response(system, time, given)
+    signals = [np.full(31, inputs.get(name, 0.0)) for name in system.input_labels]
+    response = control.input_output_response(system, time, signals)
     for name in ("L", "E", "R_M", "Z_M_friction"):
-        ours = found.outputs[system.output_labels.index(name)]
+        ours = response.outputs[system.output_labels.index(name)]
         size = np.abs(run[name].values).max()
         np.testing.assert_allclose(ours, run[name].values, rtol=0, atol=1e-9 * size)
 
@@ -180,14 +180,14 @@ def test_a_body_that_swings_fast_is_stepped_as_finely_as_it_asks_for(stiffness):
     names = list(system.input_labels)
     inputs = np.zeros((len(names), 12))
     inputs[names.index("R_D" if "R_D" in names else names[0])] = forces
-    found = control.input_output_response(system, DT * np.arange(12), inputs)
+    response = control.input_output_response(system, DT * np.arange(12), inputs)
     a = np.array([[0.0, 1.0], [-stiffness / MASS, -drag / MASS]])
     whole = expm(np.vstack([np.column_stack([a, [0.0, 1 / MASS]]), np.zeros(3)]) * DT)
     x, expected = np.zeros(2), []
     for force in forces:
         expected.append(x[0])
         x = whole[:2, :2] @ x + whole[:2, 2] * force
-    here = found.outputs[list(system.output_labels).index("L")]
+    here = response.outputs[list(system.output_labels).index("L")]
     assert np.abs(here - expected).max() < 5e-3 * np.ptp(expected)
 
 

@@ -27,8 +27,8 @@ def tip_of(body, x, v, a, rate):
     """Position of the tip behind a body that moves so, led by nothing."""
     (effect,) = unled(body).effects
     none = np.zeros((0, len(x)))
-    given = zip(("position", "velocity", "acceleration"), (x, v, a), strict=True)
-    known = {SIGNALS[n]: Traced(y, none) for n, y in given}
+    signals = zip(("position", "velocity", "acceleration"), (x, v, a), strict=True)
+    known = {SIGNALS[n]: Traced(y, none) for n, y in signals}
     known[SIGNALS["interaction_force"]] = Traced(np.zeros(len(x)), none)
     hidden = ode_scan(effect, Along(known, body.numbers(), (), 1 / rate))
     return hidden[effect.state_symbols()["tip_position"]].value
@@ -91,9 +91,9 @@ def test_tangents_are_slopes_for_all_parameters_of_a_body_together(name):
     motion, names = recorded(), COMBINED[name]
     body = body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
     inside = slice(100, None)
-    asked = [n for n, _ in body.declared() if body.parameters[n].value != 0.0][::-1]
-    found = residual_along(body, motion, asked).residual.tangent[:, inside]
-    for full, tangent in zip(asked, found, strict=True):
+    selection = [n for n, _ in body.declared() if body.parameters[n].value != 0.0][::-1]
+    along = residual_along(body, motion, selection).residual.tangent[:, inside]
+    for full, tangent in zip(selection, along, strict=True):
         value = body.parameters[full].value
         sides = [
             residual_along(body.with_values({full: value * (1 + e)}), motion).residual.value[inside]
@@ -114,15 +114,15 @@ def test_elements_that_slip_in_turn_are_those_of_a_loop_by_hand():
     values |= {f"maxwell_slip.level_{i + 2}": p for i, p in enumerate(part)}
     motion = recorded()
     body = body_of("coulomb", "maxwell_slip", values=values | {"coulomb.level": level})
-    found = residual_along(body, motion).friction.value
+    along = residual_along(body, motion).friction.value
     most = np.array([level - sum(part), *part])
     force, forces = np.zeros(4), []
     for step in np.diff(motion.position, prepend=motion.position[0]):
         force = np.clip(force + np.array(stiffness) * step, -most, most)
         forces.append(force.sum())
-    told = motion.direction != 0
-    np.testing.assert_allclose(found[told], np.array(forces)[told], atol=1e-9)
-    assert np.ptp(found) > 1.5 * level and told.mean() > 0.9
+    moving = motion.direction != 0
+    np.testing.assert_allclose(along[moving], np.array(forces)[moving], atol=1e-9)
+    assert np.ptp(along) > 1.5 * level and moving.mean() > 0.9
 
 
 def test_where_a_reading_tells_no_motion_friction_is_what_balances_within_a_step():

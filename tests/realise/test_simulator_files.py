@@ -146,9 +146,9 @@ def test_what_a_joint_has_not_beside_its_inertia_is_next_to_nothing(form, model)
     _, slide, hinge = root.iter("link")
     assert 0 < float(hinge.find("inertial/mass").get("value")) < 1e-5
     for link, moment in ((slide, 1e-9), (hinge, 4e-4)):
-        found = numbers(link.find("inertial/inertia"))
-        assert [found[n] for n in ("ixy", "ixz", "iyz")] == [0.0, 0.0, 0.0]
-        assert [found[n] for n in ("ixx", "iyy", "izz")] == [moment] * 3
+        inertia = numbers(link.find("inertial/inertia"))
+        assert [inertia[n] for n in ("ixy", "ixz", "iyz")] == [0.0, 0.0, 0.0]
+        assert [inertia[n] for n in ("ixx", "iyy", "izz")] == [moment] * 3
 
 
 def test_an_effect_that_is_absent_by_its_value_is_not_written(model):

@@ -28,35 +28,35 @@ def test_a_late_command_is_the_earlier_one_averaged_over_each_hold(delay):
     command = 1.0 + (
         np.random.default_rng(3).normal(size=120) if whole else np.sin(np.arange(120) / 9.0)
     )
-    motion, found = acting(("actuation_delay",), {"actuation_delay.delay": delay}, command)
+    motion, forces = acting(("actuation_delay",), {"actuation_delay.delay": delay}, command)
     fine = 400
     shift = round(delay / 1e-3 * fine)
     held = np.concatenate([np.full(shift, command[0]), np.repeat(command, fine)])[: 120 * fine]
     expected = motion.at_rows(held.reshape(-1, fine).mean(axis=1))
     # within a row a delay is told to a quarter of it: edges of the staircase fall there
-    np.testing.assert_allclose(found.value, expected, atol=1e-9 if whole else 0.01)
+    np.testing.assert_allclose(forces.value, expected, atol=1e-9 if whole else 0.01)
 
 
 def test_the_slope_by_a_delay_is_that_of_the_command_in_time():
     t = np.arange(300) * 1e-3
-    motion, found = acting(
+    motion, forces = acting(
         ("actuator_gain", "actuation_delay"),
         {"actuation_delay.delay": 4.6e-3, "actuator_gain.gain": 0.4},
         2.0 + np.sin(50 * t),
     )
     # at a row the command is half that of the hold before it and half that of the one behind it
     late = t[20:-20] - 4.6e-3 - 0.5e-3
-    np.testing.assert_allclose(found.tangent[0, 20:-20], -0.4 * 50 * np.cos(50 * late), atol=0.1)
-    np.testing.assert_allclose(found.tangent[1, 20:-20], 2.0 + np.sin(50 * late), atol=0.005)
-    np.testing.assert_allclose(found.value, 0.4 * found.tangent[1], atol=1e-9)
+    np.testing.assert_allclose(forces.tangent[0, 20:-20], -0.4 * 50 * np.cos(50 * late), atol=0.1)
+    np.testing.assert_allclose(forces.tangent[1, 20:-20], 2.0 + np.sin(50 * late), atol=0.005)
+    np.testing.assert_allclose(forces.value, 0.4 * forces.tangent[1], atol=1e-9)
 
 
 def test_a_limit_acts_on_what_the_gain_makes_of_the_command():
     """3 N by a gain of one half are 1.5 N, beyond a limit of 1.2 N; 2 N are within it."""
     for size, expected in ((3.0, 1.2), (2.0, 1.0), (-3.0, -1.2)):
-        _, found = acting(
+        _, forces = acting(
             ("actuator_gain", "actuator_saturation"),
             {"actuator_gain.gain": 0.5, "actuator_saturation.limit": 1.2},
             np.full(50, size),
         )
-        np.testing.assert_allclose(found.value, expected, rtol=1e-12)
+        np.testing.assert_allclose(forces.value, expected, rtol=1e-12)

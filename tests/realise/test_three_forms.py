@@ -110,12 +110,12 @@ def test_kernel_steps_as_the_declared_linear_form(name):
     hand = body(0.2, viscous__damping=3.0, spring__stiffness=500.0)
     diagram = haptic_interface(device(name), hand=hand)
     system, left_out = transfer_function(diagram, output="L", input="R_D", delay_order=4)
-    found = simulate(diagram, duration=0.2, inputs={"R_D": 1.0}, jit=False, step=1e-4)
-    _, expected = control.step_response(system, found["L"]["time"].values)
+    simulation = simulate(diagram, duration=0.2, inputs={"R_D": 1.0}, jit=False, step=1e-4)
+    _, expected = control.step_response(system, simulation["L"]["time"].values)
     assert left_out == ()
     # order four at 1e-4 s leaves 1e-8; a dead time as a Pade of order 4 leaves 6e-6 in position
     bound = 2e-5 if name == "actuation_delay" else 1e-7
-    assert np.abs(found["L"].values - expected).max() < bound * np.abs(expected).max()
+    assert np.abs(simulation["L"].values - expected).max() < bound * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -132,7 +132,7 @@ def test_an_effect_at_zero_strength_changes_nothing(name):
 @pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].energy == "dissipates"])
 def test_friction_takes_energy_out(name):
     """Over whole cycles of a prescribed motion the hand puts work in."""
-    found = simulated(
+    simulation = simulated(
         device(name),
         duration=0.4,
         inputs={},
@@ -140,8 +140,8 @@ def test_friction_takes_energy_out(name):
         every_step=True,
         step=2e-4,
     )
-    cycle = slice(len(found["L"]) // 2, None)
-    work = np.trapezoid(found["R_V"].values[cycle], found["L"].values[cycle])
+    cycle = slice(len(simulation["L"]) // 2, None)
+    work = np.trapezoid(simulation["R_V"].values[cycle], simulation["L"].values[cycle])
     stored = 0.0  # kinetic energy is the same at both ends of the cycle
     assert work > stored
 
@@ -161,8 +161,8 @@ def test_kernel_and_python_control_agree_on_the_force_error(case):
     kernel = simulate(diagram, duration=0.2, motion={"L": motion}, computer="continuous", jit=False)
     system = to_iosystem(diagram, prescribed=("L",))
     fine, time = np.linspace(0, 0.2, 2001), kernel["L"]["time"].values
-    given = dict(zip(("L", "L_velocity", "L_acceleration"), motion.all, strict=True))
-    inputs = [given[n](fine) if n in given else 0 * fine for n in system.input_labels]
+    signals = dict(zip(("L", "L_velocity", "L_acceleration"), motion.all, strict=True))
+    inputs = [signals[n](fine) if n in signals else 0 * fine for n in system.input_labels]
     response = control.input_output_response(
         system,
         fine,
@@ -248,11 +248,11 @@ def test_an_empty_sum_makes_no_python_control_system_without_inputs():
     assert system.input_labels == ["f"]
     assert {"x", "u", "w"} <= set(system.output_labels)
     t = np.linspace(0.0, 0.2, 101)
-    found = control.input_output_response(
+    response = control.input_output_response(
         system, t, np.ones((1, t.size)), solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-13}
     )
     tau = 0.15 / 2.0
     exact = (t - tau * (1 - np.exp(-t / tau))) / 2.0
-    x = found.outputs[system.output_labels.index("x")]
+    x = response.outputs[system.output_labels.index("x")]
     np.testing.assert_allclose(x, exact, atol=1e-9)  # the solver's tolerance on 65 mm
-    assert not found.outputs[system.output_labels.index("u")].any()
+    assert not response.outputs[system.output_labels.index("u")].any()

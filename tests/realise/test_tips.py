@@ -44,10 +44,10 @@ def test_actuator_and_tip_move_as_two_masses_on_a_spring(computer):
     """Step of force, held: the same sampled or not. Order four at 0.1 ms and 25 Hz: 1e-7."""
     diagram = haptic_interface(body(M, **COMPLIANT), hand=HAND)
     mode = {} if computer == "sampled" else {"computer": "continuous"}
-    found = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False, **mode)
-    _, expected = control.step_response(two_masses(), found["time"].values)
+    simulation = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False, **mode)
+    _, expected = control.step_response(two_masses(), simulation["time"].values)
     for name, row in zip(("L", "L_tip"), expected[:, 0], strict=True):
-        assert np.abs(found[name].values - row).max() < 1e-7 * np.abs(row).max()
+        assert np.abs(simulation[name].values - row).max() < 1e-7 * np.abs(row).max()
 
 
 def test_the_transfer_function_of_the_parted_device_is_that_of_two_masses():
@@ -72,10 +72,10 @@ def test_python_control_moves_the_tip_alike():
     kernel = simulate(diagram, duration=0.1, **arguments)
     system = to_iosystem(diagram)
     time = kernel["time"].values
-    given = [1.0 + 0 * time if n == "R_D" else 0 * time for n in system.input_labels]
+    inputs = [1.0 + 0 * time if n == "R_D" else 0 * time for n in system.input_labels]
     options = {"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-4}
     response = control.input_output_response(
-        system, time, given, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+        system, time, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
     )
     assert kernel["L_tip"].max() > 3e-3
     for name in ("L", "L_tip"):
@@ -91,21 +91,21 @@ def test_a_stiff_transmission_is_the_rigid_body():
     }
     arguments = {"duration": 0.1, "inputs": {"R_D": 1.0}, "jit": False}
     rigid = simulate(haptic_interface(body(M, viscous__damping=B), hand=HAND), **arguments)["L"]
-    found = simulate(haptic_interface(body(M, **stiff), hand=HAND), step=2e-5, **arguments)
+    simulation = simulate(haptic_interface(body(M, **stiff), hand=HAND), step=2e-5, **arguments)
     for name in ("L", "L_tip"):
-        assert np.abs(found[name].values - rigid.values).max() < 1e-4 * float(rigid.max())
+        assert np.abs(simulation[name].values - rigid.values).max() < 1e-4 * float(rigid.max())
 
 
 def test_a_hand_leads_the_tip_and_feels_both_bodies():
     """Slow against the resonance (13 Hz): the whole inertia and the actuator's friction."""
     diagram = haptic_interface(body(M, **COMPLIANT))
     motion = sine(amplitude=0.01, frequency=0.5)
-    found = simulate(diagram, duration=4.0, motion={"L_tip": motion}, jit=False, step=1e-3)
-    time = found["time"].values
+    simulation = simulate(diagram, duration=4.0, motion={"L_tip": motion}, jit=False, step=1e-3)
+    time = simulation["time"].values
     expected = M * motion.acceleration(time) + B * motion.velocity(time)
     late = time > 2.0
     # the actuator is late by B omega/K = 2.1e-3, and 20 Hz on the spring: (0.5/20)^2 = 6e-4
-    assert np.abs(found["R_V"].values - expected)[late].max() < 3e-3 * np.abs(expected).max()
+    assert np.abs(simulation["R_V"].values - expected)[late].max() < 3e-3 * np.abs(expected).max()
 
 
 def test_coulomb_friction_at_each_end():
@@ -113,8 +113,8 @@ def test_coulomb_friction_at_each_end():
     diagram = haptic_interface(body(M, coulomb__level=0.3, **COMPLIANT))
     both = with_tips(diagram).with_block("Z_M_tip", body(TIP, coulomb__level=0.2))
     pushed = {"R_V": lambda t: 0.25 * np.clip(t / 0.1, 0, 1)}
-    found = simulate(both, duration=0.5, inputs=pushed, jit=False)
-    last = {n: float(x[-1]) for n, x in found.data.items()}
+    simulation = simulate(both, duration=0.5, inputs=pushed, jit=False)
+    last = {n: float(x[-1]) for n, x in simulation.data.items()}
     passed = -last["Z_M_transmission"]
     assert 0.05 < passed < 0.25
     # at rest but for what is left of the oscillation after 0.4 s
@@ -123,7 +123,7 @@ def test_coulomb_friction_at_each_end():
     assert abs(last["L"]) < 1e-5 < last["L_tip"]  # 10 um: the give of its friction
 
 
-def test_friction_of_the_tip_is_that_of_the_tip_as_a_body_of_its_own():
+def test_friction_of_the_tip_is_that_of_the_tip_as_a_separate_body():
     held = haptic_interface(body(M, tip_friction__level=0.2, **COMPLIANT))
     apart = with_tips(haptic_interface(body(M, **COMPLIANT)))
     apart = apart.with_block("Z_M_tip", body(TIP, coulomb__level=0.2))
@@ -158,7 +158,7 @@ def test_friction_of_a_tip_needs_a_structure_and_any_will_do():
         ({"transmission_compliance__tip_inertia": 0.3}, {}, "it must be less"),
     ],
 )
-def test_what_cannot_be_parted_is_said_in_one_line(changed, arguments, words):
+def test_what_cannot_be_parted_is_reported_in_one_line(changed, arguments, words):
     with pytest.raises(ModelError, match=words) as caught:
         diagram = haptic_interface(body(M, **COMPLIANT | changed))
         simulate(diagram, duration=0.01, jit=False, **arguments)
@@ -172,12 +172,12 @@ def test_through_a_gap_two_bodies_exchange_momentum_and_keep_energy():
     lost = body(M, **{f"backlash__{n}": v for n, v in values.items()})
     start = {"L_velocity": speed}
     run = dict(duration=0.1, initial=start, computer="continuous", step=2e-5)
-    found = simulate(haptic_interface(lost), **run, jit=False)
-    here, there = (found[f"{n}_velocity"].values for n in ("L", "L_tip"))
-    twist = found["L_twist"].values
+    simulation = simulate(haptic_interface(lost), **run, jit=False)
+    here, there = (simulation[f"{n}_velocity"].values for n in ("L", "L_tip"))
+    twist = simulation["L_twist"].values
     free = np.abs(twist) <= gap / 2
     m = M - TIP
-    before = found["time"].values < 0.009  # half the gap takes 10 ms
+    before = simulation["time"].values < 0.009  # half the gap takes 10 ms
     assert np.all(there[before] == 0.0) and free[-1]
     # rounding, and the kink of the force at the touch: order one in a step of 2e-5 s
     np.testing.assert_allclose(m * here + TIP * there, m * speed, rtol=1e-9)
@@ -202,13 +202,13 @@ def test_all_linear_forms_see_the_hand_at_the_tip():
     np.testing.assert_allclose(bode(diagram, frequency=f, **zhat).values(), expected, rtol=1e-9)
     system, left_out = transfer_function(diagram, **zhat)
     np.testing.assert_allclose(system(2j * np.pi * f), expected, rtol=1e-9)
-    found = matrix_response(diagram, ("E", "L"), ("L",), f, given=("L",))
-    np.testing.assert_allclose(found.data.values[:, 0, 0], expected, rtol=1e-9)
-    np.testing.assert_allclose(found.data.values[:, 1, 0], 1.0)
+    response = matrix_response(diagram, ("E", "L"), ("L",), f, given=("L",))
+    np.testing.assert_allclose(response.data.values[:, 0, 0], expected, rtol=1e-9)
+    np.testing.assert_allclose(response.data.values[:, 1, 0], 1.0)
     velocity, _ = hand_port(diagram)
     s = 2j * np.pi * f
     np.testing.assert_allclose(velocity(s) * s, expected, rtol=1e-9)
-    assert left_out == found.left_out == ()
+    assert left_out == response.left_out == ()
 
 
 @pytest.mark.slow
@@ -216,8 +216,8 @@ def test_simulated_and_symbolic_impedance_of_a_compliant_device_agree():
     """Around its resonance (13 Hz at the tip held, 34 Hz free), within 0.1 %."""
     f = [2.0, 13.0, 30.0]
     diagram = haptic_interface(body(M, **COMPLIANT))
-    found = measured_impedance(diagram, amplitude=1e-3, frequency=f, computer="continuous")
-    z = found.data["impedance"].values.reshape(-1)
+    impedance = measured_impedance(diagram, amplitude=1e-3, frequency=f, computer="continuous")
+    z = impedance.data["impedance"].values.reshape(-1)
     np.testing.assert_allclose(z, impedance_at_the_tip(np.array(f)), rtol=1e-3)
 
 
@@ -225,10 +225,10 @@ def test_the_response_of_a_held_compliant_device_is_that_of_two_masses():
     f = np.array([0.5, 7.0, 40.0])
     diagram = haptic_interface(body(M, **COMPLIANT), hand=HAND)
     for row, name in enumerate(("L", "L_tip")):
-        found = bode(diagram, output=name, input="R_D", frequency=f)
+        response = bode(diagram, output=name, input="R_D", frequency=f)
         exact = two_masses()(2j * np.pi * f)[row, 0]
-        np.testing.assert_allclose(found.values(), exact, rtol=1e-9)
-        assert found.data["magnitude"].units == "m/N"
+        np.testing.assert_allclose(response.values(), exact, rtol=1e-9)
+        assert response.data["magnitude"].units == "m/N"
 
 
 def test_backlash_has_no_linear_form_and_is_named():
@@ -249,7 +249,7 @@ def test_a_transmission_that_is_absent_is_the_rigid_body():
     assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
 
 
-OWN = '''"""A cable of a user's own, twice as hard where it is pulled."""
+SOURCE = '''"""A cable of a user's own, twice as hard where it is pulled."""
 
 from sympy import Piecewise
 
@@ -282,8 +282,8 @@ def written(folder, text):
 
 def test_one_coupling_is_the_law_of_one_body_and_the_joint_of_two(tmp_path):
     """The rates of the hidden tip are those of two bodies, whatever the coupling."""
-    own = load_effect(written(tmp_path, OWN))
-    made = Body("prismatic", {"inertia": M}).with_effect(own, VALUES)
+    effect = load_effect(written(tmp_path, SOURCE))
+    made = Body("prismatic", {"inertia": M}).with_effect(effect, VALUES)
     run = simulate(
         haptic_interface(made),
         duration=0.05,
@@ -293,7 +293,7 @@ def test_one_coupling_is_the_law_of_one_body_and_the_joint_of_two(tmp_path):
     here = {
         SIGNALS["position"]: "L",
         SIGNALS["velocity"]: "L_velocity",
-        **dict(zip(own.state_symbols().values(), ("L_tip", "L_tip_velocity"), strict=True)),
+        **dict(zip(effect.state_symbols().values(), ("L_tip", "L_tip_velocity"), strict=True)),
     }
     acceleration = np.gradient(run["L_velocity"].values, run["time"].values)
     hidden = made.numbers() | {SIGNALS["interaction_force"]: 0.0}
@@ -303,14 +303,14 @@ def test_one_coupling_is_the_law_of_one_body_and_the_joint_of_two(tmp_path):
         at = hidden | {s: float(run[n][k]) for s, n in here.items()}
         at |= {SIGNALS["acceleration"]: float(acceleration[k])}
         joint = float(run["Z_M_transmission"][k])
-        tip = float(own.rates()["tip_velocity"].subs(at))
+        tip = float(effect.rates()["tip_velocity"].subs(at))
         assert TIP * tip == pytest.approx(joint, rel=1e-9, abs=1e-12)
-        taken = float(own.expression().subs(at))
-        assert taken + TIP * at[SIGNALS["acceleration"]] == pytest.approx(joint, abs=1e-9)
+        value = float(effect.expression().subs(at))
+        assert value + TIP * at[SIGNALS["acceleration"]] == pytest.approx(joint, abs=1e-9)
 
 
 def test_a_tip_without_correction_runs_free(tmp_path):
-    free = load_effect(written(tmp_path, OWN.replace("following=1.0", "following=0.0")))
+    free = load_effect(written(tmp_path, SOURCE.replace("following=1.0", "following=0.0")))
     assert free.corrections() == {} and free.led_momentum() == 0
     assert EFFECTS["backlash"].led_momentum() != 0
 
@@ -327,7 +327,7 @@ def test_a_tip_without_correction_runs_free(tmp_path):
     ],
 )
 def test_a_structure_that_says_too_little_is_refused_in_one_line(tmp_path, old, new, words):
-    text = OWN.replace(old, new).replace("import Parameter", "import Effect, Parameter")
+    text = SOURCE.replace(old, new).replace("import Parameter", "import Effect, Parameter")
     if "Effect(" in new:
         text = text.replace("    following=1.0,\n", "")
     with pytest.raises(ModelError, match=words) as refusal:

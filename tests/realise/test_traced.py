@@ -27,7 +27,7 @@ def one(request):
     return signal(KINDS[request.param])
 
 
-def said_of(traced):
+def moves_as_declared(traced):
     """The tangents that are not zero lie in the rows that are said to move."""
     moving = range(P) if traced.moving is None else traced.moving
     still = [j for j in range(P) if j not in moving]
@@ -39,7 +39,7 @@ def test_a_signal_times_a_factor_has_tangents_times_that_factor(one):
     product = one.times(factor)
     assert np.array_equal(product.value, one.value * factor)
     assert np.array_equal(product.tangent, one.tangent * factor)
-    assert said_of(product)
+    assert moves_as_declared(product)
 
 
 @pytest.mark.parametrize("other", [None, (0,), ()])
@@ -48,7 +48,7 @@ def test_sums_and_differences_are_those_of_values_and_tangents(one, other):
     for made, sign in ((one + more, 1.0), (one - more, -1.0), (one.subtract([more, more]), -2.0)):
         assert made.value == pytest.approx(one.value + sign * more.value)
         assert made.tangent == pytest.approx(one.tangent + sign * more.tangent)
-        assert said_of(made)
+        assert moves_as_declared(made)
 
 
 def test_a_filter_acts_on_the_value_and_on_each_tangent(one):
@@ -56,7 +56,7 @@ def test_a_filter_acts_on_the_value_and_on_each_tangent(one):
     made = filter_traced(lambda rows: rows @ weights, one)
     assert made.value == pytest.approx(one.value @ weights)
     assert made.tangent == pytest.approx(one.tangent @ weights)
-    assert said_of(made) and made.is_constant == one.is_constant
+    assert moves_as_declared(made) and made.is_constant == one.is_constant
 
 
 def test_rows_and_spans_are_those_of_the_samples(one):

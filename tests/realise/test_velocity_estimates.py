@@ -30,7 +30,7 @@ WAYS = {
 
 def force(values, motion, duration, **sampling):
     diagram = haptic_interface(body(0.1), cancellation=controller("smoothed_coulomb", values))
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=duration,
         motion={"L": motion},
@@ -38,7 +38,7 @@ def force(values, motion, duration, **sampling):
         step=PERIOD,
         jit=False,
     )
-    return found["time"].values, found["R_MBC"].values
+    return simulation["time"].values, simulation["R_MBC"].values
 
 
 @pytest.mark.parametrize(
@@ -77,14 +77,14 @@ def test_the_poles_of_the_observer_are_at_its_bandwidth(order):
 def measured(way):
     """Noise (N) of the cancellation at a slow constant speed, and its delay (s) at 4 Hz."""
     slow = Trajectory(lambda t: 3.3e-3 * t, lambda t: 0 * t + 3.3e-3, np.zeros_like)
-    _, found = force(CANCELLATION, slow, 2.0, encoder_step=ENCODER, **WAYS[way])
-    noise = np.std(found[500:])
+    _, forces = force(CANCELLATION, slow, 2.0, encoder_step=ENCODER, **WAYS[way])
+    noise = np.std(forces[500:])
     moved = sine(amplitude=0.002, frequency=4.0)
-    time, found = force(CANCELLATION, moved, 1.0, **WAYS[way])
+    time, forces = force(CANCELLATION, moved, 1.0, **WAYS[way])
     v = moved.velocity(time)
     wave = np.exp(-2j * np.pi * 4 * time[500:-1])
     true = LEVEL * v / (SMOOTHING + abs(v))
-    ratio = np.sum(found[500:-1] * wave) / np.sum(true[500:-1] * wave)
+    ratio = np.sum(forces[500:-1] * wave) / np.sum(true[500:-1] * wave)
     return noise, -np.angle(ratio) / (2 * np.pi * 4)
 
 

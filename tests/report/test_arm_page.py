@@ -49,15 +49,15 @@ def two_joints(diagnosis):
     )
 
 
-def test_each_joint_has_its_own_errors_and_page(two_joints, diagnosis):
+def test_each_joint_has_separate_errors_and_a_page(two_joints, diagnosis):
     page = arm.arm_page_of(two_joints)
     first, second = page.joints
     assert (first.name, first.before, first.after) == ("j1", 0.07, 0.01)
     assert (second.name, second.before, second.after) == ("j2", 0.09, 0.03)
     assert second.floor == 2.0 * first.floor == 2.0 * diagnosis.floor.value
     assert second.left == pytest.approx(0.5 * first.left) and first.left == diagnosis.left
-    own = page_of(diagnosis)
-    assert first.page.parameters == own.parameters and first.page.ladder == own.ladder
+    arm_page = page_of(diagnosis)
+    assert first.page.parameters == arm_page.parameters and first.page.ladder == arm_page.ladder
     assert first.sentence == "effects_missing: stribeck at device."
     assert (page.before, page.after, page.left) == (0.08, 0.02, first.left)
     # root of the mean square of one floor and of twice it
@@ -89,9 +89,9 @@ def test_base_parameters_come_with_their_errors_and_units(two_joints):
 
 
 def test_the_verdict_on_an_arm_names_what_is_missing_or_that_nothing_is(two_joints):
-    said = arm._verdict(two_joints)
-    assert said.startswith("Your model of the arm lacks stribeck at device. With all")
-    assert "falls from 8.00\u202f% to 2.00\u202f%" in said
+    sentence = arm._verdict(two_joints)
+    assert sentence.startswith("Your model of the arm lacks stribeck at device. With all")
+    assert "falls from 8.00\u202f% to 2.00\u202f%" in sentence
     adequate = arm._verdict(two_joints.but(verdict="model_adequate"))
     assert "is adequate: it leaves 2.00\u202f%" in adequate
     undecided = arm._verdict(two_joints.but(verdict="undecided"))

@@ -89,28 +89,28 @@ def with_value(diagnosis, name, value, **fit):
 
 
 def test_a_fixed_parameter_has_no_interval(diagnosis):
-    found = with_value(diagnosis, "device.inertia", Value(0.2, fixed=True))
-    row = next(r for r in parameter_rows(found) if r.name == "device.inertia")
+    changed_diagnosis = with_value(diagnosis, "device.inertia", Value(0.2, fixed=True))
+    row = next(r for r in parameter_rows(changed_diagnosis) if r.name == "device.inertia")
     assert row.fixed and row.stderr is None and row.low is None and row.high is None
 
 
 def test_an_interval_ends_at_a_physical_bound(diagnosis):
-    found = with_value(diagnosis, "device.viscous.damping", Value(0.1, stderr=1.0))
-    row = next(r for r in parameter_rows(found) if r.name == "device.viscous.damping")
+    changed_diagnosis = with_value(diagnosis, "device.viscous.damping", Value(0.1, stderr=1.0))
+    row = next(r for r in parameter_rows(changed_diagnosis) if r.name == "device.viscous.damping")
     assert row.low == 0.0 and row.high == pytest.approx(2.06)
 
 
-def test_a_parameter_at_its_bound_or_left_open_is_said_to_be(diagnosis):
+def test_a_parameter_at_its_bound_or_left_open_is_reported_as_such(diagnosis):
     name = "device.viscous.damping"
     bound = with_value(diagnosis, name, Value(0.0, stderr=1.0), at_bound=(name,))
     assert "a parameter at its bound" in topics(bound)
     assert next(r for r in parameter_rows(bound) if r.name == name).at_bound
     unsure = cannot_tell(with_value(diagnosis, name, Value(0.1, stderr=1.0)))
-    found = next(f for f in unsure if f.topic == "a parameter left open")
-    assert "device.viscous.damping is not determined: 0.1 ± 1.0 N·s/m" in found.sentence
+    finding = next(f for f in unsure if f.topic == "a parameter left open")
+    assert "device.viscous.damping is not determined: 0.1 ± 1.0 N·s/m" in finding.sentence
 
 
-def test_values_that_are_not_told_and_effects_set_aside_stand_on_the_page(diagnosis):
+def test_values_that_are_not_determined_and_effects_set_aside_stand_on_the_page(diagnosis):
     added = diagnosis.rungs[1].added
     other = diagnosis.rungs[1].ranking.ranked[-1].candidate
     both = replace(
@@ -118,12 +118,12 @@ def test_values_that_are_not_told_and_effects_set_aside_stand_on_the_page(diagno
         undetermined=(Undetermined(added, "the level at rest is not told"),),
         set_aside=(SetAside(other, 0.034, "it is not told from absence"),),
     )
-    found = {f.topic: f for f in cannot_tell(both)}
+    findings = {f.topic: f for f in cannot_tell(both)}
     assert (
-        found["values that are not determined"].sentence
+        findings["values that are not determined"].sentence
         == f"{added}: the level at rest is not told."
     )
-    aside = found["effects set aside"]
+    aside = findings["effects set aside"]
     assert aside.sentence == (
         f"{other} lowered the error to 3.40\u202f% and was taken out again: it is not told from "
         "absence."
@@ -140,8 +140,8 @@ def test_estimates_that_move_together_are_named_as_a_pair(diagnosis):
     )
     columns[:, 1] = columns[:, 0] + 0.1 * rest
     last = replace(diagnosis.rungs[-1], fit=replace(fit, jacobian=columns))
-    found = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], last)))
-    (pair,) = [f for f in found if f.topic == "parameters known only together"]
+    findings = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], last)))
+    (pair,) = [f for f in findings if f.topic == "parameters known only together"]
     assert fit.free[0] in pair.sentence and fit.free[1] in pair.sentence
     assert abs(pair.numbers["correlation"]) > 0.95
 
@@ -151,16 +151,16 @@ def test_look_alikes_come_with_the_reason(diagnosis):
     same = replace(rung.ranking.ranked[1], fit=rung.ranking.ranked[0].fit)
     ranking = replace(rung.ranking, ranked=(rung.ranking.ranked[0], same))
     alike = replace(rung, ranking=ranking, alternatives=(same.candidate,))
-    found = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], alike)))[0]
-    assert found.concern == "warning" and str(same.candidate) in found.sentence
-    assert found.numbers["correlation"] == pytest.approx(1.0)
-    assert found.numbers["standard_deviations_apart"] == 0.0
+    finding = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], alike)))[0]
+    assert finding.concern == "warning" and str(same.candidate) in finding.sentence
+    assert finding.numbers["correlation"] == pytest.approx(1.0)
+    assert finding.numbers["standard_deviations_apart"] == 0.0
 
 
-def test_what_was_not_tried_says_what_it_needs(diagnosis):
+def test_an_effect_that_was_no_candidate_says_what_it_needs(diagnosis):
     only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=diagnosis.rungs[1].ranking)
-    found = next(f for f in cannot_tell(only) if f.topic == "effects that were no candidates")
-    assert "friction_memory at device (needs stribeck beside it)" in found.sentence
+    finding = next(f for f in cannot_tell(only) if f.topic == "effects that were no candidates")
+    assert "friction_memory at device (needs stribeck beside it)" in finding.sentence
 
 
 def test_without_a_check_record_the_page_says_so(diagnosis):
@@ -180,8 +180,8 @@ def test_candidates_stand_in_the_order_of_what_became_of_them(diagnosis):
     rows = candidate_rows(diagnosis)
     assert rows[0].effect == "stribeck" and rows[0].steps[0].outcome == "added"
     assert rows[0].steps[1] is None, "it was there already"
-    tried = {r.candidate.effect.name for r in diagnosis.last.ranked} | {"stribeck"}
-    assert {r.effect for r in rows} == tried
+    names = {r.candidate.effect.name for r in diagnosis.last.ranked} | {"stribeck"}
+    assert {r.effect for r in rows} == names
     assert next(r for r in rows if r.effect == "friction_memory").steps[0] is None
 
 
@@ -216,7 +216,7 @@ def test_a_record_that_is_a_part_of_a_log_or_a_bag_comes_with_its_digest(tmp_pat
     assert [row.digest for row in record_rows(whole)] == [digest] * len(files)
 
 
-def test_what_the_file_states_is_shown_also_where_few_effects_were_tried(diagnosis):
+def test_what_the_file_states_is_shown_also_with_few_candidates(diagnosis):
     few = {"stribeck": diagnosis.model.known["stribeck"]}
     rungs = tuple(
         replace(rung, fit=replace(rung.fit, model=replace(rung.fit.model, known=few)))

@@ -172,8 +172,8 @@ def test_a_colour_scale_reaches_from_minus_to_plus_the_limit(drawn, noise):
     assert ramp.shape[0] == 1 and np.all(np.diff(ramp[0]) > 0)
     assert ramp[0, 0] == -ramp[0, -1]
     assert list(axes.get_xticks()) == pytest.approx([-400, -200, 0, 200, 400])
-    told = "; rms of sensor noise 20" if noise else ""
-    assert axes.get_xlabel() == f"mean residual force (mN{told})"
+    note = "; rms of sensor noise 20" if noise else ""
+    assert axes.get_xlabel() == f"mean residual force (mN{note})"
     assert "-400 mN" in alt and "+400" in alt
 
 

@@ -79,11 +79,11 @@ def test_a_graph_without_series_or_with_gaps_is_drawn():
 @given(st.integers(1, 2000), st.integers(2, 300))
 def test_a_thinned_series_keeps_its_extremes_and_its_order(n, most):
     y = np.sin(np.arange(n) ** 1.3)
-    found = thin_series(Series("a", np.arange(float(n)), y, low=y - 1, high=y + 1), most)
-    assert len(found.x) <= max(most, 2)
-    assert found.y.min() == y.min() and found.y.max() == y.max()
-    assert np.all(np.diff(found.x) > 0)
-    assert np.array_equal(found.low, found.y - 1)
+    series = thin_series(Series("a", np.arange(float(n)), y, low=y - 1, high=y + 1), most)
+    assert len(series.x) <= max(most, 2)
+    assert series.y.min() == y.min() and series.y.max() == y.max()
+    assert np.all(np.diff(series.x) > 0)
+    assert np.array_equal(series.low, series.y - 1)
 
 
 def test_gaps_do_not_hide_an_extreme():
@@ -143,7 +143,7 @@ def test_a_quantity_is_shown_in_the_prefix_that_reads_well(unit, size, shown):
 
 def test_a_cloud_that_is_thinned_keeps_its_middle():
     y = np.random.default_rng(4).standard_normal(20_000)
-    found = thin_series(Series("a", np.arange(20_000.0), y, "rest"), 400)
-    assert len(found.y) == 400
+    series = thin_series(Series("a", np.arange(20_000.0), y, "rest"), 400)
+    assert len(series.y) == 400
     # a standard normal has 0.26 of its points within a third of its spread; of 400, +- 0.022
-    assert np.mean(np.abs(found.y) < 1 / 3) == pytest.approx(0.26, abs=0.09)
+    assert np.mean(np.abs(series.y) < 1 / 3) == pytest.approx(0.26, abs=0.09)

@@ -19,7 +19,7 @@ def path(diagnosis, tmp_path_factory):
     return file
 
 
-def test_the_policy_of_the_page_allows_its_own_script_alone(path):
+def test_the_policy_of_the_page_allows_the_script_of_the_page_alone(path):
     text = path.read_text(encoding="utf-8")
     script = re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()

@@ -252,5 +252,5 @@ def test_embedded_json_reads_back_and_cannot_end_its_element(value):
 
 
 def test_numbers_that_are_not_finite_are_null():
-    found = make_plain({"a": math.nan, "b": np.array([1.0, np.inf]), "c": np.float64(2.0)})
-    assert found == {"a": None, "b": [1.0, None], "c": 2.0}
+    plain = make_plain({"a": math.nan, "b": np.array([1.0, np.inf]), "c": np.float64(2.0)})
+    assert plain == {"a": None, "b": [1.0, None], "c": 2.0}

@@ -64,7 +64,7 @@ def outcome(diagnosis, rung=None, **changes):
     return candidate_table._outcome(rung, ranking, replace(best, **changes))
 
 
-def test_what_became_of_a_candidate_is_said_where_its_error_does_not_show_it(diagnosis):
+def test_what_became_of_a_candidate_is_reported_where_its_error_does_not_show_it(diagnosis):
     rung = diagnosis.rungs[1]
     ranked, other = rung.ranking.best, rung.ranking.ranked[1].candidate
     candidate, bounds = ranked.candidate, rung.ranking.base.at_bound
@@ -86,7 +86,7 @@ RECORDED = {"check_error": 0.04, "probability": 0.25, "at": "device"}
 
 
 @pytest.mark.parametrize(
-    ("effect", "refused", "said"),
+    ("effect", "refused", "message"),
     [
         ("stribeck", "", "added"),
         ("spring", "weak", "weak"),
@@ -96,7 +96,7 @@ RECORDED = {"check_error": 0.04, "probability": 0.25, "at": "device"}
     ],
 )
 def test_of_a_saved_answer_each_candidate_has_one_step_and_what_became_of_it(
-    diagnosis, effect, refused, said
+    diagnosis, effect, refused, message
 ):
     row = {**RECORDED, "effect": effect, "refused": refused}
     other = next(
@@ -104,10 +104,10 @@ def test_of_a_saved_answer_each_candidate_has_one_step_and_what_became_of_it(
     )
     rungs = (diagnosis.rungs[0], replace(diagnosis.rungs[1], alternatives=(other,)))
     saved = replace(diagnosis, rungs=rungs, recorded={"candidates": [row]})
-    (found,) = candidate_rows(saved)
-    (step,) = found.steps
-    assert (found.effect, found.at, found.probability) == (effect, "device", 0.25)
-    assert (step.check_error, step.outcome) == (0.04, said) and math.isnan(step.score)
+    (entry,) = candidate_rows(saved)
+    (step,) = entry.steps
+    assert (entry.effect, entry.at, entry.probability) == (effect, "device", 0.25)
+    assert (step.check_error, step.outcome) == (0.04, message) and math.isnan(step.score)
     (heading,) = candidate_steps(saved)
     assert heading.check_error == diagnosis.before.check_error
     row["check_error"] = None
@@ -130,8 +130,8 @@ def test_of_a_saved_answer_each_candidate_has_one_step_and_what_became_of_it(
 def test_an_interval_has_975_of_a_normal_law_on_each_side_within_the_bounds(
     value, stderr, lower, upper, ends
 ):
-    found = parameter_table._interval(Value(value, stderr=stderr), lower, upper)
-    assert found == ((None, None) if ends[0] is None else pytest.approx(ends, rel=1e-3))
+    interval = parameter_table._interval(Value(value, stderr=stderr), lower, upper)
+    assert interval == ((None, None) if ends[0] is None else pytest.approx(ends, rel=1e-3))
     fixed = Value(value, fixed=True, stderr=stderr)
     assert parameter_table._interval(fixed, lower, upper) == (None, None)
 
@@ -171,11 +171,11 @@ def test_estimates_are_known_only_together_from_a_correlation_of_095(diagnosis, 
     )
     # a parameter that no row sees is no part of it
     fit = fit_with(diagnosis, [one, np.zeros(3), size * other], ("a", "unseen", "b"))
-    found = cannot_tell._find_correlated(fit)
+    findings = cannot_tell._find_correlated(fit)
     if abs(correlation) < 0.95:
-        assert not found
+        assert not findings
     else:
-        (pair,) = found
+        (pair,) = findings
         assert pair.numbers["correlation"] == pytest.approx(correlation, rel=1e-6)
         assert pair.sentence.startswith("a and b are known only together")
 
@@ -189,9 +189,9 @@ def test_the_closest_pairs_are_listed_first_and_six_at_most(diagnosis):
     apart = [rng.normal(size=40) for _ in range(3)]
     near = [a + rng.normal(size=40) * 0.02 for a in apart for _ in range(3)]
     fit = fit_with(diagnosis, [*wide, *near], tuple("abcdefghijk"))
-    found = [f.numbers["correlation"] for f in cannot_tell._find_correlated(fit)]
-    assert len(found) <= cannot_tell.PAIRS
-    assert [abs(r) for r in found] == sorted((abs(r) for r in found), reverse=True)
+    correlations = [f.numbers["correlation"] for f in cannot_tell._find_correlated(fit)]
+    assert len(correlations) <= cannot_tell.PAIRS
+    assert [abs(r) for r in correlations] == sorted((abs(r) for r in correlations), reverse=True)
     assert "a and b" in cannot_tell._find_correlated(fit)[0].sentence
 
 
@@ -203,8 +203,8 @@ def test_how_alike_two_candidates_are_is_the_cosine_of_what_they_take_away(
     base = diagnosis.before
     gain = base.check_residual - first.fit.check_residual
     changed = replace(second.fit, check_residual=base.check_residual - turn * gain)
-    found = cannot_tell._likeness(base, first, replace(second, fit=changed))
-    assert found == pytest.approx(expected, nan_ok=True)
+    likeness = cannot_tell._likeness(base, first, replace(second, fit=changed))
+    assert likeness == pytest.approx(expected, nan_ok=True)
 
 
 @pytest.mark.parametrize(
@@ -217,18 +217,18 @@ def test_a_parameter_is_left_open_from_an_error_as_large_as_its_value(
     name = "device.viscous.damping"
     model = diagnosis.model.with_values({name: Value(value, stderr=stderr)})
     last = replace(diagnosis.rungs[-1], fit=replace(diagnosis.after, model=model, free=(name,)))
-    found = cannot_tell._open_parameters(replace(diagnosis, rungs=(*diagnosis.rungs[:-1], last)))
-    assert [f.numbers["value"] for f in found] == ([value] if is_open else [])
+    findings = cannot_tell._open_parameters(replace(diagnosis, rungs=(*diagnosis.rungs[:-1], last)))
+    assert [f.numbers["value"] for f in findings] == ([value] if is_open else [])
     if is_open:
-        distinguished = "cannot be distinguished" in found[0].sentence
-        assert distinguished == math.isinf(stderr) and found[0].numbers["stderr"] == stderr
+        distinguished = "cannot be distinguished" in findings[0].sentence
+        assert distinguished == math.isinf(stderr) and findings[0].numbers["stderr"] == stderr
 
 
 @pytest.mark.parametrize(
-    ("at_bound", "like", "said"), [(False, False, 0), (True, False, 1), (False, True, 1)]
+    ("at_bound", "like", "sentence"), [(False, False, 0), (True, False, 1), (False, True, 1)]
 )
-def test_a_shift_of_the_log_is_said_where_it_is_at_its_bound_or_like_a_delay(
-    diagnosis, monkeypatch, at_bound, like, said
+def test_a_shift_of_the_log_is_reported_where_it_is_at_its_bound_or_like_a_delay(
+    diagnosis, monkeypatch, at_bound, like, sentence
 ):
     class Shift(SimpleNamespace):
         def __str__(self):
@@ -236,9 +236,9 @@ def test_a_shift_of_the_log_is_said_where_it_is_at_its_bound_or_like_a_delay(
 
     shift = Shift(at_bound=at_bound, is_like_a_delay=like, late=2e-3, stderr=1e-4, row=1e-3)
     monkeypatch.setattr(cannot_tell, "shifts_of", lambda model, stretches: [shift])
-    found = cannot_tell._clock(diagnosis)
-    assert len(found) == said
-    for one in found:
+    finding = cannot_tell._clock(diagnosis)
+    assert len(finding) == sentence
+    for one in finding:
         assert one.sentence == "the log is late."
         assert one.numbers == {"late": 2e-3, "stderr": 1e-4, "row": 1e-3}
 
@@ -251,37 +251,37 @@ def test_effects_that_may_be_there_unseen_are_those_not_determined(diagnosis):
     )
     ranking = replace(diagnosis.last, ranked=left)
     absent = first.candidate.key in first.fit.model.absent
-    found = cannot_tell._open_candidates(replace(diagnosis, last=ranking))
-    assert len(found) == (0 if absent else 1)
-    assert all(str(first.candidate) in f.sentence for f in found)
-    assert all(str(second.candidate) not in f.sentence for f in found)
-    all_seen = replace(diagnosis.last, ranked=left[1:])
-    assert cannot_tell._open_candidates(replace(diagnosis, last=all_seen)) == []
+    findings = cannot_tell._open_candidates(replace(diagnosis, last=ranking))
+    assert len(findings) == (0 if absent else 1)
+    assert all(str(first.candidate) in f.sentence for f in findings)
+    assert all(str(second.candidate) not in f.sentence for f in findings)
+    ranking_of_all = replace(diagnosis.last, ranked=left[1:])
+    assert cannot_tell._open_candidates(replace(diagnosis, last=ranking_of_all)) == []
 
 
-def test_what_was_tried_on_the_last_step_or_is_there_is_not_called_untried(diagnosis):
-    (found,) = cannot_tell._excluded_effects(
+def test_a_candidate_of_the_last_step_or_an_effect_of_the_model_is_not_called_excluded(diagnosis):
+    (finding,) = cannot_tell._excluded_effects(
         replace(diagnosis, last=replace(diagnosis.last, ranked=diagnosis.last.ranked[:1]))
     )
-    tried = diagnosis.last.ranked[0].candidate.effect.name
+    effect = diagnosis.last.ranked[0].candidate.effect.name
     there = {"coulomb", "viscous", "stribeck"}
     for name in diagnosis.model.known:
-        assert (f"{name} at device" in found.sentence) == (name != tried and name not in there)
+        assert (f"{name} at device" in finding.sentence) == (name != effect and name not in there)
     saved = {"candidates": [{"effect": n, "at": "device"} for n in diagnosis.model.known]}
     assert cannot_tell._excluded_effects(replace(diagnosis, recorded=saved)) == []
 
 
 def test_what_a_search_left_out_is_one_sentence(diagnosis):
-    found = cannot_tell._findings_on_exclusions(
+    findings = cannot_tell._findings_on_exclusions(
         replace(diagnosis, left_out=("few effects", "one rung"))
     )
-    assert [f.sentence for f in found] == ["Few effects; one rung."]
+    assert [f.sentence for f in findings] == ["Few effects; one rung."]
 
 
 # records and channels
 
 
-def test_a_record_is_told_by_its_samples_duration_and_rate(diagnosis):
+def test_a_record_is_described_by_its_samples_duration_and_rate(diagnosis):
     experiment = diagnosis.experiment
     for row, record in zip(provenance.record_rows(experiment), experiment.records, strict=True):
         time = record.time
@@ -291,7 +291,7 @@ def test_a_record_is_told_by_its_samples_duration_and_rate(diagnosis):
         assert row.segments == len(record.segments)
 
 
-def test_a_channel_is_told_in_units_of_its_quantity_along_its_axis(diagnosis):
+def test_a_channel_is_described_in_units_of_its_quantity_along_its_axis(diagnosis):
     rows = {r.name: r for r in provenance.channel_rows(diagnosis.experiment)}
     assert set(rows) == set(diagnosis.experiment.channels)
     revolute = diagnosis.experiment.axis("device") == "revolute"
@@ -308,13 +308,13 @@ def test_a_channel_is_told_in_units_of_its_quantity_along_its_axis(diagnosis):
 
 @given(whole=st.floats(-10, 100), part=st.floats(-100, 200))
 def test_a_share_is_a_percentage_of_the_whole_within_0_and_100(whole, part):
-    found = float(write._share(whole, part))
+    share = float(write._share(whole, part))
     expected = min(max(100 * part / whole, 0), 100) if whole > 1e-9 else None
-    assert 0 <= found <= 100
+    assert 0 <= share <= 100
     if expected is not None:
-        assert found == pytest.approx(expected, abs=0.0501)
+        assert share == pytest.approx(expected, abs=0.0501)
     if whole <= 0:
-        assert found == 0
+        assert share == 0
 
 
 def test_names_stand_out_as_whole_words_and_break_at_their_parts():
@@ -325,17 +325,17 @@ def test_names_stand_out_as_whole_words_and_break_at_their_parts():
     assert write._soft("a_b.c/<d>e") == "a_<wbr>b.<wbr>c/<wbr>&lt;d&gt;e"
 
 
-def test_every_finding_with_a_graph_has_its_figure_and_each_body_its_own(page, figures):
+def test_every_finding_with_a_graph_and_each_body_have_a_figure(page, figures):
     from teleopdesign.finding import Finding, Graph, Series
 
     x = np.arange(4.0)
     graph = Graph("x", "y", (Series("a", x, x),))
     rows = (Finding("topic", "note", "none"), Finding("topic", "note", "drawn", graph=graph))
     full = replace(page, views=(), cannot_tell=rows[:1], soundness=rows, unexplained=rows[1:])
-    found = write.figures_of(replace(full, next_steps=(*rows, rows[1])))
+    drawings = write.figures_of(replace(full, next_steps=(*rows, rows[1])))
     keys = {("soundness", 1), ("unexplained", 0), ("next", 1), ("next", 2)}
-    assert set(found.findings) == keys and found.scales == found.steps == ()
-    assert all('alt="topic: drawn"' in drawn for drawn in found.findings.values())
+    assert set(drawings.findings) == keys and drawings.scales == drawings.steps == ()
+    assert all('alt="topic: drawn"' in drawn for drawn in drawings.findings.values())
     assert len(figures.scales) == len(figures.excerpts) == len(figures.over_velocity) == 1
     assert [len(s) for s in figures.steps] == [len(v.steps) for v in page.views]
     assert "mean residual over velocity, before and after." in figures.over_velocity[0]

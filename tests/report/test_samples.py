@@ -160,9 +160,9 @@ def test_an_excerpt_shows_a_share_of_the_force_but_no_quiet_moment():
 @given(values=st.lists(st.floats(-5, 5), min_size=1, max_size=30), part=st.floats(0, 1))
 def test_a_moving_mean_is_the_mean_of_each_window(values, part):
     length = 1 + int(part * (len(values) - 1))
-    found = graphs._moving_mean(np.array(values), length)
+    means = graphs._moving_mean(np.array(values), length)
     windows = [values[k : k + length] for k in range(len(values) - length + 1)]
-    assert found == pytest.approx([np.mean(w) for w in windows], abs=1e-12)
+    assert means == pytest.approx([np.mean(w) for w in windows], abs=1e-12)
 
 
 # maps and traces
@@ -195,10 +195,10 @@ def test_a_cell_shows_the_mean_of_its_samples_where_there_are_enough():
     velocity = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 1.5, 1.5, 1.5, 1.5])
     r = np.array([1.0, 2.0, 6.0, 7.0, 8.0, -1.0, -2.0, -3.0, -4.0])
     rows = samples(9, residual=[r], position=position, velocity=velocity)
-    found = residuals._mean(rows, r, np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]))
-    assert found[0, 0] == pytest.approx(3.0) and found[1, 0] == pytest.approx(-2.5)
-    assert np.isnan(found[0, 1]), "two samples are too few"
-    assert np.isnan(found[1, 1])
+    means = residuals._mean(rows, r, np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]))
+    assert means[0, 0] == pytest.approx(3.0) and means[1, 0] == pytest.approx(-2.5)
+    assert np.isnan(means[0, 1]), "two samples are too few"
+    assert np.isnan(means[1, 1])
 
 
 def test_a_rung_is_shown_where_it_changed_the_body_by_more_than_rounding():
@@ -278,7 +278,7 @@ def test_a_graph_of_a_page_has_few_points_and_a_finding_without_one_stays():
     plain = Finding("topic", "note", "said")
     drawn = Finding("topic", "note", "said", graph=Graph("x", "y", (Series("a", x, x),)))
     short = Finding("topic", "note", "said", graph=Graph("x", "y", (Series("a", x[:9], x[:9]),)))
-    found = limit_size([plain, drawn, short])
-    assert found[0] == plain
-    assert 0.5 * POINTS < len(found[1].graph.series[0].x) <= POINTS
-    assert found[2] == short
+    graphs_of_limit = limit_size([plain, drawn, short])
+    assert graphs_of_limit[0] == plain
+    assert 0.5 * POINTS < len(graphs_of_limit[1].graph.series[0].x) <= POINTS
+    assert graphs_of_limit[2] == short

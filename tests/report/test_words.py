@@ -90,7 +90,7 @@ def test_look_alikes_are_named_together(diagnosis):
     assert text.startswith(f"Undecided between stribeck at device or {other}: these records do not")
 
 
-def test_an_adequate_model_and_an_unexplained_rest_are_said_as_such(diagnosis):
+def test_an_adequate_model_and_an_unexplained_rest_are_reported_as_such(diagnosis):
     only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=Ranking(diagnosis.before, ()))
     assert "Your model is adequate" in verdict(replace(only, verdict="model_adequate"))
     undecided = verdict(replace(only, verdict="undecided"))
@@ -99,7 +99,7 @@ def test_an_adequate_model_and_an_unexplained_rest_are_said_as_such(diagnosis):
     assert f"{only.left:.1f} times what sensor noise" in undecided
 
 
-def test_effects_that_help_too_little_are_said_to(diagnosis):
+def test_effects_that_help_too_little_are_reported_as_such(diagnosis):
     first, second = diagnosis.rungs
     little = replace(second.fit, check_error=0.9 * first.fit.check_error)
     rungs = (first, replace(second, fit=little))
@@ -107,7 +107,7 @@ def test_effects_that_help_too_little_are_said_to(diagnosis):
     assert "stribeck at device helps, but explains less than half" in text
 
 
-def test_effects_that_explain_most_but_are_unlikely_are_said_to(diagnosis):
+def test_effects_that_explain_most_but_are_unlikely_are_reported_as_such(diagnosis):
     text = verdict(replace(diagnosis, verdict="undecided", named=()))
     assert text.startswith("Undecided: with stribeck at device the force error")
     assert "less likely than not" in text
@@ -121,7 +121,7 @@ def two_added(diagnosis):
     return replace(diagnosis, rungs=rungs, named=(second.added,)), other
 
 
-def test_an_effect_that_helps_and_is_not_named_is_said_to_beside_those_that_are(diagnosis):
+def test_an_effect_that_helps_and_is_not_named_is_reported_beside_those_that_are(diagnosis):
     both, other = two_added(diagnosis)
     text = verdict(both)
     assert text.startswith(
@@ -158,11 +158,11 @@ def test_what_is_left_is_near_noise_or_more_is_missing_or_may_hide_in_a_floor_th
     assert "more is missing" in verdict(with_floor(diagnosis, floors=4.0, drawn=1.1, held=True))
 
 
-def test_what_is_left_at_one_moment_is_said_with_the_rest_of_the_record(diagnosis):
+def test_what_is_left_at_one_moment_is_reported_with_the_rest_of_the_record(diagnosis):
     moment = Moment("fit.csv", "device", 1.0, 1.5, 1.25)
     one = replace(with_floor(diagnosis, floors=4.0), moment=moment)
-    said = f"1.2 times without one moment ({moment})"
-    assert said.replace("1.2 ", f"{number(1.25, 2)} ") in verdict(one)
+    sentence = f"1.2 times without one moment ({moment})"
+    assert sentence.replace("1.2 ", f"{number(1.25, 2)} ") in verdict(one)
     only = replace(one, rungs=one.rungs[:1], verdict="model_adequate")
     assert "Your model is adequate" in verdict(only) and f"({moment})" in verdict(only)
     plain = replace(only, moment=None)

@@ -38,9 +38,9 @@ def test_a_name_in_a_diagrams_file_is_refused_in_one_line(guard, tmp_path, capsy
     file.write_text(diagram_file(**{place: text}), encoding="utf-8")
     with in_time():
         assert main(["derive", str(file)]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and said.startswith("teleopdesign: loop.toml: ")
-    assert one_line(said.strip())
+    output = capsys.readouterr().err
+    assert output.count("\n") == 1 and output.startswith("teleopdesign: loop.toml: ")
+    assert one_line(output.strip())
 
 
 @pytest.mark.parametrize("text", CODE, ids=range(len(CODE)))
@@ -110,7 +110,7 @@ def test_parts_given_in_python_check_their_names_and_take_no_text_for_an_express
         one_line(caught.value)
 
 
-def test_a_function_of_a_users_own_reaches_no_source(guard):
+def test_a_function_of_the_user_reaches_no_source(guard):
     """sympy would print its name into the source as it is."""
     hostile = sp.Function(CODE[0])(sp.Symbol("x", real=True))
     with pytest.raises(ModelError, match="no source") as caught:

@@ -75,8 +75,8 @@ def test_a_column_may_be_called_anything(guard, tmp_path, text):
         (folder / name).write_text(rows(columns), encoding="utf-8")
     with in_time():
         try:
-            found = load_experiment(folder)
-            assert found.channels["device.position"].column == text
+            experiment = load_experiment(folder)
+            assert experiment.channels["device.position"].column == text
         except ExperimentError as error:
             one_line(error)
 
@@ -165,8 +165,8 @@ def test_an_entry_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, k
     path.write_text(json.dumps(answer(**{key: text})))
     with in_time():
         assert main(["passivity", str(path), "--dahl", "0.4", "1e4"]) == 2
-        said = capsys.readouterr().err
-        assert said.count("\n") == 1 and one_line(said.strip())
+        output = capsys.readouterr().err
+        assert output.count("\n") == 1 and one_line(output.strip())
         with pytest.raises(ExperimentError) as caught:
             read_answer(path, load_experiment(write_rod(tmp_path / "rod")))
     one_line(caught.value)
@@ -188,8 +188,8 @@ def test_another_content_of_an_answer_is_refused_in_one_line(guard, tmp_path, ca
     path.write_text(content)
     with in_time():
         assert main(["passivity", str(path), "--dahl", "0.4", "1e4"]) == 2
-        said = capsys.readouterr().err
-        assert said.count("\n") == 1 and one_line(said.strip())
+        output = capsys.readouterr().err
+        assert output.count("\n") == 1 and one_line(output.strip())
         with pytest.raises(ExperimentError) as caught:
             read_answer(path, load_experiment(write_rod(tmp_path / "rod")))
     one_line(caught.value)

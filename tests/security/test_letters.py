@@ -52,14 +52,14 @@ def test_a_name_holds_plain_letters_alone(guard, tmp_path, capsys, name):
 @pytest.mark.parametrize("word", WORDS)
 def test_a_name_that_means_something_elsewhere_is_a_name(guard, tmp_path, capsys, word):
     """The same answer as with plain names."""
-    said = []
+    answers = []
     for name in (word, "plain"):
         path = tmp_path / f"{name}.toml"
         path.write_text(diagram_file(body=f"{name}", outside=f"{name}_f", law=f"{name}2"))
         assert main(["derive", str(path), "--json", str(tmp_path / "d.json")]) == 0
-        said.append((tmp_path / "d.json").read_text().replace(name, "NAME"))
+        answers.append((tmp_path / "d.json").read_text().replace(name, "NAME"))
     capsys.readouterr()
-    assert json.loads(said[0]).keys() == json.loads(said[1]).keys()
+    assert json.loads(answers[0]).keys() == json.loads(answers[1]).keys()
 
 
 def test_no_signal_is_called_as_the_number_that_expressions_have(guard, tmp_path, capsys):
@@ -88,11 +88,11 @@ def test_a_certificate_holds_plain_digits_and_signs_or_is_refused(guard, tmp_pat
     path.write_text(json.dumps({"claims": [{"statement": "x", "certificates": [impedance(text)]}]}))
     with in_time():
         code = main(["passivity", "--check", str(path)])
-    said = capsys.readouterr()
+    output = capsys.readouterr()
     if code == 0:  # white space between two signs changes nothing
-        assert text.isascii() and not any(c in text for c in "#;_") and "proved" in said.out
+        assert text.isascii() and not any(c in text for c in "#;_") and "proved" in output.out
     else:
-        assert one_line(said.err.strip())
+        assert one_line(output.err.strip())
 
 
 @pytest.mark.parametrize(
@@ -105,6 +105,6 @@ def test_no_text_of_a_file_acts_on_a_terminal(guard, tmp_path, capsys, text):
         path.write_text(json.dumps(content))
         with in_time():
             main(["passivity", "--check", str(path)])
-        said = "".join(capsys.readouterr())
-        assert all(line.isprintable() for line in said.split("\n"))
-        assert "\u202e" not in said
+        output = "".join(capsys.readouterr())
+        assert all(line.isprintable() for line in output.split("\n"))
+        assert "\u202e" not in output

@@ -55,8 +55,8 @@ def test_a_command_ends_in_one_line_where_its_file_is_none(
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with in_time():
         assert main(list(COMMANDS[name])) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and name in said
+    output = capsys.readouterr().err
+    assert output.count("\n") == 1 and name in output
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < before + 1e6  # kB
 
 
@@ -68,8 +68,8 @@ def test_an_experiment_of_such_files_is_one_line(guard, tmp_path, capsys, name, 
     make(rod / name)
     with in_time():
         assert main(["check", str(rod)]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and name in said
+    output = capsys.readouterr().err
+    assert output.count("\n") == 1 and name in output
 
 
 @pytest.mark.parametrize("make", ODD, ids=lambda f: f.__name__)
@@ -95,8 +95,8 @@ def test_no_line_of_a_file_that_an_experiment_points_to_is_shown(guard, tmp_path
     (rod / "experiment.toml").write_text(ROD.replace("fit.csv", text))
     with in_time():
         assert main(["check", str(rod)]) == 2
-    said = capsys.readouterr()
-    assert said.err.count("\n") == 1 and "root:" not in said.err + said.out
+    output = capsys.readouterr()
+    assert output.err.count("\n") == 1 and "root:" not in output.err + output.out
 
 
 def test_what_a_shell_hands_over_as_a_pipe_is_read_as_a_file(tmp_path):

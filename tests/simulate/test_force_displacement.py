@@ -74,7 +74,7 @@ def test_the_user_feels_the_coupling_and_the_environment_in_series(through_a_cou
     assert through_a_coupling.environment["spring"].stiffness == pytest.approx(SPRING, rel=1e-3)
 
 
-def test_a_spring_has_no_loop_of_its_own_and_the_user_feels_the_slave_damping(through_a_coupling):
+def test_a_spring_has_no_loop_and_the_user_feels_the_slave_damping(through_a_coupling):
     """The width at the middle of the stroke: 2 B v, seen through the coupling."""
     assert abs(through_a_coupling.environment["spring"].width) < 1e-6
     speed = 2 * np.pi * 0.01 * COUPLING / (COUPLING + SPRING)

@@ -38,16 +38,16 @@ def test_a_level_that_falls_below_zero_in_fast_sliding_alone_is_refused():
 
 @pytest.mark.slow  # a loop of lanes; simulate/test_many.py has cases that fail beside others
 def test_among_many_cases_only_those_are_refused():
-    found = simulate_many(
+    simulation = simulate_many(
         device(0.1),
         {"Z_M.coulomb_asymmetry.half_difference": [0.1, 0.6, 0.5]},
         duration=0.01,
         motion=MOTION,
     )
-    reasons = [str(r) for r in found["reason"].values]
+    reasons = [str(r) for r in simulation["reason"].values]
     assert reasons[0] == "" == reasons[2] and "friction of -0.1 N backward" in reasons[1]
 
 
 def test_a_level_of_zero_one_way_is_simulated():
-    found = simulate(device(0.5), duration=0.01, motion=MOTION, jit=False)
-    assert np.isfinite(found["R_V"].values).all()
+    simulation = simulate(device(0.5), duration=0.01, motion=MOTION, jit=False)
+    assert np.isfinite(simulation["R_V"].values).all()

@@ -37,11 +37,11 @@ FIGURES = {
 }
 
 
-def by_hand(found, after=0.0):
+def by_hand(simulation, after=0.0):
     """The figures from the rows of one simulation."""
-    kept = found.data["time"].values >= after - 1e-9
-    t = found.data["time"].values[kept]
-    x, p, f, v = (found[n].values[kept] for n in ("X_e", "F_P", "F_m", "X_m_velocity"))
+    kept = simulation.data["time"].values >= after - 1e-9
+    t = simulation.data["time"].values[kept]
+    x, p, f, v = (simulation[n].values[kept] for n in ("X_e", "F_P", "F_m", "X_m_velocity"))
     return {
         "last": x[-1],
         "least": x.min(),
@@ -53,14 +53,16 @@ def by_hand(found, after=0.0):
     }
 
 
-def assert_same(data, case, found, after=0.0):
+def assert_same(data, case, simulation, after=0.0):
     for name in NAMES:
-        one, many = found[name].values, data[name].values[case]
+        one, many = simulation[name].values, data[name].values[case]
         assert np.abs(one - many).max() <= ROUNDING * np.abs(one).max(), name
-    for name, value in by_hand(found, after).items():
-        size = max(abs(value), 1e-3 * float(np.abs(found["F_P"]).max()) * (name != "drawn"), 1e-9)
+    for name, value in by_hand(simulation, after).items():
+        size = max(
+            abs(value), 1e-3 * float(np.abs(simulation["F_P"]).max()) * (name != "drawn"), 1e-9
+        )
         assert abs(float(data[name][case]) - value) <= 1e-8 * size, name
-    assert float(data["step"][case]) == found.data.attrs["step_s"]
+    assert float(data["step"][case]) == simulation.data.attrs["step_s"]
     assert data["reason"].values[case] == ""
 
 
@@ -75,7 +77,7 @@ def assert_same(data, case, found, after=0.0):
     )
 )  # fmt: skip
 @settings(max_examples=4, suppress_health_check=[HealthCheck.too_slow])
-def test_each_case_has_the_numbers_of_its_own_simulation(rows):
+def test_each_case_has_the_numbers_of_a_simulation_alone(rows):
     """Friction that is absent, steps that are refined case by case, any number of lanes."""
     level, stiffness, inertia, cancelled = map(np.array, zip(*rows, strict=True))
     values = {
@@ -88,13 +90,13 @@ def test_each_case_has_the_numbers_of_its_own_simulation(rows):
     many = simulate_many(diagram, values, **RUN, keep=NAMES, reduce=FIGURES, after=0.02)
     for case in range(len(rows)):
         at = {n: float(v[case]) for n, v in values.items()}
-        found = simulate(diagram.with_values(at), **RUN)
-        names = [n for n in NAMES if n in found.data]  # without friction there is no bristle
+        simulation = simulate(diagram.with_values(at), **RUN)
+        names = [n for n in NAMES if n in simulation.data]  # without friction there is no bristle
         if len(names) == len(NAMES):
-            assert_same(many, case, found, after=0.02)
+            assert_same(many, case, simulation, after=0.02)
         else:
             assert np.isnan(many["Z_m_presliding_bristle"][case]).all()
-            assert many["F_P"].values[case] == pytest.approx(found["F_P"].values, rel=1e-9)
+            assert many["F_P"].values[case] == pytest.approx(simulation["F_P"].values, rel=1e-9)
 
 
 @pytest.mark.parametrize("computer", ["continuous", Sampling(delay=3e-4, encoder_step=1e-5)])
@@ -118,7 +120,7 @@ def test_ideal_friction_gets_its_give_in_every_case():
     assert np.array_equal(many[1], many[3]) and np.ptp(many.values[:, -1]) > 0
 
 
-def test_delays_are_grouped_and_one_that_no_step_divides_is_said():
+def test_delays_are_grouped_and_one_that_no_step_divides_is_reported():
     diagram = haptic_interface(body(2.0, actuation_delay__delay=5e-3))
     delays = [5e-3, 2e-3, 1.23e-4 / 3, 5e-3]
     many = simulate_many(
@@ -206,12 +208,12 @@ def test_a_case_that_fails_is_nan_with_its_reason_and_kills_no_other():
     for case in range(4):
         at = {n: float(v[case]) for n, v in values.items()}
         try:
-            found = simulate(diagram.with_values(at), **run)
+            simulation = simulate(diagram.with_values(at), **run)
         except ModelError as error:
             assert str(many["reason"].values[case]) == str(error)
             assert np.isnan(many["e"].values[case]) and np.isnan(many["step"].values[case])
         else:
-            rms = float(np.sqrt(np.mean(found["X_e"].values ** 2)))
+            rms = float(np.sqrt(np.mean(simulation["X_e"].values ** 2)))
             assert many["e"].values[case] == pytest.approx(rms, rel=1e-8)
     failed = [bool(reason) for reason in many["reason"].values]
     assert failed[2] and not failed[0] and "\n" not in "".join(many["reason"].values.tolist())
@@ -219,11 +221,11 @@ def test_a_case_that_fails_is_nan_with_its_reason_and_kills_no_other():
 
 def test_what_comes_back_by_default_is_the_rms_of_every_signal():
     many = td.simulate_many(coupled(), {"Z_m.inertia": [0.1, 0.2]}, **RUN)
-    found = simulate(coupled().with_values({"Z_m.inertia": 0.2}), **RUN)
-    assert {str(n) for n in many} == {f"{n}_rms" for n in found.data}
+    simulation = simulate(coupled().with_values({"Z_m.inertia": 0.2}), **RUN)
+    assert {str(n) for n in many} == {f"{n}_rms" for n in simulation.data}
     assert many.sizes == {"case": 2} and many["F_m_rms"].attrs["units"] == "N"
     assert many["Z_m.inertia"].values.tolist() == [0.1, 0.2]
-    for name, x in found.data.items():
+    for name, x in simulation.data.items():
         rms = float(np.sqrt(np.mean(x.values**2)))
         assert many[f"{name}_rms"].values[1] == pytest.approx(rms, rel=1e-8, abs=1e-15)
 
@@ -256,8 +258,8 @@ def test_what_is_asked_for_wrongly_is_refused_in_one_line(values, more, words):
 
 def test_threads_share_nothing_that_is_written(monkeypatch):
     values = {"P.spring_damper.stiffness": np.linspace(100.0, 400.0, 70)}
-    found = []
+    results = []
     for threads in ("1", "4"):
         monkeypatch.setenv("NUMBA_NUM_THREADS", threads)
-        found.append(simulate_many(coupled(), values, **RUN, keep=["X_m"]))
-    assert found[0].identical(found[1])
+        results.append(simulate_many(coupled(), values, **RUN, keep=["X_m"]))
+    assert results[0].identical(results[1])

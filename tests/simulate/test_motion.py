@@ -14,7 +14,7 @@ from teleopdesign.simulate import sampled_motion, sine
     frequency=st.floats(0.1, 20.0),
     phase=st.floats(-3.0, 3.0),
 )
-def test_a_sinusoid_is_its_own_derivatives(amplitude, frequency, phase):
+def test_a_sinusoid_has_its_exact_derivatives(amplitude, frequency, phase):
     """Central differences over 1e-4 of a period: their error is (2 pi 1e-4)^2/6, below 1e-7."""
     motion = sine(amplitude=amplitude, frequency=frequency, phase=phase)
     time, step = np.linspace(0.0, 1.0, 50) / frequency, 1e-4 / frequency

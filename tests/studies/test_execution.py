@@ -28,11 +28,11 @@ def in_a_process(code, *, limit="", **options):
 
 def study_code(out, model="slow_product", points=300, **more):
     """A study of `points` points that writes into `out`."""
-    given = "".join(f", {k}={v!r}" for k, v in more.items())
+    arguments = "".join(f", {k}={v!r}" for k, v in more.items())
     return (
         "import numpy as np, teleopdesign as td, study_models as models\n"
         f"td.study(models.{model}, {{'x': np.arange({points}.0), 'y': 0.5}}, "
-        f"measures=models.value, out={str(out)!r}{given})\n"
+        f"measures=models.value, out={str(out)!r}{arguments})\n"
     )
 
 
@@ -49,47 +49,47 @@ def test_two_processes_give_the_data_set_of_one(tmp_path):
 @pytest.mark.slow
 def test_functions_without_a_name_go_to_other_processes_too():
     offset = 3.0
-    found = td.study(lambda x: x + offset, {"x": [1.0, 2.0]}, measures=lambda r: r, workers=2)
-    assert list(found["measure"].values) == [4.0, 5.0]
+    dataset = td.study(lambda x: x + offset, {"x": [1.0, 2.0]}, measures=lambda r: r, workers=2)
+    assert list(dataset["measure"].values) == [4.0, 5.0]
 
 
 @pytest.mark.slow
 def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(monkeypatch, capfd):
     start = subprocess.Popen
 
-    def start_and_interrupt(*arguments, **given):
-        process = start(*arguments, **given)
+    def start_and_interrupt(*arguments, **options):
+        process = start(*arguments, **options)
         process.send_signal(signal.SIGINT)  # before Python has read its first line
         return process
 
     monkeypatch.setattr(subprocess, "Popen", start_and_interrupt)
-    found = td.study(models.product, AXES, measures=models.value, workers=2)
-    np.testing.assert_allclose(found["value"].values, EXPECTED, rtol=1e-15)
+    dataset = td.study(models.product, AXES, measures=models.value, workers=2)
+    np.testing.assert_allclose(dataset["value"].values, EXPECTED, rtol=1e-15)
     assert capfd.readouterr().err == ""
 
 
 @pytest.mark.slow
 def test_a_point_whose_process_is_killed_is_computed_again(tmp_path):
     axes = {**AXES, "folder": str(tmp_path)}
-    found = td.study(models.deadly_product, axes, measures=models.value, workers=2)
+    dataset = td.study(models.deadly_product, axes, measures=models.value, workers=2)
     assert (tmp_path / "killed").exists()
-    np.testing.assert_allclose(found["value"].values, EXPECTED, rtol=1e-15)
+    np.testing.assert_allclose(dataset["value"].values, EXPECTED, rtol=1e-15)
 
 
 @pytest.mark.slow
 def test_a_point_that_kills_its_process_every_time_is_a_failure_and_no_other_is():
-    found = td.study(models.lethal_product, AXES, measures=models.value, workers=2)
-    assert found.failures == {"its process ended twice, by signal 9": 1}
+    dataset = td.study(models.lethal_product, AXES, measures=models.value, workers=2)
+    assert dataset.failures == {"its process ended twice, by signal 9": 1}
     expected = EXPECTED.copy()
     expected[3, 0] = np.nan
-    np.testing.assert_allclose(found["value"].values, expected, rtol=1e-15)
+    np.testing.assert_allclose(dataset["value"].values, expected, rtol=1e-15)
 
 
 def test_progress_says_how_many_are_done_and_ends_with_all():
-    told = []
-    td.study(models.product, AXES, measures=models.value, progress=told.append, workers=1)
-    assert told[-1].done == told[-1].total == 30
-    assert str(told[-1]).startswith("30 of 30 points")
+    reports = []
+    td.study(models.product, AXES, measures=models.value, progress=reports.append, workers=1)
+    assert reports[-1].done == reports[-1].total == 30
+    assert str(reports[-1]).startswith("30 of 30 points")
 
 
 def test_a_file_that_holds_the_study_is_not_computed_again(tmp_path):
@@ -128,9 +128,9 @@ def test_what_an_interrupted_study_has_finished_is_not_computed_again(tmp_path):
     lines = (tmp_path / "s.nc.part").read_text().splitlines()
     assert sum('"point"' in line for line in lines) == 6
     count[0] = 0
-    found = td.study(marked, axes, measures=models.value, out=out, workers=1)
+    dataset = td.study(marked, axes, measures=models.value, out=out, workers=1)
     assert count[0] == 4
-    np.testing.assert_array_equal(found["value"].values, np.arange(10.0))
+    np.testing.assert_array_equal(dataset["value"].values, np.arange(10.0))
     assert [p.name for p in tmp_path.iterdir()] == ["s.nc"]
 
 
@@ -156,10 +156,10 @@ def damaged_journal(tmp_path, damage):
     part = tmp_path / "s.nc.part"
     part.write_bytes(damage(part.read_bytes()))
     first = []
-    found = td.study(
+    dataset = td.study(
         models.product, axes, measures=models.value, out=out, workers=1, progress=first.append
     )
-    return first[-1].kept, found
+    return first[-1].kept, dataset
 
 
 @pytest.mark.parametrize(
@@ -175,10 +175,10 @@ def damaged_journal(tmp_path, damage):
     ],
 )
 def test_a_broken_end_of_the_kept_points_is_cut_off_and_computed_again(tmp_path, damage, kept):
-    found_kept, found = damaged_journal(tmp_path, damage)
-    assert found_kept == kept
+    kept_points, dataset = damaged_journal(tmp_path, damage)
+    assert kept_points == kept
     np.testing.assert_array_equal(
-        found["value"].values, [models.product(x, 0.5) for x in np.arange(10.0)]
+        dataset["value"].values, [models.product(x, 0.5) for x in np.arange(10.0)]
     )
 
 
@@ -230,12 +230,12 @@ def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
         "except TeleopDesignError as error:\n    print(error)\n"
     )
     with in_a_process(code, limit=limit, stdout=subprocess.PIPE, text=True) as process:
-        said, _ = process.communicate(timeout=300)
-    assert "cannot be written" in said and said.count("\n") == 1
-    kept = int(said.split(" of 500 points are kept")[0].split()[-1])
+        output, _ = process.communicate(timeout=300)
+    assert "cannot be written" in output and output.count("\n") == 1
+    kept = int(output.split(" of 500 points are kept")[0].split()[-1])
     assert kept > 10
     first = []
-    found = td.study(
+    dataset = td.study(
         models.product,
         {"x": np.arange(500.0), "y": 0.5},
         measures=models.value,
@@ -244,7 +244,7 @@ def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
     )
     assert first[-1].kept == kept
     np.testing.assert_array_equal(
-        found["value"].values, [models.product(x, 0.5) for x in np.arange(500.0)]
+        dataset["value"].values, [models.product(x, 0.5) for x in np.arange(500.0)]
     )
 
 
@@ -304,10 +304,10 @@ def cluster():
 @pytest.mark.slow
 def test_a_cluster_gives_the_data_set_of_one_process(cluster):
     axes = {"C.dahl.level": np.linspace(0.2, 1.2, 4), "computer.delay": [0, 1.5e-4, 1e-3]}
-    given = {"measures": ["force_error", "energy_drawn"], **models.SIMULATED}
-    one = td.study(models.interface(), axes, workers=1, **given)
-    two = td.study(models.interface(), axes, workers=2, **given)
-    spread = td.study(models.interface(), axes, scheduler=cluster.scheduler_address, **given)
+    arguments = {"measures": ["force_error", "energy_drawn"], **models.SIMULATED}
+    one = td.study(models.interface(), axes, workers=1, **arguments)
+    two = td.study(models.interface(), axes, workers=2, **arguments)
+    spread = td.study(models.interface(), axes, scheduler=cluster.scheduler_address, **arguments)
     xarray.testing.assert_identical(one.data, two.data)
     xarray.testing.assert_identical(one.data, spread.data)
     assert sum(one.failures.values()) == 4
@@ -316,11 +316,11 @@ def test_a_cluster_gives_the_data_set_of_one_process(cluster):
 @pytest.mark.slow
 def test_a_worker_of_a_cluster_that_is_killed_costs_no_point(cluster, tmp_path):
     axes = {"x": np.arange(500.0), "y": 0.5, "folder": str(tmp_path)}
-    given = {"measures": models.value, "scheduler": cluster.scheduler_address}
-    found = td.study(models.deadly_product, axes, **given)
+    arguments = {"measures": models.value, "scheduler": cluster.scheduler_address}
+    dataset = td.study(models.deadly_product, axes, **arguments)
     assert (tmp_path / "killed").exists()
     np.testing.assert_array_equal(
-        found["value"].values, [models.product(x, 0.5) for x in axes["x"]]
+        dataset["value"].values, [models.product(x, 0.5) for x in axes["x"]]
     )
 
 

@@ -91,7 +91,7 @@ def test_at_a_bound_the_slope_is_taken_from_the_side_that_exists():
     np.testing.assert_allclose(slopes["L"].values[0], exact, atol=1e-4 * np.abs(exact).max())
 
 
-def test_an_encoder_leaves_no_derivative_and_that_is_told():
+def test_an_encoder_leaves_no_derivative_and_that_is_reported():
     rounded = td.Sampling(encoder_step=1e-4)
     free = {"duration": 0.2, "inputs": {"R_V": 1.5}, "initial": {"L_velocity": 0.2}}
     by_encoder, by_position = (

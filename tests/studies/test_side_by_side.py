@@ -83,9 +83,9 @@ def test_blocks_of_long_studies_are_larger_where_each_worker_still_has_some():
 @pytest.mark.slow
 def test_blocks_in_two_processes_and_after_a_stop_give_the_same_data(tmp_path):
     axes = {"C.dahl.level": np.linspace(0.1, 1.5, 700), "computer.delay": [0.0, 1e-3]}
-    given = {"measures": MEASURES, **models.SIMULATED}
-    one = td.study(models.interface(), axes, workers=1, **given)
-    two = td.study(models.interface(), axes, workers=2, **given)
+    arguments = {"measures": MEASURES, **models.SIMULATED}
+    one = td.study(models.interface(), axes, workers=1, **arguments)
+    two = td.study(models.interface(), axes, workers=2, **arguments)
     xarray.testing.assert_identical(one.data, two.data)
     out = tmp_path / "s.nc"
 
@@ -96,10 +96,12 @@ def test_blocks_in_two_processes_and_after_a_stop_give_the_same_data(tmp_path):
     td.studies.progress._BETWEEN, before = -1.0, td.studies.progress._BETWEEN
     try:
         with pytest.raises(KeyboardInterrupt):
-            td.study(models.interface(), axes, workers=1, out=out, progress=stop, **given)
+            td.study(models.interface(), axes, workers=1, out=out, progress=stop, **arguments)
     finally:
         td.studies.progress._BETWEEN = before
     kept = []
-    again = td.study(models.interface(), axes, workers=1, out=out, progress=kept.append, **given)
+    again = td.study(
+        models.interface(), axes, workers=1, out=out, progress=kept.append, **arguments
+    )
     assert kept[0].kept == 601  # in the middle of a block
     xarray.testing.assert_identical(one.data, again.data)

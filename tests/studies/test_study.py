@@ -119,7 +119,7 @@ def test_a_model_may_be_a_function_of_the_parameters():
         law = {"C.dahl.level": level, "C.dahl.stiffness": ratio * level}
         return models.interface().with_values(law)
 
-    found = td.study(
+    dataset = td.study(
         with_level,
         {"level": [0.5, 1.0], "ratio": 2e4},
         measures="force_error",
@@ -132,41 +132,41 @@ def test_a_model_may_be_a_function_of_the_parameters():
         measures="force_error",
         **models.SIMULATED,
     )
-    assert float(found["force_error"][1]) == float(direct["force_error"])
-    assert found["level"].attrs["units"] == "N"
+    assert float(dataset["force_error"][1]) == float(direct["force_error"])
+    assert dataset["level"].attrs["units"] == "N"
 
 
-def test_claims_are_settled_over_a_plane_and_keep_status_and_margin():
+def test_claims_over_a_plane_keep_status_and_margin():
     def claim(f_D, f_C):
         return dahl_compensation(
             coulomb_level=f_C, compensator_level=f_D, compensator_stiffness=1e4
         )
 
-    found = td.study(claim, {"f_D": [0.5, 1.0, 1.5], "f_C": [1.0]}, measures="claim", workers=1)
-    assert list(found["claim_status"].values[:, 0]) == ["proved", "proved", "refuted"]
-    assert list(found["claim_holds"].values[:, 0]) == [1, 1, 0]
+    dataset = td.study(claim, {"f_D": [0.5, 1.0, 1.5], "f_C": [1.0]}, measures="claim", workers=1)
+    assert list(dataset["claim_status"].values[:, 0]) == ["proved", "proved", "refuted"]
+    assert list(dataset["claim_holds"].values[:, 0]) == [1, 1, 0]
 
 
-def test_a_measure_may_be_an_array_over_its_own_dimension():
+def test_a_measure_may_be_an_array_over_a_further_dimension():
     def spectrum(x):
         return xarray.DataArray([x, 2 * x], {"order": [1.0, 2.0]}, ("order",), attrs={"units": "N"})
 
-    found = td.study(spectrum, {"x": [1.0, 3.0]}, measures={"size": models.value})
-    assert found["size"].dims == ("x", "order")
-    np.testing.assert_array_equal(found["size"].values, [[1, 2], [3, 6]])
-    assert found["size"].attrs["units"] == "N"
+    dataset = td.study(spectrum, {"x": [1.0, 3.0]}, measures={"size": models.value})
+    assert dataset["size"].dims == ("x", "order")
+    np.testing.assert_array_equal(dataset["size"].values, [[1, 2], [3, 6]])
+    assert dataset["size"].attrs["units"] == "N"
 
 
 def test_whatever_a_function_raises_is_the_reason_of_that_point_alone():
-    found = td.study(lambda x: 1 / x, {"x": [0.0, 2.0]}, measures=models.value)
-    assert found.failures == {"ZeroDivisionError: float division by zero": 1}
-    assert float(found["value"][1]) == 0.5
+    dataset = td.study(lambda x: 1 / x, {"x": [0.0, 2.0]}, measures=models.value)
+    assert dataset.failures == {"ZeroDivisionError: float division by zero": 1}
+    assert float(dataset["value"][1]) == 0.5
 
 
 def test_points_that_give_other_names_than_the_first_have_failed():
-    found = td.study(lambda x: {"a" if x < 2 else "b": x}, {"x": [1.0, 2.0]}, measures=dict)
-    assert found.measures == ("a",)
-    assert found.failures == {
+    dataset = td.study(lambda x: {"a" if x < 2 else "b": x}, {"x": [1.0, 2.0]}, measures=dict)
+    assert dataset.measures == ("a",)
+    assert dataset.failures == {
         "the measures give other names or dimensions than at the first point": 1
     }
 
@@ -175,13 +175,13 @@ def test_nothing_is_simulated_for_a_measure_that_needs_no_motion():
     def level(diagram):
         return diagram.values["C.dahl.level"]
 
-    found = td.study(models.interface(), {"C.dahl.level": [0.1, 0.2]}, measures=level)
-    assert list(found["level"].values) == [0.1, 0.2]
+    dataset = td.study(models.interface(), {"C.dahl.level": [0.1, 0.2]}, measures=level)
+    assert list(dataset["level"].values) == [0.1, 0.2]
 
 
 def test_a_measure_that_needs_a_motion_says_that_none_is_simulated():
-    found = td.study(models.interface(), {"C.dahl.level": [0.1]}, measures="force_error")
-    assert "duration: found none" in next(iter(found.failures))
+    dataset = td.study(models.interface(), {"C.dahl.level": [0.1]}, measures="force_error")
+    assert "duration: found none" in next(iter(dataset.failures))
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,7 @@ def test_a_measure_that_needs_a_motion_says_that_none_is_simulated():
         ({"C.dahl.level": [1]}, ["force_error", "force_error"], "is there twice"),
     ],
 )
-def test_an_unknown_parameter_or_measure_is_told_the_nearest(axes, measures, text):
+def test_an_unknown_parameter_or_measure_is_answered_with_the_nearest(axes, measures, text):
     with pytest.raises(ModelError, match=text):
         td.study(models.interface(), axes, measures=measures, **models.SIMULATED)
 

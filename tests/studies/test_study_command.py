@@ -57,9 +57,9 @@ def folder(tmp_path, monkeypatch):
 
 def test_a_toml_study_is_the_study_of_its_diagram(folder, capsys):
     assert main(["study", "s.toml", "--workers", "1", "--out", "s.nc", "--figure", "s.png"]) == 0
-    said = capsys.readouterr()
-    assert "3 C.dahl.level x 2 computer.delay" in said.out
-    assert "6 of 6 points" in said.err
+    output = capsys.readouterr()
+    assert "3 C.dahl.level x 2 computer.delay" in output.out
+    assert "6 of 6 points" in output.err
     direct = td.study(
         td.read_diagram("interface.toml"),
         {"C.dahl.level": np.linspace(0.2, 1.2, 3), "computer.delay": [0.0, 1e-3]},
@@ -67,9 +67,9 @@ def test_a_toml_study_is_the_study_of_its_diagram(folder, capsys):
         duration=0.2,
         motion={"L": td.sine(amplitude=0.01, frequency=5.0)},
     )
-    found = read_study("s.nc")
+    dataset = read_study("s.nc")
     for name in ("force_error", "hand"):
-        np.testing.assert_array_equal(found[name].values, direct[name].values)
+        np.testing.assert_array_equal(dataset[name].values, direct[name].values)
     assert (folder / "s.png").stat().st_size > 10_000
 
 
@@ -122,13 +122,13 @@ seed = 7
 "computer.delay" = { from = 0, to = 1e-3, step = 5e-4 }
 """
     (folder / "s.toml").write_text(text)
-    given = read_study_file("s.toml")
-    assert given["computer"] == td.Sampling(period=5e-4)
-    assert given["inputs"]["R_V"](np.array([0.0, 1 / 12])) == pytest.approx([0.5, 2.5])
-    found = td.study(**{**given, "measures": {"x": td.measure("peak", signal="L")}}, workers=1)
-    assert found["x"].dims == ("C.dahl.level", "sample")
-    assert not found.failures
-    assert set(np.round(found["computer.delay"].values / 5e-4)) <= {0, 1, 2}
+    settings = read_study_file("s.toml")
+    assert settings["computer"] == td.Sampling(period=5e-4)
+    assert settings["inputs"]["R_V"](np.array([0.0, 1 / 12])) == pytest.approx([0.5, 2.5])
+    dataset = td.study(**{**settings, "measures": {"x": td.measure("peak", signal="L")}}, workers=1)
+    assert dataset["x"].dims == ("C.dahl.level", "sample")
+    assert not dataset.failures
+    assert set(np.round(dataset["computer.delay"].values / 5e-4)) <= {0, 1, 2}
 
 
 @pytest.mark.slow
@@ -139,20 +139,20 @@ def test_a_python_file_is_run_and_gives_the_arguments(folder, capsys):
         "STUDY = dict(model=model, axes={'x': [1.0, 4.0, -1.0]}, measures={'root': lambda r: r})\n"
     )
     assert main(["study", "s.py", "--workers", "2", "--out", "s.nc"]) == 0
-    said = capsys.readouterr().out
-    assert "1 failed: ValueError" in said
+    output = capsys.readouterr().out
+    assert "1 failed: ValueError" in output
     np.testing.assert_array_equal(read_study("s.nc")["root"].values, [2.0, 4.0, np.nan])
 
 
 def test_recordings_are_diagnosed_as_a_study(folder, capsys):
     (folder / "d.toml").write_text(f'[study]\nexperiments = ["{td.example("rod")}"]\n')
-    given = read_study_file("d.toml")
-    assert given["axes"] == [{"experiment": [str(td.example("rod"))]}]
-    assert given["measures"] == ["verdict"]
+    settings = read_study_file("d.toml")
+    assert settings["axes"] == [{"experiment": [str(td.example("rod"))]}]
+    assert settings["measures"] == ["verdict"]
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("[study]", "[stdy]", 'unknown key "stdy".*did you mean "study"'),
         ('model = "interface.toml"', "", "expected model .* or experiments"),
@@ -178,7 +178,7 @@ def test_recordings_are_diagnosed_as_a_study(folder, capsys):
         ("[measures]\nforce_error = {}", "[measures]\nforce_error = 1", "expected a table"),
     ],
 )
-def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, said):
+def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, message):
     import re
 
     assert old in STUDY
@@ -190,11 +190,11 @@ def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, s
     else:
         assert status == 2 and error.count("\n") == 1
         assert error.startswith("teleopdesign: ")
-    assert re.search(said, error), error
+    assert re.search(message, error), error
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["absent.toml"], "absent.toml: cannot be read"),
         (["s.txt"], "expected .toml or .py"),
@@ -209,7 +209,7 @@ def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, s
         (["a_list.py"], "found list, expected a dict"),
     ],
 )
-def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, said):
+def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, message):
     import re
 
     (folder / "no_study.py").write_text("study = 1\n")
@@ -219,7 +219,7 @@ def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, sa
     (folder / "a_list.py").write_text("STUDY = []\n")
     assert main(["study", *arguments]) == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and re.search(said, error), error
+    assert error.count("\n") == 1 and re.search(message, error), error
 
 
 @pytest.mark.parametrize("count", ["0", "-1", "two"])
@@ -241,7 +241,7 @@ def test_ctrl_c_ends_in_one_line_and_the_same_command_goes_on(folder):
     )
     root = str(td.__path__[0]).removesuffix("/teleopdesign")
     command = [sys.executable, "-m", "teleopdesign.cli", "study", "s.py", "--out", "s.nc"]
-    given = {
+    options = {
         "env": {**os.environ, "PYTHONPATH": root},
         "stderr": subprocess.PIPE,
         "text": True,
@@ -249,22 +249,22 @@ def test_ctrl_c_ends_in_one_line_and_the_same_command_goes_on(folder):
         # tests that run in the background of a shell are deaf to Ctrl-C: the study is not
         "preexec_fn": partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     }
-    with subprocess.Popen([*command, "--workers", "2"], **given) as process:
+    with subprocess.Popen([*command, "--workers", "2"], **options) as process:
         end = time.monotonic() + 300
         while time.monotonic() < end and (
             not (part := folder / "s.nc.part").exists() or part.read_bytes().count(b'"point":') < 50
         ):
             time.sleep(0.02)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of its processes
-        _, said = process.communicate(timeout=300)
+        _, output = process.communicate(timeout=300)
     assert process.returncode == 130
-    *progress, last = said.splitlines()  # a line each ten seconds, where it takes so long
-    assert all(" of 600 points" in line for line in progress), said
+    *progress, last = output.splitlines()  # a line each ten seconds, where it takes so long
+    assert all(" of 600 points" in line for line in progress), output
     assert "kept in s.nc.part, the same command continues" in last
     (folder / "go_on").touch()
     kept = part.read_bytes().count(b'"point":')
     assert kept >= 50
-    again = subprocess.run(command, **given, check=True)
+    again = subprocess.run(command, **options, check=True)
     assert f"goes on after {kept} points" in again.stderr
     np.testing.assert_array_equal(read_study(folder / "s.nc")["x2"].values, 2.0 * np.arange(600))
     assert not part.exists()

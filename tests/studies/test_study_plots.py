@@ -45,11 +45,11 @@ def gridded():
 
 def test_sobol_indices_are_those_of_the_formula(drawn):
     """S = (0.3139, 0.4424, 0), S_T = (0.5576, 0.4424, 0.2437): Saltelli et al. (2010), table 1."""
-    found = drawn.sensitivity()
+    indices = drawn.sensitivity()
     # ten standard errors of the estimate from 1024 pairs would be 0.1 to 0.4
-    np.testing.assert_allclose(found["first"].values, [0.3139, 0.4424, 0.0], atol=0.04)
-    np.testing.assert_allclose(found["total"].values, [0.5576, 0.4424, 0.2437], atol=0.04)
-    assert (found["first_interval"] < 0.15).all()
+    np.testing.assert_allclose(indices["first"].values, [0.3139, 0.4424, 0.0], atol=0.04)
+    np.testing.assert_allclose(indices["total"].values, [0.5576, 0.4424, 0.2437], atol=0.04)
+    assert (indices["first_interval"] < 0.15).all()
 
 
 def test_indices_need_points_that_were_drawn_for_them(gridded):
@@ -75,9 +75,9 @@ def test_bars_stand_for_the_indices_with_the_largest_total_on_top(drawn):
     names = [t.get_text() for t in axis.get_yticklabels()]
     assert names == ["z", "y", "x"]
     widths = [bar.get_width() for bar in axis.patches]
-    found = drawn.sensitivity().sel(parameter=names)
-    np.testing.assert_allclose(widths[:3], found["total"].values)
-    np.testing.assert_allclose(widths[3:], found["first"].values)
+    indices = drawn.sensitivity().sel(parameter=names)
+    np.testing.assert_allclose(widths[:3], indices["total"].values)
+    np.testing.assert_allclose(widths[3:], indices["first"].values)
 
 
 def test_curves_show_one_line_for_each_value_of_the_second_axis(gridded):
@@ -99,18 +99,18 @@ def test_a_map_shows_the_measure_with_proved_region_and_onset(gridded):
 
 
 def test_points_that_failed_stay_empty_in_a_map():
-    found = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
-    shown = found.plot.map(x="x", y="y").axes[0].collections[0].get_array()
+    dataset = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
+    shown = dataset.plot.map(x="x", y="y").axes[0].collections[0].get_array()
     assert np.ma.getmaskarray(shown).sum() == 2
 
 
 def test_a_region_that_a_measure_calls_proved_is_hatched_there_alone():
-    def settled(x, y):
+    def claim(x, y):
         return {"margin": y - x, "status": "proved" if x < y else "unknown"}
 
     axes = {"x": [1.0, 2.0, 3.0], "y": [1.5, 2.5]}
-    found = td.study(settled, axes, measures={"m": dict})
-    hatched = found.plot.map("margin", x="x", y="y", proved="status").axes[0].collections[1]
+    dataset = td.study(claim, axes, measures={"m": dict})
+    hatched = dataset.plot.map("margin", x="x", y="y", proved="status").axes[0].collections[1]
     shown = ~np.ma.getmaskarray(hatched.get_array())
     assert shown.reshape(2, 3).tolist() == [[True, False, False], [True, True, False]]
 
@@ -123,8 +123,8 @@ def test_panels_share_one_scale_of_colours(gridded):
 
 
 def test_points_drawn_together_are_shown_over_each_parameter():
-    found = td.study(ishigami, td.latin_hypercube(COLUMNS, 20, seed=1), measures=value)
-    figure = found.plot()
+    dataset = td.study(ishigami, td.latin_hypercube(COLUMNS, 20, seed=1), measures=value)
+    figure = dataset.plot()
     assert [a.get_xlabel() for a in figure.axes] == ["x (1)", "y (1)", "z (1)"]
 
 

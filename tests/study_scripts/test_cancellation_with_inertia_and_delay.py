@@ -14,7 +14,7 @@ def trials():
 
 @pytest.mark.slow  # the same loop grows beyond its limit in the plain run
 def test_simulated_motion_gives_out_what_the_formula_says():
-    found = study.given_out()["given_out_simulated"]
+    energies = study.given_out()["given_out_simulated"]
     half = study.late.INERTIA / 2
     for name, bandwidth in (("fast", study.FAST), ("slow", study.SLOW)):
         expected = half * study.damping_given_out(
@@ -22,10 +22,10 @@ def test_simulated_motion_gives_out_what_the_formula_says():
         )
         # 1e-3 of the inertia's own force: fourth order, 10 to 16 steps in a cycle of 625 Hz
         scale = half * 2 * np.pi * np.array(study.DRIVEN)
-        measured = found.sel(simulated_filter=name).values
+        measured = energies.sel(simulated_filter=name).values
         assert (np.abs(measured - expected) < 1e-3 * scale).all()
     # half a turn late the sign turns: P48 is about w tau < pi
-    assert (np.sign(found.sel(simulated_filter="fast").values) == [1, 1, 1, -1]).all()
+    assert (np.sign(energies.sel(simulated_filter="fast").values) == [1, 1, 1, -1]).all()
 
 
 @pytest.mark.parametrize("hand", ["any", "hand, low-pass 30 Hz", "fingertip, low-pass 100 Hz"])
@@ -53,12 +53,12 @@ def test_sampled_differences_alone_allow_eight_ninths_of_b_t():
 def test_the_sampled_limit_is_where_the_exact_test_turns():
     late, bandwidth = study.late, 30.0
     limit = study.sampled_share(bandwidth)
-    found = []
+    results = []
     for over in (0.999, 1.001):
         law = over * limit * late.sampled_law(bandwidth, study.PERIOD)
         claim = sampled_passivity(law, damping=late.DAMPING, sample_time=study.PERIOD)
-        found.append(claim.status)
-    assert found == ["proved", "refuted"]
+        results.append(claim.status)
+    assert results == ["proved", "refuted"]
 
 
 @pytest.mark.parametrize("bandwidth", [3.0, 30.0])

@@ -20,10 +20,10 @@ def test_a_rod_moves_by_what_the_hand_moves_its_point_along_it():
 
 def test_the_inverse_answers_alike_in_every_direction_at_every_frequency():
     values = study.singular_values(study.FREQUENCIES)
-    found = values.sel(response="inverse").values
+    inverse = values.sel(response="inverse").values
     w = abs(study.low_pass(study.FREQUENCIES))
     # products of 5 x 5 matrices of condition below 100, in double precision
-    assert np.abs(found / w[:, None] - 1).max() < 1e-10
+    assert np.abs(inverse / w[:, None] - 1).max() < 1e-10
     assert (values.sel(response="no compensation", order=1) > 1.5).any()
 
 
@@ -48,15 +48,15 @@ def test_without_friction_the_simulation_is_the_response(inverted):
     made = study.driven(
         wanted, frequency, gain=study.five.GAIN, share=0.0, inverted=inverted, friction=False
     )
-    time, rods = study.settled(made, "R_M{}", frequency)
+    time, rods = study.last_cycles(made, "R_M{}", frequency)
     wave = np.exp(-2j * np.pi * frequency * time)
-    found = 2j * (wave @ rods @ study.five.G) / len(time)  # phasor of the sine
+    amplitudes = 2j * (wave @ rods @ study.five.G) / len(time)  # phasor of the sine
     response = study.five.rod_response(np.array([frequency]), gain=study.five.GAIN)[0]
     due = study.five.at_hand(response) @ wanted
     if inverted:
         due = study.low_pass(frequency) * wanted
     # 0.1 %: what is left of the start after SETTLED, e^-6 of it
-    assert np.linalg.norm(found - due) < 1e-3 * np.linalg.norm(due)
+    assert np.linalg.norm(amplitudes - due) < 1e-3 * np.linalg.norm(due)
 
 
 @pytest.mark.slow

@@ -27,9 +27,9 @@ def test_right_is_the_graft_and_no_other(change, outcome):
     assert study.outcome({**ROW, **change}) == outcome
 
 
-def test_only_what_is_left_above_the_machines_own_is_seen_of_a_graft():
-    assert study.seen({**ROW, "before": 0.9}) == 0.0
-    np.testing.assert_allclose(study.seen({**ROW, "before": np.sqrt(5.0)}), 2.0, rtol=1e-12)
+def test_a_graft_shows_only_by_what_is_left_beyond_the_rest_of_the_machine():
+    assert study.visible_size({**ROW, "before": 0.9}) == 0.0
+    np.testing.assert_allclose(study.visible_size({**ROW, "before": np.sqrt(5.0)}), 2.0, rtol=1e-12)
 
 
 @pytest.fixture(scope="module")

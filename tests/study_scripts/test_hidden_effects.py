@@ -44,7 +44,7 @@ ADEQUATE = answer(verdict="model_adequate")
 
 
 @pytest.mark.parametrize(
-    ("said", "outcome"),
+    ("response", "outcome"),
     [
         (answer(STRIBECK), "right"),
         (answer(STRIBECK, BIAS), "right first"),
@@ -58,12 +58,12 @@ ADEQUATE = answer(verdict="model_adequate")
         (None, "no answer"),
     ],
 )
-def test_one_effect_is_judged_by_what_is_named_first_and_what_else(said, outcome):
-    assert judge(truth(STRIBECK), said) == outcome
+def test_one_effect_is_judged_by_what_is_named_first_and_what_else(response, outcome):
+    assert judge(truth(STRIBECK), response) == outcome
 
 
 @pytest.mark.parametrize(
-    ("said", "outcome"),
+    ("response", "outcome"),
     [
         (answer(groups=[(BIAS, ASYMMETRY)]), "look-alike"),
         (answer(ASYMMETRY, groups=[(BIAS, ASYMMETRY)]), "look-alike"),
@@ -72,12 +72,12 @@ def test_one_effect_is_judged_by_what_is_named_first_and_what_else(said, outcome
         (answer(ASYMMETRY), "wrong"),  # sure of what nobody could know
     ],
 )
-def test_look_alikes_count_only_where_the_answer_lists_them(said, outcome):
-    assert judge(truth(BIAS, groups=[(BIAS, ASYMMETRY)]), said) == outcome
+def test_look_alikes_count_only_where_the_answer_lists_them(response, outcome):
+    assert judge(truth(BIAS, groups=[(BIAS, ASYMMETRY)]), response) == outcome
 
 
 @pytest.mark.parametrize(
-    ("said", "outcome"),
+    ("response", "outcome"),
     [
         (answer(BIAS, STRIBECK), "right"),
         (answer(ASYMMETRY, STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right"),
@@ -89,8 +89,11 @@ def test_look_alikes_count_only_where_the_answer_lists_them(said, outcome):
         (ADEQUATE, "missed"),
     ],
 )
-def test_two_effects_are_right_when_exactly_the_two_are_named(said, outcome):
-    assert judge(truth(STRIBECK, BIAS, level="double", groups=[(BIAS, ASYMMETRY)]), said) == outcome
+def test_two_effects_are_right_when_exactly_the_two_are_named(response, outcome):
+    assert (
+        judge(truth(STRIBECK, BIAS, level="double", groups=[(BIAS, ASYMMETRY)]), response)
+        == outcome
+    )
 
 
 def test_an_adequate_model_called_anything_else_is_a_false_alarm():
@@ -113,9 +116,9 @@ def test_the_truth_itself_is_right_in_every_published_case():
     folder = shared_folder("hidden")
     for path in sorted((folder / "truth").glob("*.json")):
         true = load_truth(folder, path.stem)
-        said = answer(*true.effects, groups=true.groups) if true.effects else ADEQUATE
-        said = answer() if true.level == "outside" else said
-        assert judge(true, said) == "right"
+        response = answer(*true.effects, groups=true.groups) if true.effects else ADEQUATE
+        response = answer() if true.level == "outside" else response
+        assert judge(true, response) == "right"
 
 
 def test_shares_have_the_exact_binomial_interval():
@@ -131,8 +134,8 @@ def test_a_quantile_says_where_too_few_values_leave_its_interval_open():
 
 def test_calibration_error_is_what_sureness_exceeds_truth_by():
     rng = np.random.default_rng(0)
-    said = rng.uniform(size=4000)
-    fair = calibration([[(p, rng.uniform() < p)] for p in said], rng)
+    probabilities = rng.uniform(size=4000)
+    fair = calibration([[(p, rng.uniform() < p)] for p in probabilities], rng)
     # ten bins of 400: half a standard deviation of a share, 0.02, is left by chance
     assert fair.error < 0.03
     sure = calibration([[(0.9, k % 2 == 0)] for k in range(100)], rng)
@@ -157,11 +160,11 @@ def test_a_phase_is_compared_on_the_circle():
         "phase": {"value": 6.25 - 2 * math.pi, "stderr": 0.03},
         "period": {"value": 0.0103, "stderr": 0.0001},
     }
-    said = answer(
+    response = answer(
         cogging,
         candidates=[{"effect": "cogging", "at": "device", "parameters": parameters}],
     )
-    assert {e.parameter: e.inside for e in estimates(true, said)} == {
+    assert {e.parameter: e.inside for e in estimates(true, response)} == {
         "phase": True,
         "period": False,
     }
@@ -195,7 +198,7 @@ def test_a_folder_of_other_cases_is_refused(tmp_path):
         write_plan(tmp_path, plan(3, seed=2))
 
 
-def finished(folder, case, said):
+def finished(folder, case, response):
     """A case whose truth and answer are there already."""
     for part in ("truth", "answers", f"cases/{case.name}"):
         (folder / part).mkdir(parents=True, exist_ok=True)
@@ -205,17 +208,17 @@ def finished(folder, case, said):
     }  # fmt: skip
     (folder / "truth" / f"{case.name}.json").write_text(json.dumps(content))
     (folder / "cases" / case.name / "experiment.toml").write_text("[channels]\n")
-    (folder / "answers" / f"{case.name}.json").write_text(json.dumps(said))
+    (folder / "answers" / f"{case.name}.json").write_text(json.dumps(response))
 
 
 def test_an_answer_that_is_there_is_not_made_again(tmp_path, capsys):
     (case,) = plan(1, seed=1, levels=("null",))
-    said = {
+    response = {
         "verdict": "model_adequate", "missing": [], "indistinguishable": [],
         "ladder": [{"check_error": 0.021}], "processor_seconds": 9.0,
         "candidates": [{"effect": "bias", "at": "device", "probability": 0.01}],
     }  # fmt: skip
-    finished(tmp_path, case, said)
+    finished(tmp_path, case, response)
     run_campaign(tmp_path, [case])
     assert "1 cases" in (printed := capsys.readouterr().out) and "0 to do" in printed
     campaign = collect(tmp_path, [case], ["answers"])
@@ -286,7 +289,7 @@ def test_a_choice_that_the_check_record_does_not_support_names_nothing():
     assert [n.effect for n in name_effects(library, np.array([1]))] == ["spring"]
 
 
-def test_a_delay_and_a_lag_are_told_by_their_second_coefficient():
+def test_a_delay_and_a_lag_are_distinguished_by_their_second_coefficient():
     from _baselines import name_effects
     from _terms import Library
 

@@ -20,15 +20,15 @@ def test_the_teleoperator_swings_up_only_beyond_the_passive_bound():
 
 @pytest.mark.slow
 def test_simulated_onset_of_the_teleoperator_is_the_balance_of_energy():
-    found = swing_up.run(quick=True)
-    assert found.attrs["grown_within_bound"] == 0
-    assert found.attrs["worst_difference"] < 0.05
-    share = found["share"].values
+    result = swing_up.run(quick=True)
+    assert result.attrs["grown_within_bound"] == 0
+    assert result.attrs["worst_difference"] < 0.05
+    share = result["share"].values
     for name in ("damping", "contact"):
-        grown = found[f"growth_over_{name}"].values > 0
-        onset = found[f"onset_over_{name}"].values
+        grown = result[f"growth_over_{name}"].values > 0
+        onset = result[f"onset_over_{name}"].values
         assert np.all(np.diff(onset[~np.isnan(onset)]) > 0)
-        assert not grown[share < found.attrs["cycles"]].any()  # P40 alone, without the dampers
+        assert not grown[share < result.attrs["cycles"]].any()  # P40 alone, without the dampers
         assert np.all(np.diff(grown.astype(int), axis=0) >= 0)  # once it grows, more grows too
 
 
@@ -48,15 +48,15 @@ def test_a_late_coupling_swings_up_beyond_its_bound_and_not_below(kind):
 
 @pytest.mark.slow
 def test_proved_region_and_simulated_onset_of_late_couplings_agree():
-    found = coupling.run(quick=True)
-    assert found.attrs["contradictions"] == 0
-    stiffness = found["stiffness"].values
+    result = coupling.run(quick=True)
+    assert result.attrs["contradictions"] == 0
+    stiffness = result["stiffness"].values
     for name in ("delay", "period"):
-        limit = found[f"limit_over_{name}"].values
+        limit = result[f"limit_over_{name}"].values
         expected = np.where(stiffness[:, None] <= limit, "proved", "refuted")
-        assert np.array_equal(found[f"status_over_{name}"].values, expected)
-        times = found[f"{name}_simulated"].values
-        over = found[f"onset_over_{name}"].values / [coupling.limit(name, t) for t in times]
+        assert np.array_equal(result[f"status_over_{name}"].values, expected)
+        times = result[f"{name}_simulated"].values
+        over = result[f"onset_over_{name}"].values / [coupling.limit(name, t) for t in times]
         # the last interval of seven bisections is 2.2 %
         assert np.all(over >= 1) and np.all(over[1] < 1.03) and np.all(over[0] < 1.2)
 
@@ -78,8 +78,8 @@ def test_a_late_compensator_swings_up_beyond_its_bound_and_not_below(late):
 
 @pytest.mark.slow
 def test_sinusoids_at_half_the_sample_rate_grow_from_pi_squared_over_eight_on():
-    found = stiffest.run(quick=True)
-    assert found.attrs["contradictions"] == 0
-    over = found["over"].sel(late=1, ends="worst hand").values
+    result = stiffest.run(quick=True)
+    assert result.attrs["contradictions"] == 0
+    over = result["over"].sel(late=1, ends="worst hand").values
     # the last interval of seven bisections is 1.1 %
     assert over == pytest.approx(np.full(3, np.pi**2 / 8), rel=0.012)

@@ -37,7 +37,7 @@ def test_a_row_says_errors_names_and_time_and_why_one_is_not_there():
     assert "undecided, not named: `spring`, `bias`" in lines[2] and "of 2 effects" in lines[2]
 
 
-def test_a_folder_of_ones_own_comes_before_the_public_recordings(tmp_path):
+def test_a_users_folder_comes_before_the_public_recordings(tmp_path):
     (tmp_path / "emps").mkdir()
     (tmp_path / "emps" / "experiment.toml").write_text("")
     names = recordings.names_in(tmp_path)

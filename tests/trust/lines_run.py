@@ -68,8 +68,8 @@ def pytest_runtest_protocol(item, nextitem):
         sys.settrace(None)
         threading.settrace(None)
         lines = {file: sorted(rows) for file, rows in _now.items()}
-        taken = time.monotonic() - began
-        _tests.append({"test": item.nodeid, "seconds": taken, "lines": lines})
+        duration = time.monotonic() - began
+        _tests.append({"test": item.nodeid, "seconds": duration, "lines": lines})
 
 
 def pytest_sessionfinish():

@@ -71,7 +71,7 @@ def mutants_of(path: Path) -> list[Mutant]:
     starts = [0]
     for line in content.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
-    found: list[Mutant] = []
+    mutants: list[Mutant] = []
 
     def span(node: ast.expr) -> tuple[int, int]:
         assert node.end_lineno is not None and node.end_col_offset is not None
@@ -79,13 +79,13 @@ def mutants_of(path: Path) -> list[Mutant]:
         return begin, starts[node.end_lineno - 1] + node.end_col_offset
 
     def replace(node: ast.expr, text: str) -> None:
-        found.append(Mutant(path, *span(node), text))
+        mutants.append(Mutant(path, *span(node), text))
 
     def operator(left: ast.expr, right: ast.expr, sign: str, new: str) -> None:
         begin, end = span(left)[1], span(right)[0]
         at = content[begin:end].find(sign.encode())
         if at >= 0:
-            found.append(Mutant(path, begin + at, begin + at + len(sign), new))
+            mutants.append(Mutant(path, begin + at, begin + at + len(sign), new))
 
     def text_of(node: ast.expr) -> str:
         begin, end = span(node)
@@ -121,7 +121,7 @@ def mutants_of(path: Path) -> list[Mutant]:
                     visit(child)
 
     visit(ast.parse(content))
-    return found
+    return mutants
 
 
 @dataclass(frozen=True)
@@ -291,8 +291,8 @@ def main() -> None:
                 break
             word = outcome(mutant, copy, ran, options.budget)
             survivors += word == "SURVIVED"
-            taken = time.monotonic() - began
-            print(f"{number} {word} in {taken:.0f} s: {mutant}", flush=True)
+            duration = time.monotonic() - began
+            print(f"{number} {word} in {duration:.0f} s: {mutant}", flush=True)
     count = number - options.first + 1
     print(f"{count - survivors} of {count} killed, drawn from {len(every)}")
 

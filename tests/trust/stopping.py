@@ -157,7 +157,7 @@ class Ended:
     """How a process ended; count: looks at files and modules, 0 where it was stopped before."""
 
     status: int
-    said: str
+    output: str
     count: int
     seconds: float
 
@@ -197,11 +197,11 @@ def run(command, sources, out, *, at=0, after=None, number=signal.SIGINT, room=N
                     process.wait(after)
                 except subprocess.TimeoutExpired:
                     _signal(process, number)
-            _, said = process.communicate(timeout=PATIENCE)
+            _, output = process.communicate(timeout=PATIENCE)
             seconds = time.monotonic() - began
             count = int(pipe.read() or 0)
     _wait_for_the_group(process.pid)
-    return Ended(process.returncode, said, count, seconds)
+    return Ended(process.returncode, output, count, seconds)
 
 
 def _limit_files(room):
@@ -237,7 +237,7 @@ def violations(command, ended, out, number, before=()):
     wrong = []
     if ended.status not in {signal.SIGINT: (0, 130)}.get(number, (0, -number)):
         wrong.append(f"status {ended.status}")
-    lines = ended.said.splitlines()
+    lines = ended.output.splitlines()
     if ended.status == 130:
         if not lines or not re.match("teleopdesign: stopped", lines.pop()):
             wrong.append("does not say that it was stopped")
@@ -268,9 +268,9 @@ def goes_on(command, sources, out):
     wrong = violations(command, ended, out, signal.SIGINT, before)
     if ended.status != 0:
         wrong.append(f"does not go on: {ended.status}")
-    told = re.search(r"goes on after (\d+)", ended.said)
-    if not is_done and (int(told[1]) if told else 0) < kept:
-        wrong.append(f"{kept} were kept, says {ended.said!r}")
+    match = re.search(r"goes on after (\d+)", ended.output)
+    if not is_done and (int(match[1]) if match else 0) < kept:
+        wrong.append(f"{kept} were kept, says {ended.output!r}")
     return wrong
 
 

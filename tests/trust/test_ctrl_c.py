@@ -72,23 +72,23 @@ def sources(tmp_path_factory):
 @pytest.mark.skipif(not BETWEEN, reason="TELEOPDESIGN_MOMENTS says how often")
 @pytest.mark.parametrize("name", ["check", "derive", "passivity"])
 def test_an_interrupt_at_any_moment_is_one_line_and_status_130(name, sources, tmp_path):
-    command, said = COMMANDS[name], tmp_path / "said"
+    command, log = COMMANDS[name], tmp_path / "log"
     prepare(command, tmp_path / "out")
-    said.mkdir()
+    log.mkdir()
     arguments = [a.replace("OUT", str(tmp_path / "out")) for a in command.arguments]
     subprocess.run(
-        [sys.executable, "-c", SWEEP, str(said), str(BETWEEN), *arguments],
+        [sys.executable, "-c", SWEEP, str(log), str(BETWEEN), *arguments],
         cwd=sources,
         env=environment(),
         capture_output=True,
         timeout=stopping.PATIENCE,
     )
-    moments = [line.split() for line in (said / "all").read_text().splitlines()]
+    moments = [line.split() for line in (log / "all").read_text().splitlines()]
     assert len(moments) >= 3
     wrong = {
         (moment, status): text
         for moment, status in moments
-        if (text := (said / moment).read_text()) != "teleopdesign: stopped\n" or status != "130"
+        if (text := (log / moment).read_text()) != "teleopdesign: stopped\n" or status != "130"
     }
     assert wrong == {}
 
@@ -158,7 +158,7 @@ except KeyboardInterrupt as stop:
     assert ctrl_c_heard(code) == STOPPED
 
 
-def test_a_second_interrupt_while_the_first_is_told_changes_nothing():
+def test_a_second_interrupt_while_the_first_is_reported_changes_nothing():
     code = """
 import builtins
 def say(*_, **__):

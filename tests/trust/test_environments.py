@@ -133,8 +133,8 @@ UNWRITABLE = {
 )  # fmt: skip
 def test_laws_are_compiled_wherever_nothing_can_be_written(place, run_kernel, tmp_path):
     changed = UNWRITABLE[place] | ({"XDG_CACHE_HOME": str(tmp_path)} if place == "no home" else {})
-    out, said = run_kernel(**changed)
-    assert (out.split()[:2], said) == (["42", "1.0"], "")
+    out, errors = run_kernel(**changed)
+    assert (out.split()[:2], errors) == (["42", "1.0"], "")
 
 
 @pytest.mark.slow
@@ -192,8 +192,8 @@ def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kerne
         (file,) = (folder / "__pycache__").glob(f"*.{ending}")
         file.write_bytes(file.read_bytes()[:20])
     for _ in range(2):
-        out, said = run_kernel(XDG_CACHE_HOME=str(tmp_path))
-        assert (out.split()[:2], said) == (["42", "1.0"], "")
+        out, errors = run_kernel(XDG_CACHE_HOME=str(tmp_path))
+        assert (out.split()[:2], errors) == (["42", "1.0"], "")
     if damage == "another source":
         assert source.read_text() == text
     if damage.startswith("short"):
@@ -230,8 +230,8 @@ def test_processes_share_a_cold_cache(tmp_path):
         for _ in range(2)
     ]
     for process in started:
-        out, said = process.communicate(timeout=600)
-        assert (out.split()[:2], said) == (["42", "1.0"], "")
+        out, errors = process.communicate(timeout=600)
+        assert (out.split()[:2], errors) == (["42", "1.0"], "")
     folder = tmp_path / "teleopdesign" / "machine_code"
     assert [p.suffix for p in folder.iterdir() if p.is_file()] == [".py"]
 

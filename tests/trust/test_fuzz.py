@@ -50,8 +50,8 @@ def test_a_spoilt_file_is_read_or_refused_in_one_line(reader):
     try:
         spoil()
     except BaseException as error:  # the file is kept, and too long to print
-        said = f"{KEPT / reader}: {type(error).__name__}: {str(error)[:300]}"
-        pytest.fail(said, pytrace=False)
+        line = f"{KEPT / reader}: {type(error).__name__}: {str(error)[:300]}"
+        pytest.fail(line, pytrace=False)
 
 
 def kept_files():

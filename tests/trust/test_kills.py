@@ -60,7 +60,7 @@ def test_a_disk_that_is_full_leaves_whole_files_and_says_so(name, sources, tmp_p
     command, out = COMMANDS[name], tmp_path / "out"
     prepare(command, out)
     ended = run(command, sources, out, room=300)
-    lines = [x for x in ended.said.splitlines() if not re.search(command.progress or "^$", x)]
+    lines = [x for x in ended.output.splitlines() if not re.search(command.progress or "^$", x)]
     assert ended.status == 2 and len(lines) == 1, ended
     assert "File too large" in lines[0]
     for path in (p for p in out.rglob("*") if p.is_file() and p.suffix != ".part"):
@@ -71,7 +71,7 @@ def test_a_disk_that_is_full_leaves_whole_files_and_says_so(name, sources, tmp_p
 @pytest.mark.skipif(not KILLS, reason="TELEOPDESIGN_KILLS says how many")
 def test_many_stopped_commands_leave_whole_files_and_go_on(sources, tmp_path):
     seed = int(os.environ.get("TELEOPDESIGN_SEED", KILLS))
-    chance, found, counted, usual = random.Random(seed), [], {}, {}
+    chance, problems, counted, usual = random.Random(seed), [], {}, {}
     for turn in range(KILLS):
         name, number = chance.choice([*COMMANDS]), chance.choice(SIGNALS)
         if name not in usual:  # s that the whole command takes on this machine as it is now
@@ -85,7 +85,7 @@ def test_many_stopped_commands_leave_whole_files_and_go_on(sources, tmp_path):
         wrong, status = stopped(name, sources, folder, after=after, number=number)
         counted[status] = counted.get(status, 0) + 1
         if wrong:
-            found.append((name, number.name, round(after, 3), wrong))
+            problems.append((name, number.name, round(after, 3), wrong))
         print(turn, name, number.name, round(after, 2), status, wrong, flush=True)
     print(f"{KILLS} stopped; statuses {counted}")
-    assert found == []
+    assert problems == []

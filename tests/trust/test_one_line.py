@@ -67,10 +67,10 @@ RAISING = {
 def one_line(capsys, arguments, status=2):
     """The one line on stderr of a command that ends with this status."""
     assert main([str(a) for a in arguments]) == status
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and said.startswith("teleopdesign: "), said
-    assert said[:-1].isprintable() and len(said) < 1200, said
-    return said
+    output = capsys.readouterr().err
+    assert output.count("\n") == 1 and output.startswith("teleopdesign: "), output
+    assert output[:-1].isprintable() and len(output) < 1200, output
+    return output
 
 
 @pytest.mark.parametrize("what", RAISING)
@@ -220,8 +220,8 @@ def test_a_traceback_is_printed_where_it_is_asked_for(by, capsys, monkeypatch):
     if by == "environment":
         monkeypatch.setenv(TRACEBACK, "1")
     assert main(["--traceback", "effects"] if by == "option" else ["effects"]) == 70
-    said = capsys.readouterr().err
-    assert "Traceback (most recent call last)" in said and "\x1b" not in said
+    output = capsys.readouterr().err
+    assert "Traceback (most recent call last)" in output and "\x1b" not in output
 
 
 # what a terminal is given

@@ -16,16 +16,16 @@ def planted(rows, missing):
     return replace(rows, residual=rows.residual + rows.lowpassed(lambda a: missing(a)[None])[:, 0])
 
 
-def said(rows, found, axis="prismatic"):
+def sentence_on(rows, dependence, axis="prismatic"):
     """The sentence about a dependence, with its formula."""
-    formula = formula_for(rows, model_columns(rows), found)
+    formula = formula_for(rows, model_columns(rows), dependence)
     left = rows.residual * rows.root
-    sides = contrasts(rows, found, left)
-    return sentence_for(found.shape, curve_of(rows, found), formula, sides, axis), formula
+    sides = contrasts(rows, dependence, left)
+    return sentence_for(dependence.shape, curve_of(rows, dependence), formula, sides, axis), formula
 
 
-def written(tmp_path, name, found, prepared, described=None):
-    part, largest = found.largest
+def written(tmp_path, name, dependence, prepared, described=None):
+    part, largest = dependence.largest
     path = tmp_path / f"{name}.py"
     write_effect(path, part, described or largest, prepared)
     return load_effect(path)

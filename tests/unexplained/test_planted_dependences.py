@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from unexplained.planting import planted, said
+from unexplained.planting import planted, sentence_on
 
 from teleopdesign.unexplained.curve import curve_of
 from teleopdesign.unexplained.dependence import Dependence, dependences, model_columns
@@ -44,12 +44,12 @@ QUICK = ("force over position",)
 @pytest.mark.parametrize(
     "name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in PLANTED]
 )
-def test_a_planted_dependence_is_said_with_variable_range_and_size(rows, floor_squares, name):
+def test_a_planted_dependence_is_reported_with_variable_range_and_size(rows, floor_squares, name):
     missing, words, size = PLANTED[name]
     here = planted(rows, missing)
-    found, _ = dependences(here, floor_squares)
-    assert found[0].shape.name == name
-    text, formula = said(here, found[0])
+    shapes, _ = dependences(here, floor_squares)
+    assert shapes[0].shape.name == name
+    text, formula = sentence_on(here, shapes[0])
     assert words in text
     assert formula.terms[0].kind in ("power", "above")
     # noise of the sensors is a tenth to a third of what is planted
@@ -81,21 +81,21 @@ def test_a_planted_constant_has_its_sign_and_size(
     fixed = adequate.model.parameters["device.inertia"]
     model = adequate.model.with_values({"device.inertia": replace(fixed, fixed=True)})
     here = planted(rows_of(model, rod, "device"), missing)
-    found, _ = dependences(here, floor_squares)
-    assert found[0].shape.name == name
+    shapes, _ = dependences(here, floor_squares)
+    assert shapes[0].shape.name == name
     if size is not None:
-        assert curve_of(here, found[0]).y[0] == pytest.approx(size, rel=0.1)
+        assert curve_of(here, shapes[0]).y[0] == pytest.approx(size, rel=0.1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("frequency", [0.3, 17.0, 50.0])
-def test_a_hum_is_found_at_its_frequency(rows, floor_squares, frequency):
+def test_a_hum_is_detected_at_its_frequency(rows, floor_squares, frequency):
     here = planted(
         rows, lambda a: a.push * 0.15 * np.sin(2 * np.pi * frequency * a.signals["time"] + 1.0)
     )
-    found, _ = dependences(here, floor_squares)
-    assert found[0].shape.carrier is FORCE and found[0].shape.variable.name == "time"
-    text, formula = said(here, found[0])
+    shapes, _ = dependences(here, floor_squares)
+    assert shapes[0].shape.carrier is FORCE and shapes[0].shape.variable.name == "time"
+    text, formula = sentence_on(here, shapes[0])
     # a tenth of the resolution of a record of 12 s
     assert formula.terms[0].number == pytest.approx(frequency, abs=0.01)
     assert np.hypot(*formula.coefficients) == pytest.approx(0.15, rel=0.1)
@@ -103,25 +103,29 @@ def test_a_hum_is_found_at_its_frequency(rows, floor_squares, frequency):
 
 
 @pytest.mark.slow
-def test_cogging_of_many_periods_is_found_at_its_period(rows, floor_squares):
+def test_cogging_of_many_periods_is_detected_at_its_period(rows, floor_squares):
     here = planted(rows, lambda a: a.push * 0.1 * np.sin(2 * np.pi * position(a) / 1.2e-3))
-    found, _ = dependences(here, floor_squares)
-    assert found[0].shape.name == "force repeating over position"
-    assert 1.0 / found[0].knots[0] == pytest.approx(1.2e-3, rel=1e-3)
-    assert "every 1.2 mm of travel" in said(here, found[0])[0]
+    shapes, _ = dependences(here, floor_squares)
+    assert shapes[0].shape.name == "force repeating over position"
+    assert 1.0 / shapes[0].knots[0] == pytest.approx(1.2e-3, rel=1e-3)
+    assert "every 1.2 mm of travel" in sentence_on(here, shapes[0])[0]
 
 
 @pytest.mark.slow
-def test_only_one_direction_is_said(rows, floor_squares):
+def test_only_one_direction_is_reported(rows, floor_squares):
     here = planted(
         rows, lambda a: a.push * np.where(a.signals["velocity"] > 0, a.signals["velocity"], 0.0)
     )
-    found, _ = dependences(here, floor_squares)
-    assert found[0].shape.name in ("force over speed", "force over velocity", "friction over speed")
-    assert "forward" in said(here, found[0])[0]
+    shapes, _ = dependences(here, floor_squares)
+    assert shapes[0].shape.name in (
+        "force over speed",
+        "force over velocity",
+        "friction over speed",
+    )
+    assert "forward" in sentence_on(here, shapes[0])[0]
 
 
-def test_only_after_a_rest_is_said(rows):
+def test_only_after_a_rest_is_reported(rows):
     """A friction at low speed that is there only where the body had rested before."""
     shape = Shape(SHAPES[1].carrier, next(s.variable for s in SHAPES if "over speed" in s.name))
 
@@ -135,9 +139,9 @@ def test_only_after_a_rest_is_said(rows):
     one = Dependence(
         shape, np.zeros(1), columns, np.ones(1), np.zeros(0), np.zeros(0), 9.0, 0.0, 1.0
     )
-    told = contrasts(here, one, here.residual * here.root)
-    assert [c.only for c in told if "rested" in c.sides[0]] == ["after it has rested"]
-    assert [c.only for c in told if "forward" in c.sides[0]] == [""]
+    sides = contrasts(here, one, here.residual * here.root)
+    assert [c.only for c in sides if "rested" in c.sides[0]] == ["after it has rested"]
+    assert [c.only for c in sides if "forward" in c.sides[0]] == [""]
 
 
 @pytest.mark.slow

@@ -34,7 +34,7 @@ def test_the_shipped_model_needs_more_friction_at_low_speed_in_both_directions(f
     assert part.after < 0.3 * part.error
 
 
-def test_a_curve_lies_within_its_band_of_means_that_it_has_not_seen(failure):
+def test_a_curve_lies_within_its_band_of_means_of_other_rows(failure):
     curve = failure.largest[1].curve
     x, y, low, high = curve.means
     at = np.interp(x, curve.x, curve.y)
@@ -42,7 +42,7 @@ def test_a_curve_lies_within_its_band_of_means_that_it_has_not_seen(failure):
     assert np.mean((at > low - 0.1 * np.ptp(y)) & (at < high + 0.1 * np.ptp(y))) > 0.9
 
 
-def test_a_model_that_leaves_only_noise_is_said_to_be_fine(rod, adequate):
+def test_a_model_that_leaves_only_noise_is_reported_to_be_fine(rod, adequate):
     (finding,) = where_it_fails(adequate, rod)
     assert finding.concern == "fine"
 
@@ -75,7 +75,7 @@ def test_every_view_of_the_issue_is_there(failure):
     assert {*wanted, "time since reversal"} == set(failure.parts[0].views)
 
 
-def test_what_is_found_is_drawn(failure):
+def test_every_dependence_is_drawn(failure):
     import matplotlib.pyplot as plt
 
     figure = failure.plot()
@@ -85,18 +85,18 @@ def test_what_is_found_is_drawn(failure):
     plt.close(figure)
 
 
-def test_a_record_with_its_own_zero_is_not_asked_about_position(rod, adequate):
+def test_a_record_with_a_separate_zero_is_not_asked_about_position(rod, adequate):
     zero = frozenset({"position_zero"})
-    own = replace(rod, stretches=tuple(replace(s, offset_names=zero) for s in rod.stretches))
-    rows = rows_of(adequate.model, own, "device")
+    zeroed = replace(rod, stretches=tuple(replace(s, offset_names=zero) for s in rod.stretches))
+    rows = rows_of(adequate.model, zeroed, "device")
     assert len(knots_of(POSITION, rows)) == 0
 
 
 @pytest.mark.slow
 def test_without_check_records_blocks_are_held_out(rod, lacking):
-    seen = replace(rod, stretches=rod.of("fit"))
-    found = describe_residual(lacking, seen)
-    assert found.largest[1].dependence.shape.name == "friction over speed"
+    fit_records = replace(rod, stretches=rod.of("fit"))
+    description = describe_residual(lacking, fit_records)
+    assert description.largest[1].dependence.shape.name == "friction over speed"
 
 
 @pytest.mark.slow
@@ -110,17 +110,17 @@ def test_looking_is_fast(rod, lacking, failure):
 def test_time_and_travel_are_counted_from_where_the_body_set_off():
     direction = np.array([0, 1, 1, 0, 0, 0, 1, 1, -1, -1], dtype=np.int8)
     x = np.array([0.0, 1, 2, 2, 2, 2, 3, 4, 3, 2])
-    found = look_back_to_reversal(direction, x, sample_time=0.1, rest=0.35)
-    assert found.known.tolist() == [False] + [True] * 9
-    assert found.time == pytest.approx([0, 0, 0.1, 0.2, 0.3, 0.4, 0, 0.1, 0, 0.1])
-    assert found.travel == pytest.approx([0, 0, 1, 1, 1, 1, 0, 1, 0, 1])
-    assert found.rested[6:8] == pytest.approx(0.4) and found.rested[8] == pytest.approx(0.1)
+    elapsed = look_back_to_reversal(direction, x, sample_time=0.1, rest=0.35)
+    assert elapsed.known.tolist() == [False] + [True] * 9
+    assert elapsed.time == pytest.approx([0, 0, 0.1, 0.2, 0.3, 0.4, 0, 0.1, 0, 0.1])
+    assert elapsed.travel == pytest.approx([0, 0, 1, 1, 1, 1, 0, 1, 0, 1])
+    assert elapsed.rested[6:8] == pytest.approx(0.4) and elapsed.rested[8] == pytest.approx(0.1)
     short = look_back_to_reversal(direction, x, sample_time=0.1, rest=0.5)
     assert short.time[6] == pytest.approx(0.5), "a short stop is no new start"
 
 
 @given(st.floats(1e-9, 1e9), st.sampled_from([-1.0, 1.0]))
-def test_a_number_is_said_to_two_digits(size, sign):
+def test_a_number_is_reported_to_two_digits(size, sign):
     # half of the second digit, at worst of 1.0
     assert float(number(sign * size)) == pytest.approx(sign * size, rel=0.0501)
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from diagnose.own_cases import FEW, truth_of, write_own
+from diagnose.simulated_cases import FEW, truth_of, write_simulated
 from unexplained.planting import written
 
 from teleopdesign import Model, load_experiment
@@ -13,7 +13,7 @@ from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.unexplained import describe_residual
 
-SAID = {
+WORDS = {
     "viscous": ("damping",),
     "coulomb": ("friction",),
     "stribeck": ("friction over speed",),
@@ -34,18 +34,18 @@ SAID = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("effect", SAID)
-def test_what_the_independent_simulator_hides_is_said(tmp_path, effect):
-    folder = write_own(tmp_path / "case", effect, seed=21)
+@pytest.mark.parametrize("effect", WORDS)
+def test_what_the_independent_simulator_hides_is_reported(tmp_path, effect):
+    folder = write_simulated(tmp_path / "case", effect, seed=21)
     prepared = prepare(load_experiment(folder))
     fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
-    assert describe_residual(fit, prepared).largest[1].dependence.shape.name in SAID[effect]
+    assert describe_residual(fit, prepared).largest[1].dependence.shape.name in WORDS[effect]
 
 
 @pytest.mark.slow
-def test_where_the_independent_simulator_hides_nothing_nothing_is_said(tmp_path):
+def test_where_the_independent_simulator_hides_nothing_nothing_is_reported(tmp_path):
     for seed in range(1000, 1012):
-        folder = write_own(tmp_path / str(seed), None, seed=seed)
+        folder = write_simulated(tmp_path / str(seed), None, seed=seed)
         prepared = prepare(load_experiment(folder))
         fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
         assert describe_residual(fit, prepared).largest is None, seed
@@ -54,7 +54,7 @@ def test_where_the_independent_simulator_hides_nothing_nothing_is_said(tmp_path)
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_a_force_outside_the_catalogue_is_described_written_and_named(tmp_path, seed):
-    folder = write_own(tmp_path / "case", None, seed=300 + seed, level="outside")
+    folder = write_simulated(tmp_path / "case", None, seed=300 + seed, level="outside")
     experiment = load_experiment(folder)
     prepared = prepare(experiment)
     model = Model.from_experiment(experiment)

@@ -64,9 +64,9 @@ def test_every_dependence_is_an_effect_file_that_loads_or_says_why_not(
 @pytest.mark.slow
 def test_the_command_says_where_it_fails_and_writes_what_is_asked(tmp_path, capsys):
     wanted = {n: tmp_path / n for n in ("f.png", "f.json", "low_speed.py")}
-    asked = ["--figure", "f.png", "--json", "f.json", "--effect-file", "low_speed.py"]
-    asked = [str(wanted.get(a, a)) for a in asked]
-    assert main(["describe", str(example("rod")), "--as-is", *asked]) == 0
+    arguments = ["--figure", "f.png", "--json", "f.json", "--effect-file", "low_speed.py"]
+    arguments = [str(wanted.get(a, a)) for a in arguments]
+    assert main(["describe", str(example("rod")), "--as-is", *arguments]) == 0
     printed = capsys.readouterr().out
     assert "in both directions" in printed and "teleopdesign diagnose" in printed
     assert all(path.stat().st_size > 500 for path in wanted.values())

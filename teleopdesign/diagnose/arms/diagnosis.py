@@ -138,8 +138,8 @@ class ArmDiagnosis(ByValue):
         return plot_arm_diagnosis(self)
 
     def _repr_html_(self) -> str:
-        said = "; ".join(f"{joint}: {sentence(one)}" for joint, one in self.joints.items())
-        return ladder_html(self.rungs, floor=self.floor, note=said)
+        sentences = "; ".join(f"{joint}: {sentence(one)}" for joint, one in self.joints.items())
+        return ladder_html(self.rungs, floor=self.floor, note=sentences)
 
     def __repr__(self) -> str:
         head = f"{'added':<42}{'fit error':>10}{'check error':>13}"

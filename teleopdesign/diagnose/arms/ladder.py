@@ -50,17 +50,17 @@ def find_missing_in_arm(
     raises ExperimentError: the experiment has no arm, or lacks what the comparison needs
     raises ModelError: `among` holds an unknown name
     """
-    said = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     stated = model or Model.from_experiment(experiment)
     if among is not None:
         stated = restrict_candidates(among, stated)
-    said("forces of the links along the measured motion")
+    report("forces of the links along the measured motion")
     prepared = prepare_arm(experiment, seed=seed)
     known = stated.known if prepared.base is None else _select_beyond_links(stated.known)
     models = {
         j: Model({j: body}, known).with_links(prepared.initial) for j, body in stated.bodies.items()
     }
-    said("re-estimating the model")
+    report("re-estimating the model")
     first = estimate_arm(models, prepared)
     prepared, models = as_bodies(prepared, first)
     first = estimate_arm(models, prepared, rounds=1)
@@ -73,10 +73,10 @@ def find_missing_in_arm(
             stated=models[j],
             seed=seed,
             plan=plan.for_joints(len(prepared.joints)),
-            progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
+            progress=lambda text, j=j: report(f"{j}: {text}"),  # type: ignore[misc]
         )
         joints[j] = begin_joint(j, search, first.prepared[j], first.fits[j].model, prepared)
-    rungs = _climb(joints, first, prepared, said)
+    rungs = _climb(joints, first, prepared, report)
     prepared = with_other_motions(prepared, others_of(joints))
     diagnosis = _conclude(experiment, prepared, joints, rungs)
     limited = {j: with_candidates_named(among, d) for j, d in diagnosis.joints.items()}
@@ -103,7 +103,7 @@ def _climb(
     joints: dict[str, Joint],
     first: ArmFit,
     prepared: PreparedArm,
-    said: Callable[[str], None],
+    report: Callable[[str], None],
 ) -> tuple[ArmRung, ...]:
     """Climb the ladder of each joint.
 
@@ -125,7 +125,7 @@ def _climb(
         if astray is not None:
             here = _begin_joint_again(joints, astray, prepared, j)
         beside = with_other_motions(prepared, others_of(joints))
-        joints[j], rungs = _climb_joint(here, rungs, beside, said)
+        joints[j], rungs = _climb_joint(here, rungs, beside, report)
         waiting.remove(j)
         if len(joints[j].state.rungs) > 1:
             for other in waiting:
@@ -137,7 +137,7 @@ def _climb_joint(
     joint: Joint,
     rungs: tuple[ArmRung, ...],
     prepared: PreparedArm,
-    said: Callable[[str], None],
+    report: Callable[[str], None],
 ) -> tuple[Joint, tuple[ArmRung, ...]]:
     """Climb the ladder of a joint, and test its effects on the whole arm.
 
@@ -147,7 +147,7 @@ def _climb_joint(
     """
     while True:
         state, _ = climb(joint.search, joint.state, _as_they_are)
-        said(f"{joint.name}: all joints together")
+        report(f"{joint.name}: all joints together")
         gone = {one.candidate.key for one in state.set_aside}
         joint, rungs = hold_against_arm(replace(joint, state=state), rungs, prepared)
         if gone.issuperset(one.candidate.key for one in joint.state.set_aside):
@@ -212,9 +212,9 @@ def _conclude(
             continue
         at = rung.added.at
         relevant = joints[at].search.criteria.relevant
-        said = undetermined_coupling(rung, last, prepared, relevant=relevant)
-        if said is not None:
-            more = (*diagnoses[at].undetermined, said)
+        coupling = undetermined_coupling(rung, last, prepared, relevant=relevant)
+        if coupling is not None:
+            more = (*diagnoses[at].undetermined, coupling)
             diagnoses[at] = replace(diagnoses[at], undetermined=more)
     verdicts = {d.verdict for d in diagnoses.values()}
     whole = "undecided"

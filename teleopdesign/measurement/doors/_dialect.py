@@ -189,11 +189,16 @@ def _header(
         last = plain[-1] if plain and not plain[-1].lstrip().startswith(COMMENTS) else ""
         names = cells_of(last, separator) if last else []
         return (() if _is_data(names, comma) else tuple(names)), ()
-    joined, said = names_and_units(rows)
+    joined, units_by_name = names_and_units(rows)
     for label, *units in rows[:-1]:  # a row of units that says so itself: "Y_Unit_Label"
-        if not said and "unit" in label.lower() and any(units) and all(map(is_unit_cell, units)):
+        if (
+            not units_by_name
+            and "unit" in label.lower()
+            and any(units)
+            and all(map(is_unit_cell, units))
+        ):
             return rows[-1], ("", *map(bare_unit, units))
-    return joined, said
+    return joined, units_by_name
 
 
 def open_bytes(path: Path) -> IO[bytes]:

@@ -64,11 +64,11 @@ def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> L
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {n: _column([row[names.index(n)] for row in data]) for n in wanted}
 
-    said = {n: u for n, u in zip(names, units, strict=False) if u}
+    unit_of = {n: u for n, u in zip(names, units, strict=False) if u}
     kinds = datetime.datetime | datetime.time | datetime.timedelta
-    said |= {n: "s" for n, c in zip(names, rows[first], strict=False) if isinstance(c, kinds)}
+    unit_of |= {n: "s" for n, c in zip(names, rows[first], strict=False) if isinstance(c, kinds)}
     remarks = tuple(" ".join(filter(None, row)) for row in above)
-    return Log(names, read, said, notes, remarks=remarks)
+    return Log(names, read, unit_of, notes, remarks=remarks)
 
 
 def _text(cell: Any) -> str:

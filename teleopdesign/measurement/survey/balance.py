@@ -114,16 +114,16 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
     Each follows from the factor by which the command balances the force of the hand. If this
     factor is far from one and none of them is guessed, a note reports it.
     """
-    said = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
+    ratio_and_line = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
     is_motors = choices.gear_ratio is None and all(
         _is_motors(_column_of(survey, key)) for key in ("position", "actuator_force")
     )
-    if said is not None and is_motors:
-        _guess_gear(survey, said[0], f"the log says {said[1]!r}")
-    elif said is not None:
+    if ratio_and_line is not None and is_motors:
+        _guess_gear(survey, ratio_and_line[0], f"a line of the log states {ratio_and_line[1]!r}")
+    elif ratio_and_line is not None:
         survey.notes.append(
-            f"the log says {said[1]!r}: if position and force are those of the motor, "
-            f"use --gear-ratio {said[0]:g}"
+            f"a line of the log states {ratio_and_line[1]!r}: if position and force are those of "
+            f"the motor, use --gear-ratio {ratio_and_line[0]:g}"
         )
     if "interaction_force" not in survey.channels:
         return
@@ -142,7 +142,7 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
     elif not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
         factor = with_standard_error(scale, error)
         force, hand = (_column_of(survey, f"{k}_force") for k in ("actuator", "interaction"))
-        if is_motors and said is None and scale > 1:
+        if is_motors and ratio_and_line is None and scale > 1:
             whole = float(round(scale))
             ratio = whole if abs(scale - whole) < 2 * error else float(f"{scale:.3g}")
             _guess_gear(survey, ratio, f"{force!r} balances {hand!r} with a factor of {factor}")
@@ -219,5 +219,5 @@ def _guess_gear(survey: Survey, ratio: float, why: str) -> None:
         if key in survey.channels:
             survey.channels[key]["gear_ratio"] = ratio
     survey.guesses["channels.position.gear_ratio"] = (
-        f"{ratio:g}: by their names, position and force are those of the motor; {why}"
+        f"{ratio:g}: the names of position and force are those of a motor, and {why}"
     )

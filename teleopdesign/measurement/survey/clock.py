@@ -52,8 +52,8 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
 
 def _explain_empty(finite: float) -> str:
     """Why a column with this part of its rows filled is left out, and what to do about it."""
-    said = f"numbers in {finite:.0%} of its rows"
-    return f"{said}: {OF_ANOTHER_CLOCK}" if finite > 0 else said
+    content = f"numbers in {finite:.0%} of its rows"
+    return f"{content}: {OF_ANOTHER_CLOCK}" if finite > 0 else content
 
 
 def _without_name(message: str, column: str, file: str) -> str:
@@ -80,12 +80,16 @@ def time_column(
     else:
         scores = {n: max(likeness(n, "time"), SURE_NAME * _is_unit_of_time(n)) for n in rising}
         if not scores:
-            guesses["sample_rate"] = "no column rises like a time: 1000 Hz is a guess"
+            guesses["sample_rate"] = (
+                "no column rises as a time does: the sample rate is assumed to be 1000 Hz"
+            )
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
         if scores[name] == 0.0:
             name = next(iter(rising))
-            guesses["channels.time.column"] = f"{name!r} is the first column that always rises"
+            guesses["channels.time.column"] = (
+                f"{name!r} is read as the time: it is the first column that always rises"
+            )
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
     if unit is None and _is_unit_of_time(name):
         unit = unit_of_text(bare_name(name))
@@ -160,8 +164,8 @@ def interpolate_columns(
         fine = np.isfinite(x) & np.isfinite(at)
         if fine.sum() < 2:
             continue
-        said = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
+        column_unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
         columns[name] = SurveyedColumn(
-            name, np.interp(clock.time, at[fine], x[fine]), x[fine], said
+            name, np.interp(clock.time, at[fine], x[fine]), x[fine], column_unit
         )
     return clock.time, columns

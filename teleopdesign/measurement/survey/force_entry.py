@@ -38,14 +38,14 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         entry["offset"] = -middle
         survey.guesses[f"channels.{key}.offset"] = (
             f"{-middle:g}: {name!r} holds whole numbers about {middle:g} and none below 0, as an "
-            "analog input does whose middle is no force"
+            "analog input does; the middle of the range of this input is zero force"
         )
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
         if not names_torque(name):
             unit = choices.torque_constant[1].rpartition("/")[2]
     if unit is None and names_current(name):
         unit = "A"
-        survey.guesses[f"channels.{key}.unit"] = f"A: {name!r} is a current by its name"
+        survey.guesses[f"channels.{key}.unit"] = f"A: the name {name!r} is that of a current"
     if unit in ("A", "mA", "V"):
         entry["unit"] = unit
         base = "V" if unit == "V" else "A"
@@ -54,13 +54,13 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
             constant = (PLACEHOLDER, f"{unit_of('force', axis)}/{base}")
             why = (
                 f"{constant[0]:g} {constant[1]} is a placeholder for the motor's constant: "
-                "state the true constant, forces and parameters scale in proportion"
+                "state the true constant, since forces and parameters scale in proportion"
             )
             if (stated := torque_constant_in(survey.remarks)) and measures(
                 stated[1].rpartition("/")[0], "force", axis
             ):
                 constant = stated[:2]
-                why = f"{constant[0]:g} {constant[1]}: the log says {stated[2]!r}"
+                why = f"{constant[0]:g} {constant[1]}: a line of the log states {stated[2]!r}"
             survey.guesses[f"channels.{key}.torque_constant"] = why
         entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
         return entry

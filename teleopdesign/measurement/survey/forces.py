@@ -187,7 +187,7 @@ def _choose_signs(
         if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
             survey.channels["interaction_force"]["sign"] = -1
             survey.guesses["channels.interaction_force.sign"] = (
-                f"-1: {hand!r} then balances {force!r} and leaves "
+                f"-1: with this sign, {hand!r} balances {force!r} and leaves "
                 f"{1 - by_sign[-1.0].explained:.0%} of the force instead of "
                 f"{1 - by_sign[1.0].explained:.0%}"
             )

@@ -28,20 +28,13 @@ from .content import (
 )
 from .derivative import (
     DERIVATIVE,
-    NEAR_USUAL,
-    USUAL_COUNTS,
     derivative_factor,
     follows_direction,
     unwrap_column,
     wrap_of,
 )
-from .remarks import counts_per_turn_in
+from .encoder_counts import guess_counts_per_turn, is_counter
 
-#: words in names of counters, and of angles, which may be whole degrees of many turns; and the
-#: range above which whole numbers are counts: of a counter by its name, and of any other name
-COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
-ANGLES = frozenset("angle winkel theta phi angulo angolo 角度 각도 угол".split())
-MOST_ANGLE, MOST_DEGREES = 50, 1000
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
 #: names of drives that report positions in turns; and words for rotating parts
@@ -100,8 +93,8 @@ def find_position(
         named = likeness(best, "position") > 0 or is_unit_of(
             survey.columns[best].unit or "", "position"
         )
-        why = "by its name and unit" if named else "it is the first that moves and may be one"
-        why = "its derivative is there too" if best in derivative else why
+        why = "name or unit suggest a position" if named else "it is the first column that moves"
+        why = "another column is its derivative" if best in derivative else why
         survey.guesses["channels.position.column"] = f"{best!r} is read as the position: {why}"
     elif choices.position is None and (others := as_likely(scores, best)):
         survey.guesses["channels.position.column"] = explain_ambiguity(best, others, "the position")
@@ -125,8 +118,10 @@ def _may_be_position(column: SurveyedColumn) -> bool:
     """Whether a moving column is not a second clock: the angle of a wheel may only rise, too."""
     if not rises(column.values):
         return True
-    said = likeness(column.name, "position") >= SURE_NAME or is_unit_of(column.unit, "position")
-    return said and not is_unit_of(column.unit, "time")
+    is_stated = likeness(column.name, "position") >= SURE_NAME or is_unit_of(
+        column.unit, "position"
+    )
+    return is_stated and not is_unit_of(column.unit, "time")
 
 
 def _is_velocity(column: SurveyedColumn) -> bool:
@@ -159,8 +154,10 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     names = {word for name in survey.columns for word in words_of(name)}
     forces = [u for u in units if measures(u, "force")]
     turned = [u for u in units if measures(u, "force", "revolute")]
-    if forces and not turned or any(measures(u, "position") for u in units):
-        why, axis = f"forces are in {forces[0] if forces else 'N'}", "prismatic"
+    lengths = [u for u in units if measures(u, "position")]
+    if forces and not turned or lengths:
+        why = f"forces are in {forces[0]}" if forces else f"a column is in {lengths[0]}"
+        axis = "prismatic"
     elif turned and not forces:
         why, axis = f"forces are in {turned[0]}", "revolute"
     else:
@@ -169,10 +166,12 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         torques = TORQUES.intersection(names)
         revolute = turning or torques or unit == "counts" or "A" in units
         axis = "revolute" if revolute else "prismatic"
-        why = f"the position is called {position!r}" if turning else "no unit or name says which"
-        if torques and not turning:
-            why = f"a column is called {min(torques)!r}"
-    survey.guesses["model.device.axis"] = f'"{axis}": {why}'
+        why = "no unit and no name of a column determines the axis"
+        if turning:
+            why = f"the name {position!r} is that of an angle"
+        elif torques:
+            why = f"the name of a column contains {min(torques)!r}"
+    survey.guesses["model.device.axis"] = f"the axis is {axis}: {why}"
     return axis
 
 
@@ -185,7 +184,7 @@ def describe_position(
     unit = choices.units.get(position) or column.unit
     if unit is None and choices.counts_per_turn is not None:
         unit = "counts"
-    if unit is None and axis == "revolute" and _counts(column):
+    if unit is None and axis == "revolute" and is_counter(column):
         unit = "counts"
         survey.guesses["channels.position.unit"] = (
             f"counts: {position!r} holds whole numbers, as the counter of an encoder does"
@@ -199,16 +198,7 @@ def describe_position(
     if unit == "counts":
         per_turn = choices.counts_per_turn
         if per_turn is None:
-            per_turn, why = jump or 4096.0, "look at the encoder"
-            if (said_above := counts_per_turn_in(survey.remarks)) is not None:
-                per_turn, line = said_above
-                why = f"the log says {line!r}"
-            elif velocity is not None and (counted := _counts_per_turn(survey, column, velocity)):
-                per_turn = counted
-                why = f"then it agrees with {velocity!r} in {survey.columns[velocity].unit}"
-            survey.guesses["channels.position.counts_per_turn"] = (
-                f"{per_turn:g} counts a turn: {why}"
-            )
+            per_turn = guess_counts_per_turn(survey, column, velocity, jump)
         entry["counts_per_turn"] = per_turn
     else:
         factor = si_factor(unit, quantity="position", axis=axis)
@@ -225,54 +215,30 @@ def describe_position(
         entry["gear_ratio"] = choices.gear_ratio
     survey.channels["position"] = entry
     if velocity is not None:
-        said = choices.units.get(velocity) or survey.columns[velocity].unit
-        if said is not None and measures(said, "velocity", axis):
+        velocity_unit = choices.units.get(velocity) or survey.columns[velocity].unit
+        if velocity_unit is not None and measures(velocity_unit, "velocity", axis):
             more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
-            survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
+            survey.channels["velocity"] = {"column": velocity, "unit": velocity_unit, **more}
             _hold_time_against(survey, column, velocity)
-
-
-def _counts_per_turn(survey: Survey, column: SurveyedColumn, velocity: str) -> float:
-    """Usual counts per turn for which a velocity is the derivative of the position; 0: none."""
-    said = survey.columns[velocity].unit
-    if said is None or not measures(said, "velocity", "revolute"):
-        return 0.0
-    whole = unwrap_column(column.values, wrap_of(column.values))
-    factor, _ = derivative_factor(whole, survey.columns[velocity].values, sample_time_of(survey))
-    if not factor > 0.0:
-        return 0.0
-    counted = 2 * math.pi / (factor * si_factor(said, quantity="velocity", axis="revolute"))
-    usual = min(USUAL_COUNTS, key=lambda one: abs(math.log(counted / one)))
-    return usual if abs(counted / usual - 1.0) < NEAR_USUAL else 0.0
 
 
 def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
     """Check a guessed unit of time: a position and its velocity show the true time step."""
     why = survey.guesses.get("channels.time.unit")
-    unit, said = (survey.channels[key]["unit"] for key in ("position", "velocity"))
+    unit, velocity_unit = (survey.channels[key]["unit"] for key in ("position", "velocity"))
     if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
         return
     h = sample_time_of(survey)
     whole = unwrap_column(column.values, wrap_of(column.values))
     factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
-    slower = factor * si_factor(said, quantity="velocity", axis=survey.axis)
+    slower = factor * si_factor(velocity_unit, quantity="velocity", axis=survey.axis)
     slower /= si_factor(unit, quantity="position", axis=survey.axis)
     if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME_TIME:
         return
     survey.guesses["channels.time.unit"] = (
-        f"{why}; but {velocity!r} in {said} requires steps of {h / slower:.3g} s: "
+        f"{why}; but {velocity!r} in {velocity_unit} requires steps of {h / slower:.3g} s: "
         f"--sample-rate {float(f'{slower / h:.3g}'):g}"
     )
-
-
-def _counts(column: SurveyedColumn) -> bool:
-    """Whether a column without a unit is the counter of an encoder, by its whole numbers."""
-    values = column.readings[np.isfinite(column.readings)]
-    if not np.all(values == np.round(values)):
-        return False
-    words = set(words_of(column.name))
-    most = MOST_ANGLE if COUNTERS & words else math.inf if ANGLES & words else MOST_DEGREES
-    return float(np.ptp(values)) > most
 
 
 def _step_of_readings(values: Array) -> float:
@@ -288,23 +254,24 @@ def _position_unit(
     """A unit for a position without one, from its velocity or from its range; and the reason."""
     whole = unwrap_column(column.values, wrap_of(column.values))
     reach = float(np.ptp(whole))
-    if velocity is not None and (said := survey.columns[velocity].unit):
+    if velocity is not None and (velocity_unit := survey.columns[velocity].unit):
         factor, _ = derivative_factor(
             whole, survey.columns[velocity].values, sample_time_of(survey)
         )
         scale = (
-            factor * si_factor(said, quantity="velocity", axis=axis)
-            if measures(said, "velocity", axis)
+            factor * si_factor(velocity_unit, quantity="velocity", axis=axis)
+            if measures(velocity_unit, "velocity", axis)
             else 0.0
         )
         for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
             if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < 0.05:
-                return unit, f"{unit}: then it agrees with {velocity!r} in {said}"
+                why = f"with it, the derivative agrees with {velocity!r} in {velocity_unit}"
+                return unit, f"{unit}: {why}"
     if axis == "revolute" and (drives := IN_TURNS.intersection(words_of(column.name))):
-        return "turns", f"turns, the unit of an {' and '.join(sorted(drives))}"
+        return "turns", f"turns: {' and '.join(sorted(drives))} drives report turns"
     if axis == "revolute":
         unit = "deg" if reach > 50 else "rad"
     else:
         unit = "mm" if reach > 3 else "m"
     why = why_no_unit(column.name, column.unit, "position", axis)
-    return unit, f"{unit}, from its range of {reach:.3g}: {why}"
+    return unit, f"{unit}: {why}, and the readings have a range of {reach:.3g}"

@@ -44,7 +44,7 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
         return "stamps of a topic that is not used"
     column = survey.columns.get(name)
     if column is None:
-        return f"has {len(raw[name])} rows, other than the time"
+        return f"has {len(raw[name])} rows, another number than the time"
     if not moves(column):
         return "does not change"
     if rises(column.values):
@@ -60,7 +60,8 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
         return f"in {unit}: no position, velocity or force"
     if is_another_quantity(name) and not kinds:
         return (
-            "by its name no position, velocity or force; for a pressure that acts on the body: "
+            "its name is not that of a position, velocity or force; for a pressure that acts on "
+            "the body: "
             f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
         )
     if is_wanted(name) and "force" not in kinds:
@@ -69,9 +70,13 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     jump = wrap_of(x)
     _, agree = derivative_factor(unwrap_column(x, jump), column.values, sample_time_of(survey))
     if agree > DERIVATIVE and "velocity" in survey.channels:
-        return f"a second velocity of {position!r}"
+        return f"a second velocity for {position!r}"
     if agree > DERIVATIVE:
-        how = "" if unit else f"; its unit is not known: --unit {name + '=UNIT'!r} takes it"
+        how = (
+            ""
+            if unit
+            else f"; its unit is not known: state the unit with --unit {name + '=UNIT'!r}"
+        )
         return f"the velocity of {position!r}, which is computed from the position{how}"
     for quantity, why in (
         ("position", f"a position beside {position!r}"),
@@ -87,6 +92,12 @@ def _explain_no_force(name: str, survey: Survey) -> str:
     force = survey.channels["actuator_force"]["column"]
     share, best = (survey.explained.get(n) for n in (name, force))
     beside = "" if best is None else f", and {max(best, 0.0):.0%} of {force!r}"
-    said = "" if share is None else f": the motion explains {max(share, 0.0):.0%} of it{beside}"
+    explained = (
+        "" if share is None else f": the motion explains {max(share, 0.0):.0%} of it{beside}"
+    )
     second = likeness(name, "actuator_force") >= SURE_NAME
-    return f"a second force beside {force!r}{said}" if second else f"not a force by its name{said}"
+    return (
+        f"a second force beside {force!r}{explained}"
+        if second
+        else f"its name is not that of a force{explained}"
+    )

@@ -102,8 +102,8 @@ class _Making:
 
     def kinematics(self, part: Kinematics) -> None:
         name = f"block {part.name}"
-        said = formula(sp.sympify(part.expression, strict=True), short="kinematics")
-        self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
+        label = formula(sp.sympify(part.expression, strict=True), short="kinematics")
+        self.made.nodes[name] = Node(name, "box", symbol(part.output), label)
         self.wire(name, part.output)
         self.gather(name, [self.net(s) for s in part.inputs])
 
@@ -127,8 +127,8 @@ class _Making:
         levered = {s: w for s, w in part.terms.items() if _depends(w)}
         name = f"block lever arms of {part.output}"
         whole = sp.Add(*(w * sp.Symbol(s, real=True) for s, w in levered.items()))
-        said = formula(sp.expand_mul(whole), short=f"lever arms of {', '.join(part.arms)}")
-        self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
+        label = formula(sp.expand_mul(whole), short=f"lever arms of {', '.join(part.arms)}")
+        self.made.nodes[name] = Node(name, "box", symbol(part.output), label)
         self.wire(name, signal)
         self.gather(name, [self.net(s) for s in levered])
         return name

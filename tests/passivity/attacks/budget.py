@@ -19,8 +19,8 @@ def attacked(plain, slow):
 
     plain: 0 where even a few take seconds
     """
-    asked = int(os.environ.get("TELEOPDESIGN_ATTACKS", slow))
-    drawn = [pytest.param(SEED + 1000, asked, marks=pytest.mark.slow, id="many")]
+    count = int(os.environ.get("TELEOPDESIGN_ATTACKS", slow))
+    drawn = [pytest.param(SEED + 1000, count, marks=pytest.mark.slow, id="many")]
     if plain:
         drawn.insert(0, pytest.param(SEED, plain, id="sample"))
     return pytest.mark.parametrize(("seed", "number"), drawn)

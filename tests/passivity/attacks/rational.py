@@ -90,8 +90,8 @@ def _made(rng, kind):
     if kind == "passive parts":
         return parts(rng)
     if kind == "passive parts less some damping":
-        taken = number(rng) * Fraction(1, int(10 ** rng.integers(0, 9)))
-        return added(parts(rng), ([-taken], one))
+        damping = number(rng) * Fraction(1, int(10 ** rng.integers(0, 9)))
+        return added(parts(rng), ([-damping], one))
     if kind == "lossless":
         return parts(rng, 4, lossy=False)
     if kind == "lossless and lossy poles on the axis":
@@ -154,10 +154,10 @@ def roots(p):
 
 def suspects(polynomials, rng, number=1500):
     """Points of the open right half plane beside roots, beside the axis, far out and anywhere."""
-    found = np.concatenate([np.zeros(0, complex), *(roots(p) for p in polynomials)])
-    found = found[np.abs(found) > 0]
-    sizes = np.abs(found) if len(found) else np.ones(1)
-    near = found[:, None] + np.abs(found)[:, None] * (
+    places = np.concatenate([np.zeros(0, complex), *(roots(p) for p in polynomials)])
+    places = places[np.abs(places) > 0]
+    sizes = np.abs(places) if len(places) else np.ones(1)
+    near = places[:, None] + np.abs(places)[:, None] * (
         10.0 ** rng.uniform(-14, 0, (1, 60)) * np.exp(2j * np.pi * rng.random((1, 60)))
     )
     w = np.exp(rng.uniform(np.log(sizes.min() * 1e-9), np.log(sizes.max() * 1e9), number))

@@ -71,13 +71,13 @@ def test_no_box_is_proved_in_which_a_mode_grows_or_energy_comes_out(seed, number
         diagram = wired(shape, values).diagram()
         named = {f"{NAME}.{n}": ends for n, ends in box.items()}
         try:
-            found = claim_over_intervals(diagram, named, claim=claim, points=4)
+            verdict = claim_over_intervals(diagram, named, claim=claim, points=4)
         except ModelError:
             counts["refused"] += 1
             continue
-        if found.status == "proved":
-            assert all(one.check() for one in found.certificates)
+        if verdict.status == "proved":
+            assert all(one.check() for one in verdict.certificates)
             point = fails_at(rng, shape, values, box, claim)
             assert point is None, (claim, shape, values, box, point)
-        counts[claim, found.status] += 1
+        counts[claim, verdict.status] += 1
     print(dict(counts))

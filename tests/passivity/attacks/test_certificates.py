@@ -62,8 +62,8 @@ def is_false(rng, content):
     z = [ratio(e) for row in content["impedance"] for e in row]
     if len(z) == 1:
         z = [z[0], ([Fraction(0)], [Fraction(1)]), ([Fraction(0)], [Fraction(1)]), z[0]]
-    found = wave(rng, z) if content["kind"] == "positive real" else grown(rng, z)
-    return found is not None
+    motion = wave(rng, z) if content["kind"] == "positive real" else grown(rng, z)
+    return motion is not None
 
 
 def certificate(kind, z):

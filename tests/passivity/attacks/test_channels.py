@@ -45,9 +45,9 @@ def test_no_waves_take_energy_out_of_a_channel_that_is_proved(seed, number):
         b, d = 10.0 ** rng.uniform(-6, 6), float(rng.choice([0.0, rng.uniform(0, 0.9)]))
         f = near(rng, np.sqrt(1 - d))
         claim = wave_channel(wave_impedance=b, scale=f, delay_growth=d)
-        found = least_energy(rng, b, f, d)
+        energy = least_energy(rng, b, f, d)
         # sums over steps of 3 ms of waves of 20 rad/s, with jumps at their ends
-        assert not (claim.status == "proved" and found < -0.02), (b, f, d, found)
-        counts[claim.status, found < -0.02] += 1
+        assert not (claim.status == "proved" and energy < -0.02), (b, f, d, energy)
+        counts[claim.status, energy < -0.02] += 1
     print(dict(counts))
     assert counts["proved", False] > number / 8 and counts["unknown", True] > 0

@@ -156,7 +156,7 @@ def test_a_margin_lies_at_the_first_ripple_of_a_long_dead_time(parts, times):
     assert factor == 100.0 or loop.growing(factor=(1 + 1e-6) * factor) != 0
 
 
-def asked(margin, loop, counts):
+def margin_of(margin, loop, counts):
     """The margin; None where the loop grows as it is, or turns too often."""
     try:
         return margin(loop.gain())
@@ -174,7 +174,7 @@ def test_a_late_loop_grows_from_its_delay_margin_on_and_not_before(seed, number)
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
         loop = LateLoop(rng)
-        margin = asked(delay_margin, loop, counts)
+        margin = margin_of(delay_margin, loop, counts)
         if margin is None:
             continue
         shares = (0.0, 0.1, 0.5, 0.9, 0.99, 1 - 1e-6)
@@ -197,7 +197,7 @@ def test_a_late_loop_grows_at_its_gain_margin_and_not_before(seed, number):
         loop = LateLoop(rng)
         if loop.plain:
             continue
-        margin = asked(gain_margin, loop, counts)
+        margin = margin_of(gain_margin, loop, counts)
         if margin is None:
             continue
         most = margin if np.isfinite(margin) else 1e4
@@ -219,7 +219,7 @@ def test_a_late_loop_grows_at_its_phase_margin_and_not_before(seed, number):
         loop = LateLoop(rng)
         if loop.plain:
             continue
-        margin = asked(phase_margin, loop, counts)
+        margin = margin_of(phase_margin, loop, counts)
         if margin is None:
             continue
 

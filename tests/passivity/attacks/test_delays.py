@@ -74,14 +74,14 @@ def inertia(rng):
     limit = order * b * t or mass
     if t and tau and order == 2 and rng.random() < 0.3:
         limit = largest_passive_inertia(damping=b, delay=tau, time_constant=t)
-    taken = near(rng, limit)
+    amount = near(rng, limit)
     m = mass * 10 ** rng.uniform(-1, 1) * (rng.random() < 0.9)
     claim = cancelled_inertia(
-        inertia=m, damping=b, cancelled=taken, delay=tau, time_constant=t, order=order
+        inertia=m, damping=b, cancelled=amount, delay=tau, time_constant=t, order=order
     )
 
     def z(s, exp):
-        return m * s + b - taken * s * exp(-s * tau) / (1 + s * t) ** order
+        return m * s + b - amount * s * exp(-s * tau) / (1 + s * t) ** order
 
     return claim.status, active(rng, z, [1 / time, *([1 / t] if t else []), b / (m or mass)])
 
@@ -153,9 +153,12 @@ def one_port(rng):
 def counted(number, judge, rng):
     counts = Counter()
     for _ in range(number):
-        status, found = judge(rng)
-        assert status not in ("proved", "evidence") or found is None, (status, found)
-        counts[status, found is not None] += 1
+        status, counterexample = judge(rng)
+        assert status not in ("proved", "evidence") or counterexample is None, (
+            status,
+            counterexample,
+        )
+        counts[status, counterexample is not None] += 1
     print(dict(counts))
     assert counts["proved", False] + counts["evidence", False] >= number / 10
     assert counts["refuted", True] >= counts["refuted", False]

@@ -132,14 +132,14 @@ def judged(rng):
     except ModelError as problem:
         assert "nothing can be compensated" in str(problem), (effects, problem)
         return [("refused", False)]
-    found = friction_claims(device, Compensator(name, float(level), float(second)))
-    own = dahl(level, level, second) if name == "dahl" else velocity_law(level, second)
+    claims = friction_claims(device, Compensator(name, float(level), float(second)))
+    law = dahl(level, level, second) if name == "dahl" else velocity_law(level, second)
     lengths, speeds = [length, level / second if name == "dahl" else length], [speed]
     if period := effects.get("position_dependent_friction", {}).get("period"):
         lengths.append(period.value)
     outcomes = []
-    for one in found:
-        helped = own
+    for one in claims:
+        helped = law
         if one.topic in ANY_LAW:  # a force along the motion in each leg is the worst of them
             helped = coulomb(level, level)
         elif one.topic == "estimate":

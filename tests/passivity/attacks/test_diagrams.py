@@ -169,8 +169,8 @@ def test_no_mode_grows_in_a_diagram_that_is_proved_at_all_its_ports(seed, number
         kind = KINDS[k % len(KINDS)]
         system = random_diagram(rng, kind)
         diagram = as_diagram(*system)
-        found = linear_claims(diagram, ports(diagram))
-        proved = [c.topic for c in found if c.claim.status == "proved"]
+        claims = linear_claims(diagram, ports(diagram))
+        proved = [c.topic for c in claims if c.claim.status == "proved"]
         unstable = grows(rng, system) or chained(rng, system)
         assert not (proved and unstable), (kind, system, proved)
         counts[bool(proved), unstable] += 1
@@ -193,23 +193,23 @@ def test_no_motion_beats_a_diagram_with_friction_that_is_proved(seed, number):
             presliding = EFFECTS["presliding"].without("bristle_damping")
             body = body.with_effect(presliding, {"stiffness": stiffness})
         f_d = near(rng, f_c) if rng.random() < 0.6 else f_c * rng.uniform(0.2, 1)
-        own = near(rng, stiffness * np.sqrt(f_d / f_c))
-        law = controller("dahl", {"level": f_d, "stiffness": own})
+        softness = near(rng, stiffness * np.sqrt(f_d / f_c))
+        law = controller("dahl", {"level": f_d, "stiffness": softness})
         diagram = haptic_interface(body, cancellation=law)
         claims = diagram_claims(diagram, rng=rng, search=Search(tries=1)).claims
         proved = any(c.claim.status == "proved" and c.topic in WHOLE for c in claims)
 
-        def helped(d, x, v, share, f_d=f_d, own=own):
-            return bristle(d, x, f_d, own)
+        def helped(d, x, v, share, f_d=f_d, softness=softness):
+            return bristle(d, x, f_d, softness)
 
         def resisted(p, x, v, share, f_c=f_c, stiffness=stiffness, b=b, gives=gives):
             p, work = bristle(p, x, f_c, stiffness) if gives else (p, f_c * np.abs(x))
             return p, work + b * v * np.abs(x)
 
-        motions = drawn(rng, 2000, 12, [f_d / own, f_c / stiffness], [1e-4 * f_c / b])
+        motions = drawn(rng, 2000, 12, [f_d / softness, f_c / stiffness], [1e-4 * f_c / b])
         turned = f_d * np.abs(motions[:, :, 0]).sum(axis=1)
-        found = float((largest(motions, helped, resisted) / turned).max())
-        assert not (proved and found > 1e-9), (f_c, f_d, own, gives, found)
-        counts[proved, found > 1e-9] += 1
+        most = float((largest(motions, helped, resisted) / turned).max())
+        assert not (proved and most > 1e-9), (f_c, f_d, softness, gives, most)
+        counts[proved, most > 1e-9] += 1
     print(dict(counts))
     assert counts[True, False]

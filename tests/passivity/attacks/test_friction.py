@@ -55,22 +55,22 @@ def gain(rng, helped, resisted, level, lengths, speeds=(1.0,), rounds=40):
     return climbed(rng, share, drawn(rng, MOTIONS, LEGS, lengths, speeds), rounds=rounds)[0]
 
 
-def counted(number, judge, rng, *, seen=2.0):
+def counted(number, judge, rng, *, least_ratio=2.0):
     """Statuses with whether the attack found energy; fails where the attack is blind.
 
-    seen: least ratio of refuted systems that the attack finds too to those that it does not: those
-    a hair beyond their limit need motions that are longer, or more exact, than it draws
+    least_ratio: of refuted systems that the attack refutes too to those that it does not: those a
+    hair beyond their limit need motions that are longer, or more exact, than it draws
     """
     counts = Counter()
     for _ in range(number):
-        status, found = judge(rng)
-        counts[status, bool(found > ROUNDING)] += 1
-        assert status != "proved" or found <= ROUNDING
+        status, counterexample = judge(rng)
+        counts[status, bool(counterexample > ROUNDING)] += 1
+        assert status != "proved" or counterexample <= ROUNDING
     print(dict(counts))
     assert counts["proved", False] >= number / 8
     # of so many as are refuted, less three standard deviations of what chance makes of that share
     refuted = counts["refuted", True] + counts["refuted", False]
-    expected = refuted * seen / (1 + seen)
+    expected = refuted * least_ratio / (1 + least_ratio)
     assert counts["refuted", True] >= expected - 3 * np.sqrt(expected)
 
 
@@ -93,7 +93,7 @@ def dahl_pair(rng):
 
 @attacked(8, 80)
 def test_no_motion_beats_a_dahl_compensator_that_is_proved_passive(seed, number):
-    counted(number, dahl_pair, np.random.default_rng(seed), seen=1.0)
+    counted(number, dahl_pair, np.random.default_rng(seed), least_ratio=1.0)
 
 
 def velocity_law(f_d, a):
@@ -118,13 +118,13 @@ def velocity_pair(rng):
     )  # fmt: skip
     friction = dahl(force, force, stiffness) if gives else coulomb(force, force)
     speeds = [speed, *([np.sqrt(a * f_d / b)] if a and b else []), *([a] if a else [])]
-    found = gain(rng, velocity_law(f_d, a), with_damping(friction, b), f_d, [length], speeds)
-    return claim.status, found
+    ratio = gain(rng, velocity_law(f_d, a), with_damping(friction, b), f_d, [length], speeds)
+    return claim.status, ratio
 
 
 @attacked(8, 80)
 def test_no_motion_beats_a_law_of_velocity_that_is_proved_passive(seed, number):
-    counted(number, velocity_pair, np.random.default_rng(seed), seen=1.0)
+    counted(number, velocity_pair, np.random.default_rng(seed), least_ratio=1.0)
 
 
 def sampled_velocity_pair(rng):
@@ -157,7 +157,7 @@ def sampled_velocity_pair(rng):
 
 @attacked(8, 80)
 def test_no_samples_beat_a_law_of_velocity_that_is_proved_in_a_computer(seed, number):
-    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.05)
+    counted(number, sampled_velocity_pair, np.random.default_rng(seed), least_ratio=0.05)
 
 
 def lugre(rng):
@@ -184,13 +184,13 @@ def lugre(rng):
 
     # energy once, from what was stored: more than one recoil
     speeds = [v_s * x for x in (1e-3, 0.1, 10, 1e3)]
-    found = gain(rng, helped, resisted, f_s, [f_s / sigma, 0.1 * f_s / sigma], speeds)
-    return claim.status, found
+    ratio = gain(rng, helped, resisted, f_s, [f_s / sigma, 0.1 * f_s / sigma], speeds)
+    return claim.status, ratio
 
 
 @attacked(4, 60)
 def test_no_motion_takes_energy_out_of_lugre_friction_that_is_proved_passive(seed, number):
-    counted(number, lugre, np.random.default_rng(seed), seen=0.0)
+    counted(number, lugre, np.random.default_rng(seed), least_ratio=0.0)
 
 
 def bounded(rng):
@@ -198,8 +198,8 @@ def bounded(rng):
     f_c = 10.0 ** rng.uniform(-6, 6)
     f_d = near(rng, f_c)
     claim = bounded_compensation(coulomb_level=f_c, bound=f_d)
-    found = gain(rng, coulomb(f_d, f_d), coulomb(f_c, f_c), f_d, [1.0], rounds=2)
-    return claim.status, found
+    ratio = gain(rng, coulomb(f_d, f_d), coulomb(f_c, f_c), f_d, [1.0], rounds=2)
+    return claim.status, ratio
 
 
 @attacked(20, 200)
@@ -249,7 +249,7 @@ def joint(rng):
 
 @attacked(8, 80)
 def test_no_two_hands_beat_a_compliant_joint_that_is_proved_passive(seed, number):
-    counted(number, joint, np.random.default_rng(seed), seen=0.5)
+    counted(number, joint, np.random.default_rng(seed), least_ratio=0.5)
 
 
 def round_of(points, helped, resisted, rounds=40, pieces=1):
@@ -357,8 +357,12 @@ def test_closed_forms_of_cycles_are_those_of_motions_that_are_travelled(seed, nu
         level = largest_passive_level(coulomb_level=f_c, stiffness=sigma, amplitude=amplitude)
         if np.isfinite(level):
             for share, sign in ((0.999, -1), (1.001, 1)):
-                own = level * share
-                out = round_of((amplitude, -amplitude), dahl(own, own, sigma), coulomb(f_c, f_c))
+                compensator_level = level * share
+                out = round_of(
+                    (amplitude, -amplitude),
+                    dahl(compensator_level, compensator_level, sigma),
+                    coulomb(f_c, f_c),
+                )
                 assert sign * out > 0, (f_c, sigma, amplitude)
         f_d = f_c * (1 + 10 ** rng.uniform(-1, 1))
         onset = onset_amplitude(
@@ -369,14 +373,22 @@ def test_closed_forms_of_cycles_are_those_of_motions_that_are_travelled(seed, nu
             assert sign * round_of(points, dahl(f_d, f_d, sigma), coulomb(f_c, f_c)) > 0
         # within u bristle lengths no closed path gives, and once no more than the bristle holds
         u = 10 ** rng.uniform(-0.5, 0.5)
-        own = f_c * largest_ratio(u, motion="closed paths")
-        most = largest_one_off_energy(level=own, stiffness=sigma, u=u)
+        compensator_level = f_c * largest_ratio(u, motion="closed paths")
+        most = largest_one_off_energy(level=compensator_level, stiffness=sigma, u=u)
 
-        def inside(motions, own=own, sigma=sigma, u=u, f_c=f_c):
-            x = np.clip(np.cumsum(motions[:, :, 0], axis=1), -u * own / sigma, u * own / sigma)
+        def inside(motions, compensator_level=compensator_level, sigma=sigma, u=u, f_c=f_c):
+            x = np.clip(
+                np.cumsum(motions[:, :, 0], axis=1),
+                -u * compensator_level / sigma,
+                u * compensator_level / sigma,
+            )
             travels = np.diff(np.concatenate([np.zeros((len(x), 1)), x], axis=1), axis=1)
             again = np.concatenate([travels[:, :, None], motions[:, :, 1:]], axis=2)
-            return largest(again, dahl(own, own, sigma), coulomb(f_c, f_c))
+            return largest(
+                again, dahl(compensator_level, compensator_level, sigma), coulomb(f_c, f_c)
+            )
 
-        found = climbed(rng, inside, drawn(rng, MOTIONS, LEGS, [own / sigma]), rounds=15)[0]
-        assert found <= most * (1 + 1e-9), (f_c, sigma, u)
+        ratio = climbed(
+            rng, inside, drawn(rng, MOTIONS, LEGS, [compensator_level / sigma]), rounds=15
+        )[0]
+        assert ratio <= most * (1 + 1e-9), (f_c, sigma, u)

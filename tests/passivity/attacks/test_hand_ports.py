@@ -72,12 +72,12 @@ def random_port(rng):
         tip = m * float(f"{rng.uniform(0.01, 0.9):.3g}"), pick(rng, 1, 5), pick(rng, -2, 2)
         names = ("tip_inertia", "stiffness", "damping")
         device |= {f"transmission_compliance__{n}": x for n, x in zip(names, tip, strict=True)}
-    given, feedback, cancels = {}, (lambda s: 0 * s), (lambda s: 0 * s)
+    values, feedback, cancels = {}, (lambda s: 0 * s), (lambda s: 0 * s)
     if rng.random() < 0.7:
-        given["force_feedback"], feedback = law(rng)
+        values["force_feedback"], feedback = law(rng)
     if rng.random() < 0.5:
-        given["cancellation"], cancels = law(rng)
-    diagram = haptic_interface(body(m, **device), **given, analog=("C", "H"))
+        values["cancellation"], cancels = law(rng)
+    diagram = haptic_interface(body(m, **device), **values, analog=("C", "H"))
 
     def z(s):
         rest, drive = b * s + k - cancels(s), feedback(s)
@@ -100,15 +100,15 @@ def test_a_hand_feels_the_impedance_that_the_equations_have(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
         diagram, z, bent = random_port(rng)
-        found, left_out = hand_port(diagram)
+        impedance, left_out = hand_port(diagram)
         assert set(left_out) == bent, (diagram, left_out)
         w = 10 ** rng.uniform(-3, 5, 60)
         s = w * np.exp(1j * rng.uniform(-np.pi / 2, np.pi / 2, 60))
         expected = z(s)
         # sums of terms of opposite sign leave less: eight digits of sixteen
-        assert np.abs(found(s) - expected).max() <= 1e-8 * np.abs(expected).max()
-        assert (np.abs(found(s) - expected) <= 1e-6 * np.abs(expected)).all(), diagram
-        claim = positive_real(found)
+        assert np.abs(impedance(s) - expected).max() <= 1e-8 * np.abs(expected).max()
+        assert (np.abs(impedance(s) - expected) <= 1e-6 * np.abs(expected)).all(), diagram
+        claim = positive_real(impedance)
         active = expected.real < -1e-9 * np.abs(expected)
         assert not (claim.status == "proved" and active.any()), (diagram, s[active])
         counts[claim.status, bool(active.any())] += 1

@@ -93,11 +93,11 @@ def test_no_box_with_dead_times_is_proved_stable_in_which_a_mode_grows(seed, num
     for _ in range(number):
         values = random_values(rng)
         box = random_box(rng, values)
-        found = claim_over_intervals(late_diagram(values), box, claim="stable", points=8)
-        counts[found.status] += 1
-        if found.status == "refuted":
-            assert (largest({**values, **found.worst}) > -NEAR).any(), (values, box, found)
-        if found.status != "proved":
+        claim = claim_over_intervals(late_diagram(values), box, claim="stable", points=8)
+        counts[claim.status] += 1
+        if claim.status == "refuted":
+            assert (largest({**values, **claim.worst}) > -NEAR).any(), (values, box, claim)
+        if claim.status != "proved":
             continue
         for k in range(24):
             share = rng.random(len(box)) if k % 2 else rng.integers(0, 2, len(box))

@@ -244,12 +244,12 @@ def test_no_late_loop_of_this_kind_is_proved_stable_that_has_a_growing_pole(fami
     for _ in range(number):
         values = family.draw(rng)
         box = random_box(rng, family, values)
-        found = claim_over_intervals(family.diagram(values), box, claim="stable", points=4)
-        counts[found.status] += 1
-        if found.status == "refuted":
-            at = count_growing(family.terms({**values, **found.worst}))
-            assert at is None or at > 0, (values, box, found)
-        if found.status == "proved":
+        claim = claim_over_intervals(family.diagram(values), box, claim="stable", points=4)
+        counts[claim.status] += 1
+        if claim.status == "refuted":
+            at = count_growing(family.terms({**values, **claim.worst}))
+            assert at is None or at > 0, (values, box, claim)
+        if claim.status == "proved":
             for point in points(rng, box):
                 growing = count_growing(family.terms({**values, **point}))
                 assert not growing, (values, box, point)

@@ -55,7 +55,7 @@ def random_device(rng, *, gentle):
         for x, y, z in zip(m, b, k, strict=True)
     ]
     stiff = 10 ** rng.uniform(1, 3.5)
-    own = [law(rng, "proportional_derivative", stiff * 10 ** rng.uniform(-1, 0.5)) for _ in "ms"]
+    laws = [law(rng, "proportional_derivative", stiff * 10 ** rng.uniform(-1, 0.5)) for _ in "ms"]
     kinds = ("gain", "proportional_derivative", "low_pass", "integral", "python-control")
     channels = {"C_1": law(rng, str(rng.choice(kinds)), stiff)}
     channels["C_2"] = law(rng, "gain", 0.5)
@@ -66,30 +66,30 @@ def random_device(rng, *, gentle):
     delays = {n: float(rng.choice([0, 10 ** rng.uniform(-3, -1)])) for n in channels}
     position, force = (float(10 ** rng.uniform(-0.5, 0.5)) for _ in range(2))
     if gentle:
-        own = [own[0], own[0]]
-        channels |= {"C_1": own[0], "C_4": own[0]}
+        laws = [laws[0], laws[0]]
+        channels |= {"C_1": laws[0], "C_4": laws[0]}
         channels.pop("C_3", None)
-        longest = b.min() / own[0][0].stages[0].values["stiffness"]
+        longest = b.min() / laws[0][0].stages[0].values["stiffness"]
         delays = {n: float(longest * rng.uniform(0, 1.2)) for n in channels}
     diagram = four_channel(
         *bodies,
-        master_control=own[0][0],
-        slave_control=own[1][0],
+        master_control=laws[0][0],
+        slave_control=laws[1][0],
         channels={n: c for n, (c, _) in channels.items()},
         delay=delays,
         position_scale=position,
         force_scale=force,
     )
     scales = {"C_1": position, "C_2": force, "C_3": 1 / force, "C_4": 1 / position}
-    own_stiffness = diagram.values["C_m.proportional_derivative.stiffness"]
+    law_stiffness = diagram.values["C_m.proportional_derivative.stiffness"]
 
     def impedance(s, gain, stiffness):
         """(Z + C) x = F + late channels, solved for F, per velocity."""
         c = {n: scales[n] * np.exp(-s * delays[n]) * f(s) for n, (_, f) in channels.items()}
         c["C_2"] = c["C_2"] * gain / 0.5
         zm, zs = (m[i] * s**2 + b[i] * s + k[i] for i in range(2))
-        zm = zm + own[0][1](s) + stiffness - own_stiffness
-        zs = zs + own[1][1](s)
+        zm = zm + laws[0][1](s) + stiffness - law_stiffness
+        zs = zs + laws[1][1](s)
         nothing, one = 0 * s, 1 + 0 * s
         left = np.moveaxis(
             np.array([[zm, -c.get("C_4", nothing)], [-c["C_1"], zs]]), (0, 1), (-2, -1)
@@ -99,7 +99,7 @@ def random_device(rng, *, gentle):
         )
         return np.linalg.solve(right, left) / s[:, None, None]
 
-    return diagram, impedance, own_stiffness
+    return diagram, impedance, law_stiffness
 
 
 def felt(z, reactance):
@@ -138,11 +138,11 @@ def test_each_point_of_a_map_is_what_terminations_and_motions_show(seed, number)
         gains = 10 ** rng.uniform(-6, 0, 4)
         springs = stiffness * 10 ** rng.uniform(-0.5, 1, 4)
         names = ("C_2.gain.gain", "C_m.proportional_derivative.stiffness")
-        found = margin_map(diagram, dict(zip(names, (gains, springs), strict=True)), frequency=F)
+        margins = margin_map(diagram, dict(zip(names, (gains, springs), strict=True)), frequency=F)
         for i, gain in enumerate(gains):
             for k, spring in enumerate(springs):
                 z = impedance(2j * np.pi * F, gain, spring)
-                point = found.data.isel({names[0]: i, names[1]: k})
+                point = margins.data.isel({names[0]: i, names[1]: k})
                 case = diagram, gain, spring
                 counts[contradiction(rng, z, point, case)] += 1
     print(dict(counts))

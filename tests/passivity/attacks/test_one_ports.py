@@ -94,9 +94,9 @@ def _float_roots(p):
 def judged(rng, kind):
     ratio = random_ratio(rng, kind)
     claim = positive_real(expression(*ratio))
-    found = active_point(rng, ratio)
+    point = active_point(rng, ratio)
     if claim.status == "proved":
-        assert found is None, (kind, ratio, found)
+        assert point is None, (kind, ratio, point)
         # what may be taken away by its margin leaves it passive
         margin = claim.verdict.margin
         if np.isfinite(margin):
@@ -115,7 +115,7 @@ def judged(rng, kind):
             )
             assert s.real > 0 > at(ratio, s).real, (kind, ratio)
         assert gives_out(wave) > 0, (kind, ratio)
-    return claim.status, found is not None
+    return claim.status, point is not None
 
 
 def gives_out(wave):
@@ -159,7 +159,7 @@ def test_the_attacker_sees_a_residue_that_is_tilted_by_a_hair(tilt, square):
 
 
 @attacked(2, 40)
-def test_a_storage_function_is_found_for_no_port_that_gives_out_energy(seed, number):
+def test_no_port_that_gives_out_energy_has_a_storage_function(seed, number):
     pytest.importorskip("cvxpy", reason="the extra `lmi` is not installed")
     rng = np.random.default_rng(seed)
     counts = Counter()

@@ -68,17 +68,19 @@ class Pair:
         self.gives = [bool(level and rng.random() < 0.4) for level in self.levels]
         self.laws = []
         for k in range(int(rng.integers(1, 3))):
-            own = int(rng.integers(2))
-            level = self.levels[own] or 1.0
+            place = int(rng.integers(2))
+            level = self.levels[place] or 1.0
             f_d = near(rng, level) if rng.random() < 0.3 else level * float(rng.uniform(0.1, 0.9))
-            soft = self.stiff[own] * np.sqrt(f_d / level) if self.gives[own] else f_d * 1e3
-            self.laws.append((own, f_d, float(soft * (1 if rng.random() < 0.7 else 0.5)), f"F{k}"))
+            soft = self.stiff[place] * np.sqrt(f_d / level) if self.gives[place] else f_d * 1e3
+            self.laws.append(
+                (place, f_d, float(soft * (1 if rng.random() < 0.7 else 0.5)), f"F{k}")
+            )
         forces = [name for *_, name in self.laws]
         plain = rng.random() < 0.65  # each force on its own body, through one sum or two
         self.sums = random_sums(rng, forces, ("uA", "uB"))
         if plain:
-            own = [[n for o, *_, n in self.laws if o == k] for k in range(2)]
-            self.sums = {f"u{c}": {n: Fraction(1) for n in own[k]} for k, c in enumerate("AB")}
+            by_body = [[n for o, *_, n in self.laws if o == k] for k in range(2)]
+            self.sums = {f"u{c}": {n: Fraction(1) for n in by_body[k]} for k, c in enumerate("AB")}
             self.sums = {n: terms for n, terms in self.sums.items() if terms}
         self.loads = [{}, {}]
         if rng.random() < 0.25:
@@ -95,9 +97,9 @@ class Pair:
             loads = {f"f{name}": 1.0} | {n: float(w) for n, w in self.loads[k].items()}
             made = body(0.3, viscous__damping=1e-9, **friction)
             blocks.append(Moving(name, made, f"x{name}", f"u{name}", loads, f"f{name}"))
-        for own, f_d, soft, name in self.laws:
+        for place, f_d, soft, name in self.laws:
             law = controller("dahl", {"level": f_d, "stiffness": soft})
-            x = "x" + "AB"[own]
+            x = "x" + "AB"[place]
             blocks.append(Control("C" + name, law, x, name, x))
         sums = tuple(
             Junction(n, {m: float(w) for m, w in terms.items()}) for n, terms in self.sums.items()
@@ -133,13 +135,13 @@ class Pair:
                     else:
                         took = level * np.abs(travel[k])
                     out = out - took
-                for i, (own, f_d, soft, _) in enumerate(self.laws):
+                for i, (place, f_d, soft, _) in enumerate(self.laws):
                     # a body that moves alone first: the force of the law stays while the other does
                     before = helps[i]
-                    helps[i], gave = bristle(helps[i], travel[own], f_d, soft)
-                    held = before if own else helps[i]
+                    helps[i], gave = bristle(helps[i], travel[place], f_d, soft)
+                    held = before if place else helps[i]
                     for k in range(2):
-                        work = gave if k == own else held * travel[k]
+                        work = gave if k == place else held * travel[k]
                         out = out + float(acting[i][k]) * work
                         turned = turned + f_d * np.abs(travel[k])
                 most = np.maximum(most, out)
@@ -151,9 +153,9 @@ class Pair:
         return climbed(rng, share, np.stack(start, axis=2).reshape(MOTIONS, -1), rounds=25)[0]
 
 
-def alone(pair, own, acting):
+def alone(pair, compensated, acting):
     """Whether a force acts on its body just as it is, and on nothing else."""
-    return acting[own] == 1 and acting[1 - own] == 0
+    return acting[compensated] == 1 and acting[1 - compensated] == 0
 
 
 @attacked(20, 200)
@@ -172,19 +174,19 @@ def test_no_motion_of_two_bodies_beats_friction_that_is_proved_with_its_cancella
             continue
         assert None not in acting, vars(pair)
         moving = {part.name: part for part in diagram.blocks if isinstance(part, Moving)}
-        for (own, *_, name), each in zip(pair.laws, acting, strict=True):
+        for (place, *_, name), each in zip(pair.laws, acting, strict=True):
             share = solved(pair.sums, name)
-            said = shares_of(diagram, name)
-            assert {n: Fraction(str(x)) for n, x in said.items()} == {
+            shares = shares_of(diagram, name)
+            assert {n: Fraction(str(x)) for n, x in shares.items()} == {
                 n: x for n, x in share.items() if x
-            }, (vars(pair), said)
-            single = drives_alone(diagram, name, moving["AB"[own]])
+            }, (vars(pair), shares)
+            single = drives_alone(diagram, name, moving["AB"[place]])
             # a force that cancels itself on another body reaches it all the same: nothing is said
-            assert alone(pair, own, each) or not single, (vars(pair), each)
+            assert alone(pair, place, each) or not single, (vars(pair), each)
         for one in pairs:
             if one.cancellation is not None:
-                own, *_ = pair.laws[int(one.cancellation.name[-1])]
-                assert alone(pair, own, acting[int(one.cancellation.name[-1])]), vars(pair)
+                place, *_ = pair.laws[int(one.cancellation.name[-1])]
+                assert alone(pair, place, acting[int(one.cancellation.name[-1])]), vars(pair)
         proved = claim is not None and claim.claim.status == "proved"
         beaten = pair.gain(rng, acting) > ROUNDING
         assert not (proved and beaten), vars(pair)

@@ -35,8 +35,8 @@ def compensators(rng):
 
     def beaten(level, stiffness):
         lengths = [level / stiffness, f_c / sigma]
-        own = dahl(level, level, stiffness)
-        return gain(rng, own, dahl(f_c, f_c, sigma), level, lengths, rounds=15) > ROUNDING
+        law = dahl(level, level, stiffness)
+        return gain(rng, law, dahl(f_c, f_c, sigma), level, lengths, rounds=15) > ROUNDING
 
     return region(claim, levels, soft), levels, soft, beaten
 
@@ -67,16 +67,16 @@ def low_passes(rng):
 def test_no_point_of_a_region_is_beaten_where_it_is_proved(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     while sum(counts.values()) < number:
-        found, x, y, beaten = (compensators, low_passes)[int(rng.integers(2))](rng)
-        assert found.status.shape == found.holds.shape == SHAPE[::-1]
-        np.testing.assert_array_equal(found.x, x)
-        np.testing.assert_array_equal(found.y, y)
+        region, x, y, beaten = (compensators, low_passes)[int(rng.integers(2))](rng)
+        assert region.status.shape == region.holds.shape == SHAPE[::-1]
+        np.testing.assert_array_equal(region.x, x)
+        np.testing.assert_array_equal(region.y, y)
         for i, j in np.ndindex(*SHAPE[::-1]):
-            status, out = found.status[i, j], beaten(float(x[j]), float(y[i]))
+            status, out = region.status[i, j], beaten(float(x[j]), float(y[i]))
             assert not (status == "proved" and out), (beaten.__qualname__, x[j], y[i])
             # 1 where it holds, 0 where not, not a number where it is left open
             holds = {"proved": 1.0, "refuted": 0.0, "unknown": np.nan}[status]
-            np.testing.assert_equal(found.holds[i, j], holds)
+            np.testing.assert_equal(region.holds[i, j], holds)
             counts[str(status), out] += 1
     print(dict(counts))
     assert counts["proved", False] and counts["refuted", True] > counts["refuted", False]

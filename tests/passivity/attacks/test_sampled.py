@@ -95,14 +95,14 @@ def least(matrix):
 
 def lowest(p, q, b, k_0):
     """Over several numbers of samples; b in N s/m over T = 1 s."""
-    found = []
+    values = []
     for n in (2, 3, 6, 20, 120):
         with np.errstate(all="ignore"):  # what grows may leave the numbers of the machine
             m = held(p, q, n) + b * np.eye(n) + k_0 / 2 * np.ones((n, n))
         if not np.all(np.isfinite(m)):
             break
-        found.append(least(m)[0])
-    return min(found)
+        values.append(least(m)[0])
+    return min(values)
 
 
 def in_z(p, q):
@@ -111,7 +111,7 @@ def in_z(p, q):
     )
 
 
-def taken(travel, p, q, b, k_0):
+def energy_in(travel, p, q, b, k_0):
     """Energy into the body, J, sample by sample."""
     n = len(travel)
     p, q = [float(c) for c in p], [float(c) for c in q]
@@ -144,14 +144,14 @@ def judged(rng, kind):
         sample_time=sp.Rational(period),
         stiffness=sp.Rational(k_0 * size),
     )
-    found = lowest(p, q, float(b), float(k_0))
+    value = lowest(p, q, float(b), float(k_0))
     if claim.status == "proved":
-        assert found > -1e-11, (kind, p, q, b, k_0, found)
+        assert value > -1e-11, (kind, p, q, b, k_0, value)
     elif claim.status == "refuted":  # unknown: so near its limit that it takes too many samples
         travel = claim.record.travel
         if len(travel) < 3000:
-            assert taken(travel, p, q, float(b), float(k_0)) < 0, (kind, p, q, b, k_0)
-    return claim.status, found < -1e-11
+            assert energy_in(travel, p, q, float(b), float(k_0)) < 0, (kind, p, q, b, k_0)
+    return claim.status, value < -1e-11
 
 
 @attacked(8, 120)
@@ -180,10 +180,10 @@ def test_no_two_motions_take_energy_out_of_a_sampled_coupling_that_is_proved(see
         claim = sampled_coupling(in_z(p, q), master_damping=b_m, slave_damping=b_s, sample_time=1)
         f = held(p, q, 80)
         both = np.block([[f, -f], [-f, f]]) + np.diag(np.repeat([b_m, b_s], 80))
-        found = least(both)[0]
+        value = least(both)[0]
         if claim.status == "proved":
-            assert found > -1e-11, (p, q, b_m, b_s, found)
-        counts[claim.status, found < -1e-11] += 1
+            assert value > -1e-11, (p, q, b_m, b_s, value)
+        counts[claim.status, value < -1e-11] += 1
     print(dict(counts))
     assert counts["proved", False] > number / 8 and counts["refuted", True] > number / 8
 
@@ -239,17 +239,17 @@ def test_no_round_takes_energy_out_of_a_quantised_spring_that_is_proved(seed, nu
         beside = length * np.array([-1e-6, -1e-3, -0.1, -1e-12, 1e-12, 1e-6, 1e-3, 0.1])
         positions = np.concatenate([(edges + beside).ravel(), length * rng.uniform(-3, 3, 6),
                                     length * rng.uniform(-1e4, 1e4, 4)])  # fmt: skip
-        found = best_round(k, step, b, f_c - f_d, positions)
+        energy = best_round(k, step, b, f_c - f_d, positions)
         size = k * length**2
         if claim.status == "proved":
-            assert found <= 1e-11 * size * 1e8, (claim, found)
+            assert energy <= 1e-11 * size * 1e8, (claim, energy)
             near = np.abs(positions) < 10 * length
             assert best_round(k, step, b, f_c - f_d, positions[near]) <= 1e-11 * size, claim
         if claim.status == "refuted":
             flip = claim.record
             x = np.array([step / 2 + flip.distance, step / 2 - flip.distance])
             assert best_round(k, step, b, f_c - f_d, x) > 0, claim
-        counts[claim.status, found > 1e-3 * size] += 1
+        counts[claim.status, energy > 1e-3 * size] += 1
     print(dict(counts))
     refuted = sum(n for (status, _), n in counts.items() if status == "refuted")
     assert min(counts["proved", False], refuted) > number / 5

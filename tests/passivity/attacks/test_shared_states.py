@@ -36,10 +36,10 @@ def law(rng, kind):
         extra = np.diag([pole] * (2 if kind == "doubled" else 1))
         if kind == "doubled":
             extra[0, 1] = 1.0  # grows as time does
-        m, seen = len(extra), bool(rng.integers(2))
+        m, is_observed = len(extra), bool(rng.integers(2))
         a = np.block([[a, np.zeros((n, m))], [np.zeros((m, n)), extra]])
-        b = np.vstack([b, np.zeros((m, 2)) if seen else few(rng, (m, 2))])
-        out = np.hstack([out, few(rng, (2, m)) if seen else np.zeros((2, m))])
+        b = np.vstack([b, np.zeros((m, 2)) if is_observed else few(rng, (m, 2))])
+        out = np.hstack([out, few(rng, (2, m)) if is_observed else np.zeros((2, m))])
     if kind == "changed":
         which = rng.integers(3)
         size = 10.0 ** -int(rng.integers(0, 4))

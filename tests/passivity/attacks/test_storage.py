@@ -61,8 +61,8 @@ def press(element, force, travel):
     }
     way = np.where(force * travel < 0, ways[type(element)](element, np.abs(force)), 0.0)
     back = np.sign(travel) * np.minimum(way, np.abs(travel))
-    between, given = leg(element, force, back)
-    return leg(element, between, travel - back)[1] - given
+    between, energy = leg(element, force, back)
+    return leg(element, between, travel - back)[1] - energy
 
 
 def run(elements, paths, starts, rounds=1, load=0.0):
@@ -135,35 +135,35 @@ def random_friction(rng):
         friction.append(kind(level, *more))
         total += level
     soft = min((e.stiffness for e in friction if hasattr(e, "stiffness")), default=force / length)
-    own = near(rng, total) if rng.random() < 0.5 else total * 10 ** rng.uniform(-0.7, 0.5)
-    return Dahl(own, soft * 10 ** rng.uniform(-1, 0.7)), friction
+    share_of_body = near(rng, total) if rng.random() < 0.5 else total * 10 ** rng.uniform(-0.7, 0.5)
+    return Dahl(share_of_body, soft * 10 ** rng.uniform(-1, 0.7)), friction
 
 
 @attacked(0, 40)
-def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
+def test_no_motion_takes_out_more_than_a_storage_that_has_converged(seed, number):
     rng, counts, nearest = np.random.default_rng(seed), Counter(), []
     for k in range(number):
         compensator, friction = random_friction(rng)
         load = 0.3 * rng.random() if k % 5 == 0 else 0.0
         try:
-            found = available_storage(compensator, friction, points=POINTS, load_coefficient=load)
+            storage = available_storage(compensator, friction, points=POINTS, load_coefficient=load)
         except ModelError as error:  # two springs of lengths far apart: a refusal claims nothing
             assert "would take minutes" in str(error)
             counts["refused"] += 1
             continue
         elements = [compensator, *friction]
-        above, forever = attack(rng, elements, found.storage, load=load)
-        case = elements, load, found.gain, above, forever
-        beaten = forever > found.tolerance
-        if found.evidence().holds:
+        above, forever = attack(rng, elements, storage.storage, load=load)
+        case = elements, load, storage.gain, above, forever
+        beaten = forever > storage.tolerance
+        if storage.evidence().holds:
             assert not beaten, case
             # a motion may turn between two travels of the grid, whose storage is off by as much as
             # half the points say
-            blur = compensator.level * found.travel + 0.02 * found.storage.max()
-            blur += abs(found.storage.max() - found.coarse)
+            blur = compensator.level * storage.travel + 0.02 * storage.storage.max()
+            blur += abs(storage.storage.max() - storage.coarse)
             assert above <= blur, case
             nearest.append(above / blur)
-        counts[found.is_finite, bool(beaten)] += 1
+        counts[storage.is_finite, bool(beaten)] += 1
     print(dict(counts), np.round(np.quantile(nearest, [0, 0.1, 0.5, 0.9, 1]), 4))
     # some that do not settle are beaten, and storages that settle are reached: it is not blind
     assert counts[True, False] and counts[False, True] and max(nearest) > -0.1

@@ -168,7 +168,7 @@ def grown(rng, z, value_of=None):
     z11, z12, z21, z22 = (values(one, s) for one in z) if value_of is None else value_of(s)
     phi = np.angle(s)
     sizes = np.concatenate([[0.0], np.geomspace(1e-5, 1e5, 15)])
-    loop, own = (z12 * z21)[:, None, None], z22[:, None, None]
+    loop, port = (z12 * z21)[:, None, None], z22[:, None, None]
     middle = np.abs(z22)[:, None, None] + 1e-300
     turned = np.linspace(-1, 1, 9)[None, None, :] * phi[:, None, None] * (1 - 1e-9)
     held = middle * sizes[None, :, None] * np.exp(1j * turned)
@@ -181,7 +181,7 @@ def grown(rng, z, value_of=None):
     tuned[np.abs(tuned) > 1e200] = 0  # of a port that is infinite there
     held = np.concatenate([held, tuned * np.linspace(0.8, 1.2, 9)], axis=1)
     with np.errstate(all="ignore"):
-        need = loop / (own + held) - z11[:, None, None]
+        need = loop / (port + held) - z11[:, None, None]
         inside = phi[:, None, None] - np.abs(np.angle(need))
     inside = np.where(np.isfinite(inside) & (np.abs(need) > 0), inside, -9.0)
     real = (s.imag == 0)[:, None, None]  # there the cone is a line
@@ -198,8 +198,8 @@ def grown(rng, z, value_of=None):
                 return s[k], first, second
     if value_of is not None:
         return None
-    for own in (z[0], z[3]):
-        if (alone := _beside_a_clamped_port(own, s)) is not None:
+    for port in (z[0], z[3]):
+        if (alone := _beside_a_clamped_port(port, s)) is not None:
             return alone, None, None
     for through in (z[1], z[2]):
         for r in roots(through[1]):
@@ -208,15 +208,15 @@ def grown(rng, z, value_of=None):
     return None
 
 
-def _beside_a_clamped_port(own, s):
+def _beside_a_clamped_port(impedance, s):
     """s at which an impedance has a negative real part: it grows, held by what is minus it."""
     with np.errstate(all="ignore"):
-        z = values(own, s)
+        z = values(impedance, s)
         inside = np.angle(s) - np.abs(np.angle(-z))
     inside = np.where(np.isfinite(inside) & (np.abs(z) > 0), inside, -9.0)
     for k in np.argsort(-inside)[:6]:
         with mpmath.workdps(DIGITS):
-            if inside[k] > 0 and at(own, mpmath.mpc(s[k].real, s[k].imag)).real < 0:
+            if inside[k] > 0 and at(impedance, mpmath.mpc(s[k].real, s[k].imag)).real < 0:
                 return s[k]
     return None
 
@@ -276,17 +276,17 @@ def judged(rng, kind):
     if rng.random() < 0.25:
         z = _scaled(rng, z)
     system = matrix(z)
-    said, stable = passive(system), absolutely_stable(system)
+    is_passive, stable = passive(system), absolutely_stable(system)
     against, unstable = wave(rng, z), grown(rng, z)
-    if said.status == "proved":
+    if is_passive.status == "proved":
         assert against is None, (kind, z, against)
         assert stable.status == "proved", (kind, z, stable)
     if stable.status == "proved":
         assert unstable is None, (kind, z, unstable)
     if stable.status == "refuted":
         assert stable.record.replay() > 0, (kind, z)
-        assert said.status != "proved"
-    return said.status, stable.status, against is not None, unstable is not None
+        assert is_passive.status != "proved"
+    return is_passive.status, stable.status, against is not None, unstable is not None
 
 
 @attacked(2, 40)
@@ -326,10 +326,10 @@ def test_no_terminations_beat_a_delayed_spring_that_is_proved(seed, number):
             return m[0] * s + b[0] + spring, through, through, m[1] * s + b[1] + spring
 
         corners = [[1.0, float(x)] for x in (1 / delay, b_m / (m_m or b_m), b_s / (m_s or b_s))]
-        found = grown(rng, [(c, [1]) for c in corners] + [([1], [1])], value_of)
-        assert not (claim.status == "proved" and found), (claim, found)
+        growth = grown(rng, [(c, [1]) for c in corners] + [([1], [1])], value_of)
+        assert not (claim.status == "proved" and growth), (claim, growth)
         assert claim.status != "refuted" or share > 1
-        counts[claim.status, found is not None] += 1
+        counts[claim.status, growth is not None] += 1
     print(dict(counts))
     assert counts["proved", False] > number / 4
 

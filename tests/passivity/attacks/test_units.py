@@ -130,7 +130,7 @@ def test_impedances_in_other_units_have_the_same_claim(seed, number):
         lever = Fraction(small.randint(1, 5))
         shares = [[lever**2, lever], [lever, Fraction(1)]]
         for claim in (passive, absolutely_stable):
-            found = []
+            results = []
             for size, t, share in ((1, 1, None), (first, time, shares)):
                 whole = [[entries[0], between], [between, entries[1]]]
                 made = [
@@ -138,7 +138,7 @@ def test_impedances_in_other_units_have_the_same_claim(seed, number):
                      for j, z in enumerate(row)]
                     for i, row in enumerate(whole)
                 ]  # fmt: skip
-                found.append(claim(two_port(made)).status)
-            assert agree(*found), (claim.__name__, entries, between, first, time, lever, found)
-            counts[claim.__name__, found[0]] += 1
+                results.append(claim(two_port(made)).status)
+            assert agree(*results), (claim.__name__, entries, between, first, time, lever, results)
+            counts[claim.__name__, results[0]] += 1
     print(dict(counts))

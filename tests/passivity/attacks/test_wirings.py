@@ -166,10 +166,10 @@ def exact_modes(e, a):
         degree = len(kept) - 1
         scaled = [c * size ** (degree - k) for k, c in enumerate(numbers)]
         top = max(map(abs, scaled))
-        found = mpmath.polyroots(
+        roots = mpmath.polyroots(
             [c / top for c in scaled], maxsteps=2000, extraprec=600, error=False
         )
-        return [mpmath.mpc(0)] * low + [r * size for r in found]
+        return [mpmath.mpc(0)] * low + [r * size for r in roots]
 
 
 def determinant(m):
@@ -303,10 +303,10 @@ def sums_that_feed_themselves(rng):
     back = 1.0 if rng.random() < 0.2 else back
     a = -pick(rng) if rng.random() < 0.6 else pick(rng, -2, 0)
     c = pick(rng) * sign(rng) * rng.integers(0, 2)
-    seen = rng.random() < 0.5
+    is_observed = rng.random() < 0.5
     w.junction("e", x1=1.0, y=back)
     w.system("L", [[a]], [1.0], [c], d, "e", "y", kind=str(rng.choice(["ss", "law"])))
-    w.junction("u1", **({"y": -pick(rng)} if seen else {"x1": -pick(rng)}))
+    w.junction("u1", **({"y": -pick(rng)} if is_observed else {"x1": -pick(rng)}))
     return w
 
 

@@ -14,7 +14,7 @@ SEED = 8  # of the plain run's cases; drawn once, not chosen for their answers
 FEW = {name: EFFECTS[name] for name in TEN}
 
 
-def write_own(folder, effect, *, seed=SEED, level=None):
+def write_simulated(folder, effect, *, seed=SEED, level=None):
     """A case that hides this effect, or two ("bias+spring"; None: nothing is missing) in a folder.
 
     Every effect of the user's own model has its values: none is left to defaults.

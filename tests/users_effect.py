@@ -1,6 +1,6 @@
 """An effect file as a user writes it."""
 
-OWN = '''"""Own drag: a force in proportion to the square of velocity.
+SOURCE = '''"""Own drag: a force in proportion to the square of velocity.
 
     F = D v abs(v)
 """
