@@ -128,8 +128,8 @@ def licences() -> str:
         "",
         *_on_copyleft(tables),
         "",
-        "The extra `cuda` is not listed: `numba-cuda` (BSD-2-Clause) installs parts of CUDA, which are",
-        "under NVIDIA's licence.",
+        "The extra `cuda` is not listed: `numba-cuda` (BSD-2-Clause) installs parts of CUDA, which",
+        "are under NVIDIA's licence.",
     ]
     for title, found in tables.items():
         lines += ["", f"## {title}", "", "| package | version | licence |", "| --- | --- | --- |"]

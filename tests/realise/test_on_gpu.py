@@ -8,8 +8,7 @@ from pathlib import Path
 import gpu_cases
 import numpy as np
 import pytest
-from gpu_cases import NO_SIMULATOR, SETUPS, cases_of, reductions_of, start_of
-from gpu_cases import with_bristles as diagram_with_bristles
+from gpu_cases import NO_SIMULATOR, SETUPS, cases_of, reductions_of, start_of, with_bristles
 
 from teleopdesign.errors import ModelError
 from teleopdesign.realise import on_gpu
@@ -71,6 +70,12 @@ def test_a_thread_has_the_numbers_that_its_case_has_alone(name, on_simulated_gpu
         )
 
 
+def test_a_case_beyond_all_numbers_is_said_and_spoils_no_other(on_simulated_gpu):
+    assert on_simulated_gpu["spoiled.is_finite"].tolist() == [True, True, False]
+    others = (on_simulated_gpu[f"{name}.kept"][:2] for name in ("spoiled", "bristles"))
+    np.testing.assert_array_equal(*others)
+
+
 def test_cases_that_exceed_the_memory_of_the_gpu_run_one_part_after_the_other(on_simulated_gpu):
     np.testing.assert_array_equal(on_simulated_gpu["two parts"], on_simulated_gpu["bristles.kept"])
 
@@ -94,7 +99,7 @@ def test_a_study_on_the_gpu_refuses_and_refines_the_cases_that_it_does_elsewhere
 
 def simulate_on_gpu():
     levels = {"Z_m.coulomb.level": [0.5, 0.6]}
-    return simulate_many(diagram_with_bristles(), levels, duration=1e-3, device="cuda")
+    return simulate_many(with_bristles(), levels, duration=1e-3, device="cuda")
 
 
 @pytest.mark.parametrize("is_installed", [False, True])
