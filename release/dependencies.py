@@ -20,8 +20,8 @@ from packaging.utils import canonicalize_name
 HERE = Path(__file__).parent
 PROJECT = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS: Mapping[str, list[str]] = PROJECT["optional-dependencies"]
-#: extras of which neither the package nor `make lowest` needs anything
-_NOT_TESTED = ("bench", "docs")
+#: extras of which neither the package nor `make lowest` needs anything, or that need a GPU
+_NOT_TESTED = ("bench", "cuda", "docs")
 #: of the tools for tests, those that run them; the others read the code
 _RUNNERS = ("hypothesis", "polars", "pytest")
 #: tools of development, which a user of the package does not install
@@ -112,7 +112,8 @@ def lock() -> str:
 def licences() -> str:
     """A page of the docs."""
     core = installed([PROJECT["name"]])
-    users = installed(f"{PROJECT['name']}[{e}]" for e in EXTRAS if e not in _TOOLS)
+    wanted = (e for e in EXTRAS if e not in (*_TOOLS, *_NOT_TESTED))
+    users = installed(f"{PROJECT['name']}[{e}]" for e in wanted)
     tools = installed([f"{PROJECT['name']}[docs,test]"])
     tables = {
         "Always installed": core,
@@ -126,6 +127,9 @@ def licences() -> str:
         "distribution states it in its metadata (`make licences` writes this page).",
         "",
         *_on_copyleft(tables),
+        "",
+        "The extra `cuda` is not listed: `numba-cuda` (BSD-2-Clause) installs parts of CUDA, which",
+        "are under NVIDIA's licence.",
     ]
     for title, distributions in tables.items():
         lines += ["", f"## {title}", "", "| package | version | licence |", "| --- | --- | --- |"]

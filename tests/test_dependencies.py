@@ -13,7 +13,12 @@ from syntax_trees import parsed, syntax_trees
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 #: distribution -> module, where the two have other names
-MODULES = {"z3-solver": "z3", "myst-parser": "myst_parser", "scikit-learn": "sklearn"}
+MODULES = {
+    "myst-parser": "myst_parser",
+    "numba-cuda": "numba_cuda",
+    "scikit-learn": "sklearn",
+    "z3-solver": "z3",
+}
 #: tools that are run, not imported
 TOOLS = {"import-linter", "mypy", "pytest-xdist", "ruff", "scipy-stubs"}
 #: what another library is asked for by a text: themes and readers of sphinx, a solver of cvxpy

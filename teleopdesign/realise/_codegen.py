@@ -176,7 +176,7 @@ class Generator:
             first += count
         counted = {"MOTIONS": motions} | {
             name: rows[name]
-            for name in ("STATES", "BRISTLES", "COMMANDS", "LATE", "SAMPLED_LATE", "COLUMNS")
+            for name in "STATES BRISTLES COMMANDS LATE SAMPLED_LATE COLUMNS PARAMETERS".split()
         }
         lines += [f"MANY_{name} = {count}" for name, count in counted.items()]
         lines.append(f"ROWS = {first}")

@@ -15,6 +15,13 @@ def jitted(function):
 
 
 entry = jitted
+round_down = np.floor
+
+
+@jitted
+def column_at(place, memory):
+    return memory[place]
+
 
 LANES = 1
 
@@ -139,6 +146,7 @@ MANY_COMMANDS = 1
 MANY_LATE = 0
 MANY_SAMPLED_LATE = 0
 MANY_COLUMNS = 6
+MANY_PARAMETERS = 1
 ROWS = 34
 SMOOTH = (True,)
 COMPUTER = True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -22,45 +23,50 @@ options = dict(nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 inlined = dict(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 jitted = njit(**options, **inlined)
 entry = njit(cache=True, **options)
+round_down = np.floor
 """
 # a call of the library's exp would prevent the compiler from computing several lanes at once
 _LANES = """from teleopdesign.realise.lane_exp import exp
 
 """
-_PLAIN = """
+PLAIN = """
 
 def jitted(function):
     return function
 
 
 entry = jitted
+round_down = np.floor
+"""
+_COLUMN = """
+@jitted
+def column_at(place, memory):
+    return memory[place]
+
 """
 
 
 def module_source(laws: str, *, jit: bool = True, lanes: int = 1) -> str:
     """The module whose `run` simulates `lanes` simulations;  laws: from `Generator.source`."""
-    return "\n".join([*_laws_part(laws, jit=jit, lanes=lanes), _integrator()])
+    head = [_LANES if lanes > 1 else "", _COMPILED if jit else PLAIN, _COLUMN]
+    return loop_source(laws, head, is_typed=jit, lanes=lanes)
 
 
-def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
+def loop_source(laws: str, head: Sequence[str], *, is_typed: bool, lanes: int = 1) -> str:
+    """A module of the laws and the loop.
+
+    head: source that defines `jitted`, `entry`, `round_down` and `column_at`
+    is_typed: whether numba compiles the module
+    """
     text = '"""Generated from the laws of the blocks of a diagram; do not edit."""'
-    if jit:
+    if is_typed:
         # places by which functions are called: numba compiles a function again for each literal
         # number that it gets, and once for all numbers of a type
         laws = re.sub(r"^(\w+ = )(\d+ \* LANES)$", r"\1np.int64(\2)", laws, flags=re.MULTILINE)
     # numba takes as long for a product of constants as for any other
     laws = re.sub(r"(\d+) \* LANES", lambda match: str(int(match[1]) * lanes), laws)
-    return [
-        text,
-        _HEAD,
-        _LANES if lanes > 1 else "",
-        _COMPILED if jit else _PLAIN,
-        f"LANES = {lanes}\n",
-        PHI,
-        WEIGHTS,
-        "",
-        laws,
-    ]
+    parts = [text, _HEAD, *head, f"LANES = {lanes}\n", PHI, WEIGHTS, "", laws, _integrator()]
+    return "\n".join(parts)
 
 
 @cache

@@ -205,7 +205,7 @@ def read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane):
         at = i * LANES + lane
         reading = memory[POSITIONS + at]
         if encoder_step > 0.0:
-            reading = np.floor(reading / encoder_step + 0.5) * encoder_step
+            reading = round_down(reading / encoder_step + 0.5) * encoder_step
         if first:
             velocity = memory[VELOCITIES + at]
             memory[TRAVEL + at] = velocity
@@ -327,12 +327,12 @@ def delay(j, time, inputs, late_steps, before, after, slots, memory, lane):
         keep_late(j, time, inputs, before, slots, memory, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
-        whole = int(np.ceil(late_steps[i]))
+        whole = int(ceil(late_steps[i]))
         memory[LATE + at] = earlier(at, j - whole, whole - late_steps[i], before, after, slots)
     keep_late(j, time, inputs, after, slots, memory, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
-        whole = int(np.ceil(late_steps[i]))
+        whole = int(ceil(late_steps[i]))
         node, part = j - whole, whole - late_steps[i]
         now = memory[LATE + at]
         middle, end = now, now  # a held signal does not change within a step
@@ -378,13 +378,13 @@ def keep(row, width, kept, out, kinds, columns, others, results, memory):
     """
     for k in range(len(kept)):
         for lane in range(LANES):
-            out[(row * len(kept) + k) * LANES + lane] = memory[kept[k] + lane]
+            out[(row * len(kept) + k) * LANES + lane] = column_at(kept[k] + lane, memory)
     if width < 0.0:
         return
     for i in range(len(kinds)):
         for lane in range(LANES):
             at = i * LANES + lane
-            value = memory[columns[i] + lane]
+            value = column_at(columns[i] + lane, memory)
             before = results[at]
             if kinds[i] == 1:
                 value = max(value, before)
@@ -395,9 +395,9 @@ def keep(row, width, kept, out, kinds, columns, others, results, memory):
             elif kinds[i] == 4:
                 value = before + value
             elif kinds[i] == 5:
-                value = before + value * memory[others[i] + lane]
+                value = before + value * column_at(others[i] + lane, memory)
             elif kinds[i] == 6:
-                value = before + width * value * memory[others[i] + lane]
+                value = before + width * value * column_at(others[i] + lane, memory)
             results[at] = value
 
 

@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -144,14 +144,35 @@ def first_memory(
     return memory.reshape(-1)
 
 
-def grid(made: Program, timing: Timing, lanes: int) -> tuple[Any, ...]:
+class LoopGrid(NamedTuple):
     """The first arguments of the loop: its grid, and ring buffers for delayed signals."""
+
+    samples: int
+    inner: int
+    step: float
+    period: float
+    lag: int
+    late_steps: np.ndarray
+    encoder_step: float
+    smoothing: float
+    held: np.ndarray
+    held_slots: int
+    before: np.ndarray
+    after: np.ndarray
+    late_slots: int
+    late_samples: np.ndarray
+    past: np.ndarray
+    past_slots: int
+
+
+def grid(made: Program, timing: Timing, lanes: int) -> LoopGrid:
+    """The first arguments of the loop for `lanes` simulations."""
     held = timing.lag // timing.inner + 2
     # three nodes before the interpolated one, and the node of the current step
     late = math.ceil(max(timing.late, default=0)) + 4
     past = int(max(timing.late_samples, default=0)) + 2
     nodes, samples = (n * lanes for n in (len(made.layout.late), len(timing.late_samples)))
-    return (
+    return LoopGrid(
         timing.samples,
         timing.inner,
         timing.step,

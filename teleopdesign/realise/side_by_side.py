@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -23,6 +24,11 @@ from .program import CompiledLoop, Program, loop_of
 #: simulations of a block that run in one loop (lanes): with 8, each takes twice the time; with 32,
 #: a tenth less, but more cases are needed to fill a block
 LANES = 16
+
+#: cases whose rates at rest are computed by one thread at a time
+_CASES_OF_RATES = 1024
+
+Result = TypeVar("Result")
 
 #: reduction -> number by which the loop knows it (`integrator.keep`), and where it starts
 KINDS: Mapping[str, tuple[int, float]] = {
@@ -90,12 +96,17 @@ def lanes_of(made: Program) -> CompiledLoop:
 
     raises ModelError: a block is known as code only
     """
+    refuse_code(made)
+    return loop_of(made.laws, LANES)
+
+
+def refuse_code(made: Program) -> None:
+    """Raise ModelError if a block is known as code only, which cannot run side by side."""
     if made.has_code:
         raise ModelError(
             "simulate_many: a nonlinear python-control system is code, which no lanes run side by "
             "side: simulate one after the other"
         )
-    return loop_of(made.laws, LANES)
 
 
 def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -106,14 +117,20 @@ def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, n
     loop = lanes_of(made)
     if not made.layout.states:
         return np.zeros(len(parameters)), np.zeros(len(parameters), dtype=int)
-    blocks = [
-        fastest_rates(
-            slopes_at_rest(made, loop, _arrange_in_lanes(parameters[first : first + LANES], LANES))
-        )
-        for first in range(0, len(parameters), LANES)
-    ]
-    rates, states = (np.concatenate(part)[: len(parameters)] for part in zip(*blocks, strict=True))
-    return rates, states
+
+    def rates(first: int) -> tuple[np.ndarray, np.ndarray]:
+        here = parameters[first : first + _CASES_OF_RATES]
+        slopes = [
+            slopes_at_rest(made, loop, _arrange_in_lanes(here[lane : lane + LANES], LANES))
+            for lane in range(0, len(here), LANES)
+        ]
+        return fastest_rates(np.concatenate(slopes)[: len(here)])
+
+    blocks = _spread_over_threads(
+        [partial(rates, first) for first in range(0, len(parameters), _CASES_OF_RATES)]
+    )
+    largest, states = (np.concatenate(part) for part in zip(*blocks, strict=True))
+    return largest, states
 
 
 def execute_many(
@@ -130,54 +147,54 @@ def execute_many(
     start: as in `kernel.execute`, for all cases;  kept: columns whose rows are returned
     begin: first row that is reduced
     """
-    wanted = _Wanted(start, kept, reductions, begin)
-    results = [_empty_results(run, wanted) for run in runs]
+    request = LaneRequest(start, kept, reductions, begin)
+    results = [request.empty_results(run) for run in runs]
     blocks = [
-        (run.timing.steps, partial(_run_block, made, run, wanted, result, first))
+        (run.timing.steps, partial(_run_block, made, run, request, result, first))
         for run, result in zip(runs, results, strict=True)
         for first in range(0, len(run.parameters), LANES)
     ]
     # the longest first: the cores then end at about the same time
     _spread_over_threads([block for _, block in sorted(blocks, key=lambda b: -b[0])])
-    for run, result in zip(runs, results, strict=True):
-        rows = run.timing.samples + 1 - begin
-        for i, reduction in enumerate(reductions):
-            sums = result.reduced[:, i]
-            result.reduced[:, i] = _scale(reduction.kind, sums, rows, run.timing)
+    scale_sums(runs, results, request)
     return results
 
 
 @dataclass(frozen=True)
-class _Wanted:
-    """Start and requested results of all runs: arguments of `execute_many`."""
+class LaneRequest:
+    """Start and results of all runs: arguments of `execute_many`."""
 
     start: Mapping[str, float]
     kept: Sequence[int]
     reductions: Sequence[Reduction]
     begin: int
 
+    def empty_results(self, run: GridRun) -> LaneResults:
+        """Arrays for the results of a run."""
+        cases, rows = len(run.parameters), run.timing.samples + 1
+        return LaneResults(
+            np.empty((cases, rows, len(self.kept))),
+            np.empty((cases, len(self.reductions))),
+            np.empty(cases),
+            np.empty(cases, dtype=bool),
+        )
 
-def _empty_results(run: GridRun, wanted: _Wanted) -> LaneResults:
-    cases, rows = len(run.parameters), run.timing.samples + 1
-    return LaneResults(
-        np.empty((cases, rows, len(wanted.kept))),
-        np.empty((cases, len(wanted.reductions))),
-        np.empty(cases),
-        np.empty(cases, dtype=bool),
-    )
+    def first_sums(self, lanes: int) -> np.ndarray:
+        """Where each reduction starts, in each lane."""
+        return np.repeat([KINDS[r.kind][1] for r in self.reductions], lanes).astype(float)
 
 
 def _run_block(
-    made: Program, run: GridRun, wanted: _Wanted, result: LaneResults, first: int
+    made: Program, run: GridRun, request: LaneRequest, result: LaneResults, first: int
 ) -> None:
     """Run the block of cases that starts with case `first`, and write their results."""
     here = slice(first, min(first + LANES, len(run.parameters)))
     columns, timing, used = made.functions["COLUMNS"], run.timing, here.stop - first
-    rows, kept, loop = timing.samples + 1, wanted.kept, lanes_of(made)
+    rows, kept, loop = timing.samples + 1, request.kept, lanes_of(made)
     lanes = loop.lanes
     parameters = _arrange_in_lanes(run.parameters[here], lanes)
-    memory = first_memory(made, lanes, parameters, wanted.start)
-    sums = np.repeat([KINDS[r.kind][1] for r in wanted.reductions], lanes).astype(float)
+    memory = first_memory(made, lanes, parameters, request.start)
+    sums = request.first_sums(lanes)
     out = np.empty(rows * len(kept) * lanes)
     loop.run(
         *grid(made, timing, lanes),
@@ -188,8 +205,8 @@ def _run_block(
         lanes * (columns + np.array(kept, dtype=np.int64)),
         out,
         run.limit,
-        wanted.begin,
-        *_reduction_arrays(columns, wanted.reductions, lanes),
+        request.begin,
+        *reduction_arrays(columns, request.reductions, lanes),
         sums,
     )
     table = memory.reshape(-1, lanes)[:, :used]
@@ -200,17 +217,15 @@ def _run_block(
     result.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
 
 
-def _spread_over_threads(blocks: Sequence[Callable[[], None]]) -> None:
+def _spread_over_threads(blocks: Sequence[Callable[[], Result]]) -> list[Result]:
+    """The results of the blocks, in their order."""
     if len(blocks) == 1 or workers() == 1:
-        for block in blocks:
-            block()
-        return
+        return [block() for block in blocks]
     with ThreadPoolExecutor(workers()) as threads:
-        for running in [threads.submit(block) for block in blocks]:
-            running.result()
+        return [running.result() for running in [threads.submit(block) for block in blocks]]
 
 
-def _reduction_arrays(
+def reduction_arrays(
     first: int, reductions: Sequence[Reduction], lanes: int
 ) -> tuple[np.ndarray, ...]:
     """Kinds, columns and other columns of the reductions, as the loop takes them."""
@@ -224,6 +239,17 @@ def _arrange_in_lanes(parameters: np.ndarray, lanes: int) -> np.ndarray:
     """Parameters of at most a block of cases, row by row; empty lanes repeat the last case."""
     cases = np.minimum(np.arange(lanes), len(parameters) - 1)
     return np.ascontiguousarray(parameters[cases].T).reshape(-1)
+
+
+def scale_sums(
+    runs: Sequence[GridRun], results: Sequence[LaneResults], request: LaneRequest
+) -> None:
+    """Divide the sums over samples, so that they are means and integrals."""
+    for run, result in zip(runs, results, strict=True):
+        rows = run.timing.samples + 1 - request.begin
+        for i, reduction in enumerate(request.reductions):
+            sums = result.reduced[:, i]
+            result.reduced[:, i] = _scale(reduction.kind, sums, rows, run.timing)
 
 
 def _scale(kind: str, sums: np.ndarray, rows: int, timing: Timing) -> np.ndarray:

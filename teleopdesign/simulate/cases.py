@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,9 @@ from ..controllers import Controller
 from ..diagrams import Control, Diagram
 from ..errors import ModelError, did_you_mean
 from ..realise.simulated import check_levels, least_levels, may_be_negative
+
+if TYPE_CHECKING:
+    from .setup import Setup
 
 #: relative change of a value, to determine which simulated numbers depend on it
 _CHANGE = 1e-3
@@ -170,6 +173,25 @@ def simulated_values(
                 out[np.ix_(here, np.array(at))] = np.nan
                 reasons |= {int(case): str(error) for case in group.cases[here]}
     return out, reasons
+
+
+def delays_of_cases(
+    setup: Setup, names: tuple[str, ...], numbers: np.ndarray
+) -> list[tuple[float, ...]]:
+    """Delay of each delayed signal in each case, s.
+
+    names: parameters that the delays depend on;  numbers: their values, (cases, names)
+    """
+    equations = setup.program.equations
+    if not equations.delays:
+        return [()] * len(numbers)
+    symbols = {name: x for x, name in equations.parameters.items()}
+    different, which = np.unique(numbers, axis=0, return_inverse=True)
+    delays = []
+    for row in different:
+        at = {symbols[name]: float(x) for name, x in zip(names, row, strict=True)}
+        delays.append(tuple(float(delay.subs(at)) for delay in equations.delays))
+    return [delays[i] for i in which.reshape(-1)]
 
 
 def _cases(columns: Mapping[str, np.ndarray]) -> int:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from .case_results import REDUCTIONS, CaseResults
-from .cases import Group, columns_of, groups, list_refusals, simulated_values
+from .cases import Group, columns_of, delays_of_cases, groups, list_refusals, simulated_values
 from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare, simulated_form
@@ -41,8 +42,9 @@ def simulate_many(
     keep: Sequence[str] = (),
     reduce: Mapping[str, tuple[Any, str]] | None = None,
     after: float = 0.0,
+    device: Literal["cpu", "cuda"] = "cpu",
 ) -> xarray.Dataset:
-    """Simulate every parameter set from t = 0, many side by side on all cores.
+    """Simulate every parameter set from t = 0, many side by side on all cores or on a GPU.
 
     values: parameter, such as "Z_m.coulomb.level" (the names of `Diagram.values`) -> its value in
         each case (SI), shape (n,), or one number for all
@@ -53,19 +55,24 @@ def simulate_many(
         the force has done on the motion. Default: the rms of every signal as "SIGNAL_rms" where
         nothing is kept, else none
     after: start of what is reduced, s
+    device: "cuda": an NVIDIA GPU, for ten thousand cases and more (extra `cuda`)
     other arguments: as in `simulate`, for all cases
     returns: variables over `case`; coordinates: the values, `step` (s) that each case took, and
         `reason` why a case has no numbers (they are NaN then), "" where it has. A case that fails
         does not touch the others
     raises ModelError: no such parameter or signal, arrays of different lengths, more samples kept
-        than 2 GB; what fails in every case
+        than 2 GB; no GPU; what fails in every case
     """
+    if device == "cuda":
+        from ..realise.on_gpu import check_gpu
+
+        check_gpu()
     columns = columns_of(diagram, values)
     cases = len(next(iter(columns.values()))) if columns else 1
     arguments: dict[str, Any] = {"duration": duration, "inputs": inputs, "initial": initial}
     arguments |= {"motion": dict(motion or {}), "computer": computer, "step": step, "give": give}
     wanted = None if reduce is None else dict(reduce)
-    study = _Study(diagram, columns, arguments, long_step, tuple(keep), wanted, after)
+    study = _Study(diagram, columns, arguments, long_step, tuple(keep), wanted, after, device)
     period = (SAMPLED if isinstance(computer, str) else computer).period
     result = CaseResults(cases)
     result.open_rows(samples_of(duration, period), period, study.keep)
@@ -89,6 +96,7 @@ class _Study:
     keep: tuple[str, ...]
     reduce: dict[str, tuple[Any, str]] | None
     after: float
+    device: Literal["cpu", "cuda"]
 
     def choose_reductions(self, columns: Sequence[str]) -> dict[str, tuple[Any, str]]:
         """The reductions that the caller wants; by default the rms of every column."""
@@ -131,15 +139,17 @@ class _Study:
         result.refuse(reasons)
         many = len(layout.parameters)
         rates, states = rates_of_cases(setup.program, numbers[:, :many])
-        delays = _delays(setup, late, numbers[:, many:])
+        delays = delays_of_cases(setup, late, numbers[:, many:])
+        ladder = cache(partial(setup.ladder, self.long_step))
+        check = cache(partial(_check_size, setup))
         todo: dict[GridKey, list[int]] = {}
         for k, case in enumerate(group.cases):
             if not result.open[case]:
                 continue
             state = layout.states[states[k]] if layout.states else ""
             try:
-                inner = setup.ladder(self.long_step, delays[k]).first(float(rates[k]), state)
-                setup.check_size(setup.timing(inner, delays[k]))
+                inner = ladder(delays[k]).first(float(rates[k]), state)
+                check(inner, delays[k])
             except ModelError as error:
                 result.refuse({int(case): str(error)})
                 continue
@@ -170,11 +180,9 @@ class _Study:
         result: CaseResults,
     ) -> dict[GridKey, list[int]]:
         """Run the cases of a wave; returns the cases that need a finer grid, by this grid."""
-        from ..realise.side_by_side import execute_many
-
         runs = wave.runs(setup, numbers)
         samples, period = runs[0].timing.samples, setup.sampling.period
-        outcomes = execute_many(
+        outcomes = self._execute()(
             setup.program,
             runs,
             start=setup.initial,
@@ -193,6 +201,16 @@ class _Study:
             result.take(here[done], run.timing.step, outcome, done, (*kept,), (*reductions,))
         return finer
 
+    def _execute(self) -> Callable[..., list[LaneResults]]:
+        """The function that runs cases on the chosen device."""
+        if self.device == "cuda":
+            from ..realise.on_gpu import execute_on_gpu
+
+            return execute_on_gpu
+        from ..realise.side_by_side import execute_many
+
+        return execute_many
+
     def _next_steps(
         self,
         setup: Setup,
@@ -205,15 +223,13 @@ class _Study:
         """Index in `cases` -> steps per sample of cases that need finer steps; refuses failures."""
         finer: dict[int, int] = {}
         ladder = setup.ladder(self.long_step, grid[1])
-        for i, case in enumerate(map(int, cases)):
+        for i in np.flatnonzero(~ladder.is_resolved(outcome.worst, outcome.is_finite)):
             try:
                 inner = ladder.next(timing, float(outcome.worst[i]), bool(outcome.is_finite[i]))
                 setup.check_size(setup.timing(inner, grid[1]))
+                finer[int(i)] = inner
             except ModelError as error:
-                result.refuse({case: str(error)})
-                continue
-            if inner != timing.inner:
-                finer[i] = inner
+                result.refuse({int(cases[i]): str(error)})
         return finer
 
     def _form(self, diagram: Diagram) -> Diagram:
@@ -279,15 +295,5 @@ def _reduction(name: str, what: Any) -> tuple[Any, str]:
     return signal, kind
 
 
-def _delays(setup: Setup, names: tuple[str, ...], numbers: np.ndarray) -> list[tuple[float, ...]]:
-    """Delay of each delayed signal in each case, s."""
-    equations = setup.program.equations
-    if not equations.delays:
-        return [()] * len(numbers)
-    symbols = {name: x for x, name in equations.parameters.items()}
-    different, which = np.unique(numbers, axis=0, return_inverse=True)
-    delays = []
-    for row in different:
-        at = {symbols[name]: float(x) for name, x in zip(names, row, strict=True)}
-        delays.append(tuple(float(delay.subs(at)) for delay in equations.delays))
-    return [delays[i] for i in which.reshape(-1)]
+def _check_size(setup: Setup, inner: int, delays: tuple[float, ...]) -> None:
+    setup.check_size(setup.timing(inner, delays))

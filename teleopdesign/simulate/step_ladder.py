@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -49,6 +49,13 @@ class StepLadder:
             raise long_step_error(self.step, self.period / needed, "is far too long")
         return inner
 
+    @staticmethod
+    def is_resolved(worst: Any, is_finite: Any) -> Any:
+        """Whether a run resolved its bristles; for numbers or arrays, arguments as in `next`."""
+        from ..realise.kernel import RELOAD
+
+        return (worst <= RELOAD) & is_finite
+
     def next(self, timing: Timing, worst: float, is_finite: bool) -> int:
         """Steps per sample for the next run; unchanged if this run resolved its bristles.
 
@@ -57,13 +64,13 @@ class StepLadder:
         """
         from ..realise.kernel import FINER, RELOAD, long_step_error, refine_factor, round_up_steps
 
+        if self.is_resolved(worst, is_finite):
+            return timing.inner
         if not is_finite:
             raise GrowsWithoutBound(
                 f"signals grow beyond all bounds at a step of {timing.step:g} s: the "
                 "loop is unstable or a parameter makes no sense"
             )
-        if worst <= RELOAD:
-            return timing.inner
         factor = refine_factor(worst, RELOAD, 2)
         if self.long_step == "refuse":
             why = f"is {np.sqrt(2 / worst):.2g} steps for the bristle's reload after a reversal"

@@ -1,0 +1,121 @@
+"""Cases in the threads of a GPU, which numba simulates: the numbers that each case has alone."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import gpu_cases
+import numpy as np
+import pytest
+from gpu_cases import NO_SIMULATOR, SETUPS, cases_of, reductions_of, start_of, with_bristles
+
+from teleopdesign.errors import ModelError
+from teleopdesign.realise import on_gpu
+from teleopdesign.realise.kernel import execute
+from teleopdesign.realise.side_by_side import execute_many
+from teleopdesign.simulate import simulate_many
+
+
+@pytest.fixture(scope="module")
+def on_simulated_gpu(tmp_path_factory):
+    path = tmp_path_factory.mktemp("gpu") / "results.npz"
+    paths = [str(Path(gpu_cases.__file__).parent), *sys.path]
+    environment = os.environ | {"NUMBA_ENABLE_CUDASIM": "1", "PYTHONPATH": os.pathsep.join(paths)}
+    command = [sys.executable, gpu_cases.__file__, str(path)]
+    run = subprocess.run(command, env=environment, capture_output=True, text=True)
+    if run.returncode == NO_SIMULATOR:
+        pytest.skip("this numba has no simulator of a GPU: needs numba-cuda")
+    assert run.returncode == 0, run.stderr
+    with np.load(path) as arrays:
+        return dict(arrays)
+
+
+def reduced_by_hand(rows, setup, period):
+    """The reductions of each kind, from the rows of one case after the first."""
+    numbers = []
+    for reduction in reductions_of(setup):
+        y, v = rows[1:, reduction.column], rows[1:, reduction.other]
+        numbers.append(
+            {
+                "final": y[-1],
+                "maximum": y.max(),
+                "minimum": y.min(),
+                "peak": np.abs(y).max(),
+                "mean": y.mean(),
+                "rms": np.sqrt(np.mean(y**2)),
+                "energy": period * np.trapezoid(y * v),
+            }[reduction.kind]
+        )
+    return numbers
+
+
+@pytest.mark.parametrize("name", SETUPS)
+def test_a_thread_has_the_numbers_that_its_case_has_alone(name, on_simulated_gpu):
+    setup = SETUPS[name]()
+    timing = setup.timing(setup.inner())
+    given = setup.arguments(timing) | {"start": start_of(setup), "every_step": False}
+    for case, row in enumerate(cases_of(setup)):
+        values = dict(zip(setup.program.layout.parameters, row, strict=True))
+        rows, worst = execute(setup.program, values, timing, **given)
+        kept, reduced, largest, is_finite = (
+            on_simulated_gpu[f"{name}.{key}"][case]
+            for key in ("kept", "reduced", "worst", "is_finite")
+        )
+        assert is_finite and np.ptp(rows, axis=0).any()
+        assert np.all(np.abs(kept - rows) <= 1e-9 * np.abs(rows).max(axis=0))
+        assert largest == pytest.approx(worst, rel=1e-9)
+        np.testing.assert_allclose(
+            reduced, reduced_by_hand(rows, setup, timing.period), rtol=1e-9, atol=1e-15
+        )
+
+
+def test_a_case_beyond_all_numbers_is_said_and_spoils_no_other(on_simulated_gpu):
+    assert on_simulated_gpu["spoiled.is_finite"].tolist() == [True, True, False]
+    others = (on_simulated_gpu[f"{name}.kept"][:2] for name in ("spoiled", "bristles"))
+    np.testing.assert_array_equal(*others)
+
+
+def test_cases_that_exceed_the_memory_of_the_gpu_run_one_part_after_the_other(on_simulated_gpu):
+    np.testing.assert_array_equal(on_simulated_gpu["two parts"], on_simulated_gpu["bristles.kept"])
+
+
+def test_a_case_that_alone_exceeds_the_memory_is_refused_in_one_line(on_simulated_gpu):
+    message = str(on_simulated_gpu["no room"])
+    assert "a simulation of 30 steps needs" in message and "\n" not in message
+
+
+def test_a_study_on_the_gpu_refuses_and_refines_the_cases_that_it_does_elsewhere(on_simulated_gpu):
+    """A stiff bristle, friction that is absent, and a mass so small that no step suffices."""
+    found = on_simulated_gpu
+    assert found["cuda.reason"].tolist() == found["cpu.reason"].tolist()
+    assert [bool(reason) for reason in found["cuda.reason"]] == [False, False, True]
+    np.testing.assert_array_equal(found["cuda.step"], found["cpu.step"])
+    assert found["cuda.step"][1] < found["cuda.step"][0]
+    for name in ("end", "drawn"):
+        assert np.all(found[f"cpu.{name}"][:2] != 0.0)
+        np.testing.assert_allclose(found[f"cuda.{name}"], found[f"cpu.{name}"], rtol=1e-9)
+
+
+def simulate_on_gpu():
+    levels = {"Z_m.coulomb.level": [0.5, 0.6]}
+    return simulate_many(with_bristles(), levels, duration=1e-3, device="cuda")
+
+
+@pytest.mark.parametrize("is_installed", [False, True])
+def test_without_a_gpu_one_line_says_what_is_missing(is_installed, monkeypatch):
+    cuda = pytest.importorskip("numba.cuda", reason="this numba has no part for GPUs")
+    monkeypatch.setattr(on_gpu, "find_spec", lambda name: is_installed or None)
+    monkeypatch.setattr(cuda, "is_available", lambda: False)
+    monkeypatch.setattr(cuda, "cuda_error", lambda: "no driver:\nnot found", raising=False)
+    expected = "expected an NVIDIA GPU" if is_installed else "pip install 'teleopdesign\\[cuda\\]'"
+    with pytest.raises(ModelError, match=expected) as refused:
+        simulate_on_gpu()
+    assert "\n" not in str(refused.value)
+
+
+def test_the_same_function_serves_both_devices():
+    """What `execute_many` takes, `execute_on_gpu` takes too: cases are collected in one way."""
+    from inspect import signature
+
+    assert signature(on_gpu.execute_on_gpu) == signature(execute_many)
