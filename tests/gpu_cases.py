@@ -125,8 +125,10 @@ def main(path):
         from numba import cuda
     except ImportError:
         sys.exit(NO_SIMULATOR)
+    from teleopdesign.realise import on_gpu
     from teleopdesign.realise.on_gpu import execute_on_gpu
 
+    on_gpu.FEWEST = 0
     side_by_side.LANES, side_by_side.loop_of = 3, plain_loop
     context = type(cuda.current_context())
     arrays = {}
@@ -149,10 +151,15 @@ def main(path):
     context.get_memory_info = lambda self: (math.inf, math.inf)
     reduce = {"end": ("X_s", "final"), "drawn": (("F_m", "X_m"), "energy")}
     run = {"duration": 2e-3, "inputs": {"F_u": push}, "computer": "continuous", "reduce": reduce}
-    for device in ("cpu", "cuda"):
+    # with a least number of two, the case that is refined alone runs on the cores
+    for label, device, on_gpu.FEWEST in (
+        ("cpu", "cpu", 0),
+        ("cuda", "cuda", 0),
+        ("both", "cuda", 2),
+    ):
         data = simulate_many(with_bristles(), VALUES, device=device, **run)
         names = (*reduce, "step", "reason")
-        arrays |= {f"{device}.{name}": data[name].values for name in names}
+        arrays |= {f"{label}.{name}": data[name].values for name in names}
     np.savez(path, **arrays)
 
 

@@ -26,6 +26,7 @@ from .side_by_side import (
     LaneRequest,
     LaneResults,
     Reduction,
+    execute_many,
     reduction_arrays,
     refuse_code,
     scale_sums,
@@ -34,6 +35,9 @@ from .side_by_side import (
 #: threads of a block. A thread needs some 200 registers, so a processor of the GPU has room for 300
 #: threads, which small blocks fill better
 THREADS = 64
+#: cases of a grid that run on a GPU: fewer would hold up the others, for each of its threads is far
+#: slower than a core
+FEWEST = 256
 #: streams, in which grids run at the same time: one grid seldom fills the GPU
 _STREAMS = 32
 #: part of the free memory that is used
@@ -69,12 +73,24 @@ def execute_on_gpu(
 ) -> list[LaneResults]:
     """Run cases, each on its grid, as `execute_many` does; grids run at the same time.
 
+    Grids of fewer than `FEWEST` cases run on the cores.
     raises ModelError: a block is known as code only, or one case needs more memory than the GPU has
     """
-    from numba import cuda
-
     refuse_code(made)
     request = LaneRequest(start, kept, reductions, begin)
+    many = [run for run in runs if len(run.parameters) >= FEWEST]
+    few = [run for run in runs if len(run.parameters) < FEWEST]
+    on_gpu = iter(_execute_grids(made, many, request) if many else ())
+    on_cores = iter(execute_many(made, few, **vars(request)) if few else ())
+    return [next(on_gpu if len(run.parameters) >= FEWEST else on_cores) for run in runs]
+
+
+def _execute_grids(
+    made: Program, runs: Sequence[GridRun], request: LaneRequest
+) -> list[LaneResults]:
+    """Run cases of several grids on the GPU, as many at a time as its memory holds."""
+    from numba import cuda
+
     results = [request.empty_results(run) for run in runs]
     memory = _USED * cuda.current_context().get_memory_info()[0]
     parts = [
@@ -91,7 +107,7 @@ def execute_on_gpu(
         if part.bytes > room:
             _collect(running)
             room = memory
-        running.append(part.launch(streams[len(running) % _STREAMS]))
+        running.append(part.launch(streams[len(running) % len(streams)]))
         room -= part.bytes
     _collect(running)
     scale_sums(runs, results, request)

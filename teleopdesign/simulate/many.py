@@ -55,7 +55,7 @@ def simulate_many(
         the force has done on the motion. Default: the rms of every signal as "SIGNAL_rms" where
         nothing is kept, else none
     after: start of what is reduced, s
-    device: "cuda": an NVIDIA GPU, for ten thousand cases and more (extra `cuda`)
+    device: "cuda": an NVIDIA GPU (extra `cuda`), which pays from some thousand cases on
     other arguments: as in `simulate`, for all cases
     returns: variables over `case`; coordinates: the values, `step` (s) that each case took, and
         `reason` why a case has no numbers (they are NaN then), "" where it has. A case that fails

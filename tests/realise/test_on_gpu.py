@@ -70,7 +70,7 @@ def test_a_thread_has_the_numbers_that_its_case_has_alone(name, on_simulated_gpu
         )
 
 
-def test_a_case_beyond_all_numbers_is_said_and_spoils_no_other(on_simulated_gpu):
+def test_a_case_beyond_all_numbers_is_marked_and_spoils_no_other(on_simulated_gpu):
     assert on_simulated_gpu["spoiled.is_finite"].tolist() == [True, True, False]
     others = (on_simulated_gpu[f"{name}.kept"][:2] for name in ("spoiled", "bristles"))
     np.testing.assert_array_equal(*others)
@@ -85,16 +85,17 @@ def test_a_case_that_alone_exceeds_the_memory_is_refused_in_one_line(on_simulate
     assert "a simulation of 30 steps needs" in message and "\n" not in message
 
 
-def test_a_study_on_the_gpu_refuses_and_refines_the_cases_that_it_does_elsewhere(on_simulated_gpu):
+@pytest.mark.parametrize("label", ["cuda", "both"])
+def test_the_gpu_refuses_and_refines_the_cases_that_the_cores_do(label, on_simulated_gpu):
     """A stiff bristle, friction that is absent, and a mass so small that no step suffices."""
-    found = on_simulated_gpu
-    assert found["cuda.reason"].tolist() == found["cpu.reason"].tolist()
-    assert [bool(reason) for reason in found["cuda.reason"]] == [False, False, True]
-    np.testing.assert_array_equal(found["cuda.step"], found["cpu.step"])
-    assert found["cuda.step"][1] < found["cuda.step"][0]
+    of = on_simulated_gpu
+    assert of[f"{label}.reason"].tolist() == of["cpu.reason"].tolist()
+    assert [bool(reason) for reason in of[f"{label}.reason"]] == [False, False, True]
+    np.testing.assert_array_equal(of[f"{label}.step"], of["cpu.step"])
+    assert of[f"{label}.step"][1] < of[f"{label}.step"][0]
     for name in ("end", "drawn"):
-        assert np.all(found[f"cpu.{name}"][:2] != 0.0)
-        np.testing.assert_allclose(found[f"cuda.{name}"], found[f"cpu.{name}"], rtol=1e-9)
+        assert np.all(of[f"cpu.{name}"][:2] != 0.0)
+        np.testing.assert_allclose(of[f"{label}.{name}"], of[f"cpu.{name}"], rtol=1e-9)
 
 
 def simulate_on_gpu():
