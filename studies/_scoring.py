@@ -9,7 +9,7 @@ one effect     right          it alone is named
                wide group     the answer lists it as indistinguishable from what could be told
                other place    the first named is the true effect at another body
                wrong, undecided, missed (the model was said to be adequate), no answer
-two effects    right          exactly the two are named; a look-alike if it is listed as one
+two effects    right          exactly the two are named, or listed with their look-alikes alone
                right first    both and others;  half: one of them, nothing wrong;  wrong, ...
 none           right          the model is said to be adequate
                false alarm    anything else; `named` says whether an effect was named
@@ -154,11 +154,17 @@ def _judge_several(truth: Truth, answer: Answer) -> str:
             left.remove(meant[0])
         else:
             wrong += 1
+    left = [t for t in left if not _is_listed_narrowly(truth, answer, t)]
     if not left:
         return "right" if not wrong else "right first"
     if not answer.named:
         return "undecided"
     return "half" if not wrong else "wrong"
+
+
+def _is_listed_narrowly(truth: Truth, answer: Answer, true: Key) -> bool:
+    """Whether the answer lists a true effect as indistinguishable from look-alikes alone."""
+    return any(true in g and all(truth.alike(true, other) for other in g) for g in answer.groups)
 
 
 def _counts(truth: Truth, answer: Answer, named: Key, true: Key) -> bool:

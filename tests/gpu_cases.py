@@ -106,12 +106,12 @@ def reductions_of(setup):
 def together(setup, execute, cases=None):
     """Results of the three cases side by side: all signals, and each kind of reduction."""
     timing = setup.timing(setup.inner())
-    given = setup.arguments(timing)
+    arguments = setup.arguments(timing)
     cases = cases_of(setup) if cases is None else cases
-    run = GridRun(cases, timing, given["inputs"], given["sampled"])
+    run = GridRun(cases, timing, arguments["inputs"], arguments["sampled"])
     kept = range(len(setup.program.layout.columns))
-    asked = {"kept": kept, "reductions": reductions_of(setup), "begin": 1}
-    return execute(setup.program, [run], start=start_of(setup), **asked)[0]
+    wanted = {"kept": kept, "reductions": reductions_of(setup), "begin": 1}
+    return execute(setup.program, [run], start=start_of(setup), **wanted)[0]
 
 
 def plain_loop(laws, lanes):

@@ -13,6 +13,7 @@ from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
+from .led_astray import return_from_astray
 from .moves import add, remove
 from .narrower_band import choose_band, narrower_to_search
 from .noise_floor import noise_floor
@@ -88,6 +89,10 @@ def climb(
             len(state.set_aside) <= search.plan.searched_on
             and (moved := make_next_move(search, state)) is not None
         ):
+            if (back := return_from_astray(search, state, moved)) is not None:
+                search.progress("once more, from values that a candidate led back to")
+                state = look(search, back.rungs, back)
+                continue
             barred = bar_what_explains_nothing(search, state, moved)
             if barred is None:
                 state = look(search, moved.rungs, moved)

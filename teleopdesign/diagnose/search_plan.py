@@ -73,6 +73,9 @@ class SearchPlan:
     #: part of the squares by which two fits must differ to count as two places: ten times what a
     #: rough fit leaves open
     elsewhere: float = 1e-3
+    #: part of a new effect's gain that the model without it regains from the other values, from
+    #: which on it is searched anew: below this the effect explains four fifths of its gain itself
+    regained: float = 0.2
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
     #: which another candidate is fitted finely at once
     leading: float = 0.05

@@ -54,10 +54,10 @@ def reduced_by_hand(rows, setup, period):
 def test_a_thread_has_the_numbers_that_its_case_has_alone(name, on_simulated_gpu):
     setup = SETUPS[name]()
     timing = setup.timing(setup.inner())
-    given = setup.arguments(timing) | {"start": start_of(setup), "every_step": False}
+    arguments = setup.arguments(timing) | {"start": start_of(setup), "every_step": False}
     for case, row in enumerate(cases_of(setup)):
         values = dict(zip(setup.program.layout.parameters, row, strict=True))
-        rows, worst = execute(setup.program, values, timing, **given)
+        rows, worst = execute(setup.program, values, timing, **arguments)
         kept, reduced, largest, is_finite = (
             on_simulated_gpu[f"{name}.{key}"][case]
             for key in ("kept", "reduced", "worst", "is_finite")

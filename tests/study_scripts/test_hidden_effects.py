@@ -82,6 +82,8 @@ def test_look_alikes_count_only_where_the_answer_lists_them(response, outcome):
         (answer(BIAS, STRIBECK), "right"),
         (answer(ASYMMETRY, STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right"),
         (answer(STRIBECK, BIAS, ("spring", "device")), "right first"),
+        (answer(STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right"),
+        (answer(STRIBECK, groups=[(BIAS, ASYMMETRY, ("spring", "device"))]), "half"),
         (answer(STRIBECK), "half"),
         (answer(STRIBECK, ("spring", "device")), "wrong"),
         (answer(STRIBECK, STRIBECK), "wrong"),
