@@ -265,9 +265,10 @@ def sentence(diagnosis: Diagnosis) -> str:
             f"{left} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
-        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
+        titles = [r.title for r in diagnosis.rungs if r.added is not None]
+        help_ = "helps, but explains" if len(titles) == 1 else "help, but explain"
         return (
-            f"verdict: undecided. {names} help, but explain less than half of what is missing: "
+            f"verdict: undecided. {', '.join(titles)} {help_} less than half of what is missing: "
             f"{left} noise floors are left."
         )
     if diagnosis.groups:

@@ -19,6 +19,8 @@ from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
+#: least changes of stamps that many rows share, from which they tell the rate of the rows
+FEWEST_CHANGES = 3
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str]]:
@@ -73,6 +75,7 @@ def time_column(
     if choices.sample_rate is not None:
         return None, "s"
     rising = {n: x for n, x in raw.items() if rises(x)}
+    rising = rising or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
     if choices.time is not None:
         name = choices.time
     elif log.clocks:
@@ -94,6 +97,16 @@ def time_column(
         if why:
             guesses["channels.time.unit"] = why
     return name, unit
+
+
+def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
+    """Whether a column is a time by its name or unit, in which many rows share a stamp."""
+    unit = log.units.get(name) or unit_in_name(name, "time")
+    timed = unit is not None and measures(unit, "time") if unit != "counts" else False
+    if not (timed or likeness(name, "time") >= SURE_NAME or _is_unit_of_time(name)):
+        return False
+    steps = np.diff(values[np.isfinite(values)])
+    return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
 
 
 def _is_unit_of_time(name: str) -> bool:
