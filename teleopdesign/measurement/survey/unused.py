@@ -40,6 +40,8 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
         return f"{count} columns have this name"
     if name not in raw:
         why = survey.unread.get(name)
+        if why is not None and why.startswith("one value"):
+            return why
         return f"holds no numbers ({why})" if why else "holds no numbers"
     if name in log.clocks.values():
         return "stamps of a topic that is not used"
