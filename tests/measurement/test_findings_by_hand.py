@@ -106,6 +106,25 @@ def test_a_channel_of_a_slower_source_says_its_rate(every):
         assert found.numbers == {"samples": every, "rate": pytest.approx(1 / H / every)}
 
 
+@pytest.mark.parametrize(
+    ("name", "quantity", "advised"),
+    [
+        ("slave.position", "position", True),
+        ("position", "position", False),
+        ("slave.actuator_force", "actuator_force", False),
+    ],
+)
+def test_a_body_that_is_logged_more_slowly_than_another_is_to_be_diagnosed_alone(
+    name, quantity, advised
+):
+    """Its Stribeck friction was lost in the jitter that its repeated rows seem to show."""
+    values = held_in_turn(4).values
+    (found,) = check_update(channel(values, quantity, name=name))
+    assert (
+        "diagnose the slave in an experiment with its channels alone" in found.sentence
+    ) == advised
+
+
 def test_a_channel_that_changes_at_odd_times_or_always_has_no_rate():
     assert check_update(held_in_turn(1)) == []
     assert check_update(held_in_turn(10, off=1, part=0.4)) == []
