@@ -1,6 +1,7 @@
 """A user's Python file: run as it was read, and nothing is written beside it."""
 
 import os
+import re
 import sys
 
 import pytest
@@ -50,3 +51,21 @@ def test_a_file_that_is_no_python_file_is_one_line(tmp_path, what):
     (tmp_path / "mine.txt").write_text("EFFECT = 3")
     with pytest.raises(ModelError, match=r"expected \.py"):
         LOADERS[what](tmp_path / "mine.txt")
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "message"),
+    [
+        ("now.velocity *", "now.velocty *", 'now has no "velocty"; did you mean "velocity"?'),
+        ("p.drag *", "p.darg *", 'p has no "darg"; did you mean "drag"?'),
+        ("p.drag *", "p.velocity *", 'p has no "velocity"'),
+        ("now.velocity *", "now.drag *", 'now has no "drag"'),
+    ],
+)
+def test_a_misspelt_signal_or_parameter_of_a_law_is_named(tmp_path, right, wrong, message):
+    """Not as Python does: "'types.SimpleNamespace' object has no attribute 'velocty'"."""
+    assert right in SOURCE
+    path = tmp_path / "drag.py"
+    path.write_text(SOURCE.replace(right, wrong))
+    with pytest.raises(ModelError, match=f"^{re.escape(str(path))}: law: {re.escape(message)}$"):
+        load_effect(path)

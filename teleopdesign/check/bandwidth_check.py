@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from ..diagnose.adequacy import is_adequate
+from ..diagnose.fit import estimate
 from ..diagnose.narrower_band import narrower_band
+from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
 from ..finding import Finding
 from ..measurement.bandwidth import hides_motion, motion_beyond, share_in_motion
@@ -20,11 +25,11 @@ def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
     """Findings on a bandwidth that is too high for the position readings, or below the motion.
 
     A bandwidth is too high where far fewer rows show a certain motion than at a lower one, or where
-    the user's model leaves far more than at a lower one.
+    the user's model leaves far more than at a lower one, and more than noise.
     """
     experiment, stated = prepared.experiment, prepared.bandwidth
     narrower = narrower_band(model, prepared)
-    if narrower is not None:
+    if narrower is not None and not _leaves_noise(model, prepared):
         numbers = {"bandwidth": stated, "proposed": narrower.bandwidth, "error": narrower.error}
         yield Finding("bandwidth", "warning", f"{narrower}.", numbers)
     else:
@@ -46,6 +51,12 @@ def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
             {"bandwidth": stated, "proposed": proposed, "seen": moving, "could": could},
             body,
         )
+
+
+def _leaves_noise(model: Model, prepared: Prepared) -> bool:
+    """Whether a model leaves only the errors of the readings, which grow with the bandwidth."""
+    fit = estimate(model, prepared)
+    return is_adequate(fit, noise_floor(fit.model, prepared, np.random.default_rng(0)))
 
 
 def _motion_beyond(experiment: Experiment, chosen: float) -> Iterator[Finding]:

@@ -57,8 +57,9 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     mixed = list(check_mixed_columns(part))
     if mixed:
         return (*findings, *mixed, _report_skipped("first make the columns agree", "note"))
-    if hidden := list(check_bandwidth(model, prepared)):
-        return (*findings, *hidden, _report_skipped("first choose a bandwidth", "note"))
+    findings += (of_band := list(check_bandwidth(model, prepared)))
+    if any(f.concern == "warning" for f in of_band):
+        return (*findings, _report_skipped("first choose a bandwidth", "note"))
     agreement = check_plausibility(model, prepared)
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]

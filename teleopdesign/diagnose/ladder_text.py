@@ -224,6 +224,14 @@ def say_floors(left: float) -> str:
     return f"{left:.1f}" if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
 
 
+def floors_apart(left: float, without: float) -> tuple[str, str]:
+    """Two errors in noise floors, with as many decimals as show which one is smaller."""
+    if left > CRITERIA.countable:
+        return say_floors(left), say_floors(without)
+    digits = next((d for d in (1, 2, 3) if f"{left:.{d}f}" != f"{without:.{d}f}"), 4)
+    return f"{left:.{digits}f}", f"{without:.{digits}f}"
+
+
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict of a diagnosis in words."""
     left = say_floors(diagnosis.left)
@@ -236,8 +244,9 @@ def sentence(diagnosis: Diagnosis) -> str:
         )
     rest = more if diagnosis.more_is_missing else ""
     if (moment := diagnosis.moment) is not None:
+        whole, without = floors_apart(diagnosis.left, moment.without)
         rest = (
-            f" The remaining error is {left} noise floors, but {say_floors(moment.without)} "
+            f" The remaining error is {whole} noise floors, but {without} "
             f"without one moment ({moment})."
         )
     if diagnosis.verdict == "model_adequate":
@@ -274,7 +283,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
-        return f"verdict: undecided between {names}: these records do not decide.{rest}"
+        return f"verdict: undecided, {names}: these records do not decide.{rest}"
     return (
         f"verdict: undecided. No candidate effect explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"

@@ -13,7 +13,7 @@ import importlib
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from weakref import WeakValueDictionary
 
 from sympy import SympifyError
@@ -165,10 +165,19 @@ def _check_effect(module: ModuleType, path: Path) -> Effect:
     except TeleopDesignError:
         raise
     except (AttributeError, TypeError, SympifyError) as error:
-        raise ModelError(f"{path}: law: {error}") from error
+        raise ModelError(f"{path}: law: {_explain(error, effect)}") from error
     except (Exception, SystemExit) as error:  # a law is the user's Python too
         raise ModelError(f"{path}: law: {type(error).__name__}: {error}") from error
     return effect
+
+
+def _explain(error: Exception, effect: Effect) -> str:
+    """The text of an error in a law; a misspelt signal or parameter is told by its name."""
+    if not isinstance(error, AttributeError) or not isinstance(error.obj, SimpleNamespace):
+        return str(error)
+    known = vars(error.obj)
+    holder = "p" if set(known) == set(effect.parameters) else "now"
+    return f'{holder} has no "{error.name}"{did_you_mean(error.name or "", known)}'
 
 
 def _shipped_effects() -> dict[str, Effect]:

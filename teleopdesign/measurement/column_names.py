@@ -18,7 +18,9 @@ ALIASES = {
     "ampere": "A", "amperes": "A", "a": "A", "ma": "mA", "newton": "N", "newtons": "N", "n": "N",
     "nm": "Nm", "ncm": "N*cm", "meter": "m", "meters": "m", "millimeter": "mm", "millimeters": "mm",
     "revs": "rev", "revolutions": "turns", "ticks": "counts", "cnt": "counts", "count": "counts",
-    "inc": "counts", "volt": "V", "volts": "V", "v": "V", "rads": "rad/s", "degs": "deg/s",
+    "inc": "counts", "incr": "counts", "ink": "counts", "inkr": "counts", "inkremente": "counts",
+    "qc": "counts", "pulses": "counts", "impulse": "counts", "volt": "V", "volts": "V", "v": "V",
+    "rads": "rad/s", "degs": "deg/s",
     "с": "s", "мс": "ms", "град": "deg", "рад": "rad", "м": "m", "мм": "mm", "н": "N",
     "нм": "Nm", "н·м": "Nm", "н*м": "Nm", "а": "A", "°": "deg", "度": "deg", "秒": "s", "초": "s",
     "u/min": "rpm", "1/min": "rpm", "min-1": "rpm", "r/min": "rpm", "tr/min": "rpm",
@@ -115,7 +117,17 @@ _UNIT_LETTERS = 5
 _WHOLE_NAME = 3
 
 #: beginnings of words with the same meaning as in WANTED: "Sollwinkel", "targetPosition"
-WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consigne", "目標", "指令")
+WANTED_BEGINNINGS = (
+    "soll",
+    "target",
+    "desired",
+    "demand",
+    "setpoint",
+    "referen",
+    "consigne",
+    "目標",
+    "指令",
+)
 
 
 def bare_name(name: str) -> str:

@@ -17,6 +17,7 @@ from .description import BodyDescription, ModelValue, bodies_from
 from .doors._log import Log
 from .experiment import Experiment
 from .first_guess import guess_from
+from .numbers_in_cells import holds_dates
 from .record import Record, record_of, wanted_columns
 from .spans import cut_to
 from .tables import columns_of
@@ -275,5 +276,5 @@ def log_of(data: Any) -> Log:
             f"xarray or a dict of arrays{file}"
         )
     # dates and durations are read in seconds, whatever their names say: "time_ms"
-    units |= {n: "s" for n, v in columns.items() if np.asarray(v).dtype.kind in "mM"}
+    units |= {n: "s" for n, v in columns.items() if holds_dates(v)}
     return Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, units)

@@ -13,6 +13,8 @@ from .doors._cells import number_of, stamps_in_texts
 Array = NDArray[np.float64]
 #: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
 _LONG = 2**53
+#: cells that tell whether a column holds dates
+_SOME = 100
 
 
 def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
@@ -32,13 +34,22 @@ def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
         return _seconds(values)
     if values.dtype.kind in "iu" and len(values) and np.abs(values[0]) > _LONG:
         return np.asarray(values - values[0], dtype=np.float64)
-    if values.dtype.kind == "O":
-        values = _plain_objects(values)
+    if values.dtype.kind in "OU":
+        values = _plain_objects(values.astype(object))
     if values.dtype.kind not in "fiub":
         row, text = _first_non_number(values)
         raise ExperimentError(f"{begin}, row {row}: found {text}, expected a number")
     numbers: Array = values.astype(np.float64)
     return numbers
+
+
+def holds_dates(values: Any) -> bool:
+    """Whether cells are dates, times of day or durations, also as texts: `numbers_of` gives s."""
+    values = np.asarray(values)
+    if values.dtype.kind in "mM":
+        return True
+    some = values.reshape(-1)[:_SOME].tolist() if values.dtype.kind in "OU" else []
+    return bool(some) and stamps_in_texts(some) is not None
 
 
 def _seconds(values: NDArray[Any]) -> Array:

@@ -20,6 +20,8 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     """Unit of a time column from its usual step, and the reason if the unit is a guess."""
     finite = stamps[np.isfinite(stamps)]
     step = float(np.median(np.abs(np.diff(finite))))
+    if step == 0.0:  # most rows share a stamp
+        step = float(np.ptp(finite)) / max(len(finite) - 1, 1)
     # a spreadsheet counts days; read in seconds, such a log would be too short for a record
     if step < LONGEST_DAYS and _SHORTEST / DAY < float(np.ptp(finite)) < _SHORTEST:
         return "day", f"day: only in days are steps of {step:.4g} usual for a log"

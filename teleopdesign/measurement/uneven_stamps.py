@@ -155,11 +155,18 @@ def _deviation_from_clock(stamps: Array, time: Array, stretches: Sequence[slice]
 
 
 def _counted_clock(stamps: Array, where: str) -> RecordClock:
+    """Rows at the mean rate between the first and the last change of a stamp.
+
+    The rows before the first change and after the last one share a stamp with rows that the log, or
+    its span, does not hold: over the whole log, whole seconds would give a wrong rate.
+    """
     count = len(stamps)
-    period = float(f"{(stamps.max() - stamps.min()) / (count - 1):.12g}")
+    changes = np.flatnonzero(np.diff(stamps) > 0) + 1
+    first, last = (changes[0], changes[-1]) if len(changes) > 1 else (0, count - 1)
+    period = float(f"{(stamps[last] - stamps[first]) / (last - first):.12g}")
     check_duration(count, period, where)
     rows, whole = np.arange(count), (slice(0, count),)
-    time = stamps.min() + period * rows
+    time = stamps[first] + period * (rows - first)
     return RecordClock(rows, time, rows, time, period, whole, whole, counted=True)
 
 

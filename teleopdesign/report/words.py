@@ -7,6 +7,7 @@ import re
 
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.ladder_text import floors_apart
 from ..diagnose.rung import Rung
 from ..measurement.experiment import Experiment
 
@@ -128,9 +129,10 @@ def verdict(diagnosis: Diagnosis) -> str:
             "whether more is missing."
         )
     if (moment := diagnosis.moment) is not None:
+        whole, without = floors_apart(diagnosis.left, moment.without)
         rest = (
-            f"The remaining error is {left} times what sensor noise alone would leave, "
-            f"{_floors(moment.without)} times without one moment ({moment})."
+            f"The remaining error is {whole} times what sensor noise alone would leave, "
+            f"{without} times without one moment ({moment})."
         )
     if diagnosis.verdict == "model_adequate":
         return (
@@ -157,7 +159,7 @@ def verdict(diagnosis: Diagnosis) -> str:
         )
     if all(r.alternatives for r in diagnosis.rungs[1:]):
         names = join_names(added)
-        return f"Undecided between {names}: these records do not decide. Either way {fell}. {rest}"
+        return f"Undecided, {names}: these records do not decide. Either way {fell}. {rest}"
     helps = "helps, but explains" if len(added) == 1 else "help, but explain"
     return (
         f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"

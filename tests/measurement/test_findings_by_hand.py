@@ -58,6 +58,19 @@ def test_a_reading_that_was_held_and_catches_up_does_not_leap(sample, way):
     assert check_jumps(channel(x)) == []
 
 
+@pytest.mark.parametrize("off", [5, 7, 9])
+def test_a_body_that_sticks_for_a_row_as_it_turns_round_does_not_leap(off):
+    """Its speed changes by less there than from row to row elsewhere: "no body does that"."""
+    change = np.round(140 * np.sin(0.12 * np.arange(3000)))
+    # a reversal: down to a row of rest, and on with the friction of the other direction
+    change[1500:1512] = [102, 85, 68, 51, 34, 17, 0, -17 + off, *range(-28, -68, -10)]
+    change[1512:] = np.round(140 * np.sin(0.12 * np.arange(3000 - 1512) + np.pi + 0.5))
+    x = np.cumsum(change)
+    assert check_jumps(channel(x, step=1.0)) == []
+    x[1700:] += 400  # more than any change of speed
+    assert len(check_jumps(channel(x, step=1.0))) == 1
+
+
 def test_a_lone_sample_is_no_leap_whatever_its_size():
     """Of eight to ten times the noise it looks like one, but the lone sample explains it."""
     leaps = alone = 0
@@ -91,6 +104,25 @@ def test_a_channel_of_a_slower_source_says_its_rate(every):
         assert f"changes only every {every} samples" in finding.sentence
         assert f"the log at {1 / H:.4g} Hz" in finding.sentence
         assert finding.numbers == {"samples": every, "rate": pytest.approx(1 / H / every)}
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "advised"),
+    [
+        ("slave.position", "position", True),
+        ("position", "position", False),
+        ("slave.actuator_force", "actuator_force", False),
+    ],
+)
+def test_a_body_that_is_logged_more_slowly_than_another_is_to_be_diagnosed_alone(
+    name, quantity, advised
+):
+    """Its Stribeck friction was lost in the jitter that its repeated rows seem to show."""
+    values = held_in_turn(4).values
+    (finding,) = check_update(channel(values, quantity, name=name))
+    assert (
+        "diagnose the slave in an experiment with its channels alone" in finding.sentence
+    ) == advised
 
 
 def test_a_channel_that_changes_at_odd_times_or_always_has_no_rate():

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.diagnose import ladder_text
 from teleopdesign.diagnose.one_moment import Moment
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.report.words import (
@@ -87,7 +88,7 @@ def test_look_alikes_are_named_together(diagnosis):
         diagnosis, verdict="undecided", rungs=(first, replace(second, alternatives=(other,)))
     )
     text = verdict(alike)
-    assert text.startswith(f"Undecided between stribeck at device or {other}: these records do not")
+    assert text.startswith(f"Undecided, stribeck at device or {other}: these records do not")
 
 
 def test_an_adequate_model_and_an_unexplained_rest_are_reported_as_such(diagnosis):
@@ -165,6 +166,10 @@ def test_what_is_left_at_one_moment_is_reported_with_the_rest_of_the_record(diag
     assert sentence.replace("1.2 ", f"{number(1.25, 2)} ") in verdict(one)
     only = replace(one, rungs=one.rungs[:1], verdict="model_adequate")
     assert "Your model is adequate" in verdict(only) and f"({moment})" in verdict(only)
+    close = with_floor(diagnosis, floors=1.806)
+    close = replace(close, moment=replace(moment, without=1.768))
+    for text in (verdict(close), ladder_text.sentence(close)):
+        assert "1.81 " in text and " 1.77 " in text, "not: 1.8, but 1.8 without one moment"
     plain = replace(only, moment=None)
     assert verdict(plain).endswith(
         "sensor noise alone would leave " + percent(plain.floor.value) + "."

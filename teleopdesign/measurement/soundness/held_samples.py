@@ -77,11 +77,22 @@ def check_update(signal: Signal) -> list[Finding]:
             "held samples",
             "note",
             f"{signal.name} changes only every {every} samples: it runs at {1 / period:.4g} Hz, "
-            f"the log at {1 / signal.record.sample_time:.4g} Hz.",
+            f"the log at {1 / signal.record.sample_time:.4g} Hz.{_of_one_body(signal)}",
             {"samples": float(every), "rate": 1 / period},
             signal.record.file,
         )
     ]
+
+
+def _of_one_body(signal: Signal) -> str:
+    """What to do where the other body of an experiment may be logged faster; "" for one body."""
+    body, dot, _ = signal.name.rpartition(".")
+    if not dot or signal.channel.quantity != "position":
+        return ""
+    return (
+        f" The steps between count as jitter of the clock and hide effects: diagnose the {body} in "
+        "an experiment with its channels alone, of which one row of each reading is read."
+    )
 
 
 def check_stuck(signal: Signal) -> list[Finding]:

@@ -19,6 +19,8 @@ EXPLAINED, RELATIVE = 3.0, 0.2
 #: a command may have any value, so a sample is an outlier if it leaves the range of all others by
 #: more than this part of the range
 OUT_OF_RANGE = 0.5
+#: part of the second differences of a position up to which they are usual
+USUAL = 0.99
 #: rms of the two statistics for readings rounded to a step: sqrt(70)/6 and sqrt(5) times 0.29
 _ROUNDED_LONE, _ROUNDED_JUMP = 0.40, 0.65
 
@@ -114,6 +116,18 @@ def _mark_out_of_range(x: Array, at: NDArray[np.intp]) -> NDArray[np.bool_]:
     return np.asarray((x[at] > high + margin) | (x[at] < low - margin))
 
 
+def _usual_bend(x: Array, events: NDArray[np.intp]) -> float:
+    """Second difference of a position (n,) that few rows exceed, without the rows at events.
+
+    A body that makes such accelerations in other rows can make a leap of that size.
+    """
+    bend = np.abs(np.diff(x, 2))
+    other = np.ones(len(bend), dtype=bool)
+    for k in range(-2, 3):
+        other[np.clip(events + k, 0, len(bend) - 1)] = False
+    return float(np.quantile(bend[other], USUAL)) if other.any() else 0.0
+
+
 def check_jumps(signal: Signal) -> list[Finding]:
     """Report jumps of a position that no body can make: lost samples or counts, wrapped angles."""
     if signal.channel.quantity != "position":
@@ -122,9 +136,10 @@ def check_jumps(signal: Signal) -> list[Finding]:
     for first, x in signal.stretches:
         at, size, _ = jumps(x, signal.rounded_to)
         lone = lone_samples(x, signal.rounded_to)[0]
+        usual = _usual_bend(x, at)
         for k, leap in zip(at.tolist(), size.tolist(), strict=True):
             held = x[k] == x[k - 1] or x[k + 1] == x[k + 2]
-            if held or np.any(np.abs(lone - k) <= 2):
+            if held or abs(leap) < usual or np.any(np.abs(lone - k) <= 2):
                 continue
             speed = float(np.mean([x[k] - x[k - 1], x[k + 2] - x[k + 1]]))
             events.append((first + k, leap, leap / speed if speed else np.inf))

@@ -16,10 +16,11 @@ from ...quantity import is_unit
 from ..column_names import as_unit
 from ..doors._log import Log, join_names
 from ..wrapped_stamps import unwrap_stamps
+from .axis_kind import axis_of
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
-from .position import axis_of, describe_position, find_position
+from .position import describe_position, find_position
 from .trials import longest_trial, name_trials
 from .unused import unused_columns
 
@@ -49,7 +50,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     choices: what the user states
     raises ExperimentError: no position, no force among the columns, or a column that is not there
     """
-    raw, unread = numeric_columns(log, file)
+    raw, unread, log = numeric_columns(log, file)
     for key in ("time", "position", "actuator_force", "interaction_force"):
         name = getattr(choices, key)
         if name is not None and name != NONE and name not in raw:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
-from ..column_names import bare_name
+from ..column_names import bare_name, words_of
 
 #: score for a force in the same struct or joint as the position: more than the difference between
 #: similar names ("current" 0.98, "effort" 0.9), and less than that of a name of a commanded value
@@ -12,6 +13,13 @@ BESIDE = 0.2
 #: loss of score for a force whose name has another axis number than the position: as much as
 #: physics can add, because two axes that move alike explain each other's forces
 ANOTHER_AXIS = 1.0
+#: words for the two sides of a teleoperator, or of a device for both hands
+_SIDES = (
+    ("master", "slave"), ("leader", "follower"), ("local", "remote"), ("mtm", "psm"),
+    ("left", "right"), ("links", "rechts"),
+)  # fmt: skip
+#: letters for these sides, at the end of a name: "q_m" and "q_s", "xl" and "xr"
+_LETTERS = (("m", "s"), ("l", "f"), ("l", "r"))
 #: the field of a struct or joint, or a whole name without one; and the numbers of axes ("J2_pos")
 _STEM = re.compile(r"(?:^|[./])[^./]*$")
 _NUMBERS = re.compile(r"\d+")
@@ -31,7 +39,35 @@ def _axis_numbers(name: str) -> tuple[str, ...]:
     return tuple(_NUMBERS.findall(bare_name(name)))
 
 
-def of_another_axis(one: str, other: str) -> bool:
-    """Whether the names of two columns have numbers of different axes: "J1_current", "J2_angle"."""
+def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
+    """Whether two columns belong to two axes: "J1_current", "J2_angle"; "slave_pos", "master_cmd".
+
+    names: all columns of the log. The last letter of a name tells a side only where the log holds
+        the other side of both columns, too: "q_m", "q_s", "tau_m", "tau_s"
+    """
     numbers = {_axis_numbers(name) for name in (one, other)}
-    return len(numbers) == 2 and () not in numbers
+    if len(numbers) == 2 and () not in numbers:
+        return True
+    words = [frozenset(words_of(name)) for name in (one, other)]
+    for pair in _SIDES:
+        sides = [{side for side in pair if side in of_name} for of_name in words]
+        if all(len(side) == 1 for side in sides):
+            return sides[0] != sides[1]
+    bare = {bare_name(name).lower() for name in names}
+    for pair in _LETTERS:
+        letters = [_side_letter(name, pair, bare) for name in (one, other)]
+        if None not in letters:
+            return letters[0] != letters[1]
+    return False
+
+
+def _side_letter(name: str, pair: tuple[str, str], bare: Collection[str]) -> str | None:
+    """The letter of `pair` at the end of a name, where the log holds the same name with the other.
+
+    bare: the names of all columns, without units and in lower case
+    """
+    name = bare_name(name).lower()
+    for letter, opposite in (pair, pair[::-1]):
+        if name.endswith(letter) and name[:-1] + opposite in bare:
+            return letter
+    return None

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from ...errors import ExperimentError, quote
 from ...quantity import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text
-from ..doors._log import Log, join_names
+from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
-from ..numbers_in_cells import numbers_of
+from ..numbers_in_cells import holds_dates, numbers_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
 from ..wrapped_stamps import seconds_since_first
@@ -19,10 +20,17 @@ from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
+#: least changes of stamps that many rows share, from which they tell the rate of the rows
+FEWEST_CHANGES = 3
 
 
-def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str]]:
-    """Columns of numbers or dates, by name; and the reason why each other column has none."""
+def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
+    """Columns of numbers or dates, by name; and the reason why each other column has none.
+
+    returns: also the log with the unit of dates, and with single values ("gear = 30") as remarks
+    """
+    dated: list[str] = []
+    remarks: list[str] = []
     raw: dict[str, Array] = {}
     unread: dict[str, str] = {}
     single = [name for name in log.names if log.names.count(name) == 1]
@@ -33,21 +41,26 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         together = {}
     for name in single:
         try:
-            values = together[name] if name in together else log.read({name: ""})[name]
-            values = numbers_of(values, name, file)
+            cells = together[name] if name in together else log.read({name: ""})[name]
+            values = numbers_of(cells, name, file)
         except ExperimentError as problem:
             unread[name] = _without_name(str(problem), name, file)
             continue
         finite = float(np.isfinite(values).mean()) if len(values) > 1 else 0.0
         if finite > 0.5:
             raw[name] = values
+            dated += [name] if holds_dates(cells) else []
+        elif len(values) == 1:
+            unread[name] = f"one value: {values[0]:g}"
+            remarks.append(f"{bare_column(name)} = {values[0]:g}")
         else:
-            unread[name] = "one value" if len(values) == 1 else _explain_empty(finite)
+            unread[name] = _explain_empty(finite)
     if not raw:
         raise ExperimentError(
             f"{file}: found no column of numbers among {join_names(log.names)}{reasons(unread)}"
         )
-    return raw, unread
+    units = {**log.units, **dict.fromkeys(dated, "s")}
+    return raw, unread, replace(log, units=units, remarks=(*log.remarks, *remarks))
 
 
 def _explain_empty(finite: float) -> str:
@@ -73,6 +86,7 @@ def time_column(
     if choices.sample_rate is not None:
         return None, "s"
     rising = {n: x for n, x in raw.items() if rises(x)}
+    rising = rising or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
     if choices.time is not None:
         name = choices.time
     elif log.clocks:
@@ -98,6 +112,16 @@ def time_column(
         if why:
             guesses["channels.time.unit"] = why
     return name, unit
+
+
+def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
+    """Whether a column is a time by its name or unit, in which many rows share a stamp."""
+    unit = log.units.get(name) or unit_in_name(name, "time")
+    timed = unit is not None and measures(unit, "time") if unit != "counts" else False
+    if not (timed or likeness(name, "time") >= SURE_NAME or _is_unit_of_time(name)):
+        return False
+    steps = np.diff(values[np.isfinite(values)])
+    return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
 
 
 def _is_unit_of_time(name: str) -> bool:

@@ -12,8 +12,8 @@ from ..column_names import unit_in_name, why_no_unit, words_of
 from ..conversion import conversion_of
 from ..toml_table import Table
 from .acting import names_current, names_torque
+from .axis_kind import TORQUES
 from .content import Array, Choices, Survey
-from .position import TORQUES
 from .remarks import torque_constant_in
 
 #: N*m/A or m: constant of a motor, or lever arm of a force beside an angle, if nothing states it

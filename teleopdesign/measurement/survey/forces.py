@@ -9,7 +9,7 @@ from ...errors import ExperimentError
 from ...quantity import is_unit, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
-from ..first_guess import FirstGuess, explain_force, is_turned
+from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
 from .acting import current_that_acted, names_current
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
@@ -39,6 +39,9 @@ OF_CURRENT = 2.0
 #: part of a column that the motion explains, from which physics shows that the column is the force
 DRIVES = 0.3
 
+#: part of what one sign of the measured force leaves, below which the other sign is surely right
+SURELY_LESS = 0.8
+
 
 def describe_forces(
     survey: Survey,
@@ -67,7 +70,7 @@ def describe_forces(
     scores = {
         n: _score_force(c, physics[n])
         + BESIDE * stand_together(n, position)
-        - ANOTHER_AXIS * of_another_axis(n, position)
+        - ANOTHER_AXIS * of_another_axis(n, position, survey.columns)
         + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
         for n, c in free.items()
     }
@@ -79,7 +82,7 @@ def describe_forces(
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
     # in the unit of the log: the balance of forces does not depend on the scale of the motion
     motion = x, h
-    same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position)}
+    same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position, survey.columns)}
     hand = _find_hand(same_axis, force, choices)
     if hand is None and choices.interaction_force is None:
         hand = hand_by_balance(survey, same_axis, force, motion)
@@ -172,6 +175,21 @@ def _position_to_si(survey: Survey) -> float:
     return scale / float(position.get("gear_ratio", 1.0))
 
 
+def _sign_of_hand(u: Array, f: Array, x: Array, h: float) -> tuple[float, str | None]:
+    """The sign with which a measured force (n,) adds to that of the actuator; -1 with the reason.
+
+    With a spring at the output both sums leave the same: that with the wrong sign holds the spring
+    twice. Then the sum that needs no force of the place is right.
+    """
+    sums = {s: u + s * f for s in (1.0, -1.0)}
+    left = {s: explain_force(total, x, h).left for s, total in sums.items()}
+    if SURELY_LESS * left[1.0] <= left[-1.0] <= left[1.0] / SURELY_LESS:
+        left = {s: left_by_motion(total, x, h) for s, total in sums.items()}
+    if left[-1.0] < SURELY_LESS * left[1.0]:
+        return -1.0, f"{1 - left[-1.0] / left[1.0]:.0%} less of the forces unexplained"
+    return 1.0, None
+
+
 def _choose_signs(
     survey: Survey, motion: tuple[Array, float], force: str, hand: str | None
 ) -> None:
@@ -182,18 +200,14 @@ def _choose_signs(
     with_hand, total = whole, u
     if hand is not None:
         f = survey.columns[hand].values * force_to_si(survey, "interaction_force")
-        by_sign = {s: explain_force(u + s * f, x, h) for s in (1.0, -1.0)}
-        better = max(by_sign, key=lambda s: by_sign[s].explained)
-        if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
+        better, why = _sign_of_hand(u, f, x, h)
+        if why is not None:
             survey.channels["interaction_force"]["sign"] = -1
             survey.guesses["channels.interaction_force.sign"] = (
-                f"-1: with this sign, {hand!r} balances {force!r} and leaves "
-                f"{1 - by_sign[-1.0].explained:.0%} of the force instead of "
-                f"{1 - by_sign[1.0].explained:.0%}"
+                f"-1: with this sign, {hand!r} balances {force!r} and leaves {why}"
             )
-        else:
-            better = 1.0
-        with_hand, total = by_sign[better], u + better * f
+        total = u + better * f
+        with_hand = explain_force(total, x, h)
     if with_hand.explained > DRIVES and is_turned(total, x, h):
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from ...quantity import measures, si_factor
 from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
+from .axis_kind import IN_TURNS
 from .content import (
     SURE_NAME,
     Array,
@@ -37,15 +39,6 @@ from .encoder_counts import guess_counts_per_turn, is_counter
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
-#: names of drives that report positions in turns; and words for rotating parts
-IN_TURNS = frozenset(("odrive", "moteus"))
-TURNING = IN_TURNS | set(
-    "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
-)
-#: words of a force that turns
-TORQUES = frozenset(
-    "torque torques drehmoment moment couple coppia tau effort トルク 力矩 扭矩 토크 момент".split()
-)
 #: relative difference between a velocity and the derivative of its position that filters and
 #: rounding may cause
 SAME_TIME = 0.1
@@ -87,7 +80,7 @@ def find_position(
         raise ExperimentError(
             f"{file}: found no position: no column changes without being a force or "
             f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
-            f"{reasons(survey.unread)}"
+            f"{_integral_of(moving)}{reasons(survey.unread)}"
         )
     if choices.position is None and likeness(best, "position") < SURE_NAME:
         named = likeness(best, "position") > 0 or is_unit_of(
@@ -102,6 +95,12 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
+    """What to do with a log of velocities, as the end of a message; "" without a velocity."""
+    names = [name for name, column in moving.items() if _is_velocity(column)]
+    return f"; add a column with the integral of {names[0]!r}" if names else ""
 
 
 def _is_another(column: SurveyedColumn) -> bool:
@@ -136,43 +135,6 @@ def _is_force(column: SurveyedColumn) -> bool:
     if column.unit is not None:
         return is_unit_of(column.unit, "force")
     return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
-
-
-def axis_of(survey: Survey, position: str, choices: Choices) -> str:
-    """The axis: the user's choice, or from the unit of the position, or a guess."""
-    if choices.axis is not None:
-        return choices.axis
-    unit = choices.units.get(position) or survey.columns[position].unit
-    if unit is not None and unit != "counts":
-        for axis in ("prismatic", "revolute"):
-            if measures(unit, "position", axis):
-                return axis
-    if choices.torque_constant is not None:
-        force = choices.torque_constant[1].rpartition("/")[0]
-        return "revolute" if measures(force, "force", "revolute") else "prismatic"
-    units = [c.unit for c in survey.columns.values() if c.unit]
-    names = {word for name in survey.columns for word in words_of(name)}
-    forces = [u for u in units if measures(u, "force")]
-    turned = [u for u in units if measures(u, "force", "revolute")]
-    lengths = [u for u in units if measures(u, "position")]
-    if forces and not turned or lengths:
-        why = f"forces are in {forces[0]}" if forces else f"a column is in {lengths[0]}"
-        axis = "prismatic"
-    elif turned and not forces:
-        why, axis = f"forces are in {turned[0]}", "revolute"
-    else:
-        words = words_of(position)
-        turning = TURNING.intersection(words)
-        torques = TORQUES.intersection(names)
-        revolute = turning or torques or unit == "counts" or "A" in units
-        axis = "revolute" if revolute else "prismatic"
-        why = "no unit and no name of a column determines the axis"
-        if turning:
-            why = f"the name {position!r} is that of an angle"
-        elif torques:
-            why = f"the name of a column contains {min(torques)!r}"
-    survey.guesses["model.device.axis"] = f"the axis is {axis}: {why}"
-    return axis
 
 
 def describe_position(

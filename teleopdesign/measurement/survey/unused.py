@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from ...quantity import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness
 from ..doors._log import Log
+from .axes import of_another_axis
 from .content import (
     SURE_NAME,
     Array,
@@ -39,6 +40,8 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
         return f"{count} columns have this name"
     if name not in raw:
         why = survey.unread.get(name)
+        if why is not None and why.startswith("one value"):
+            return why
         return f"holds no numbers ({why})" if why else "holds no numbers"
     if name in log.clocks.values():
         return "stamps of a topic that is not used"
@@ -55,6 +58,8 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
 def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     """Why a signal that changes is taken for neither position, velocity nor force."""
     name, unit, position = column.name, column.unit, survey.channels["position"]["column"]
+    if of_another_axis(name, position, survey.columns):
+        return f"of another axis than {position!r}: --position chooses the axis"
     kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
     if unit is not None and is_unit(unit) and not kinds:
         return f"in {unit}: no position, velocity or force"

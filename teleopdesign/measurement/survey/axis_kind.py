@@ -1,0 +1,59 @@
+"""Whether an axis turns or slides, from the units and names of a log's columns."""
+
+from __future__ import annotations
+
+from ...quantity import AXES, is_unit, measures
+from ..column_names import words_of
+from .content import Choices, Survey
+
+#: names of drives that report positions in turns; and words for rotating parts
+IN_TURNS = frozenset(("odrive", "moteus"))
+TURNING = IN_TURNS | set(
+    "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
+)
+#: words of a force that turns
+TORQUES = frozenset(
+    "torque torques drehmoment moment couple coppia tau effort トルク 力矩 扭矩 토크 момент".split()
+)
+
+
+def axis_of(survey: Survey, position: str, choices: Choices) -> str:
+    """The axis: the user's choice, or from the unit of the position, or a guess."""
+    if choices.axis is not None:
+        return choices.axis
+    unit = choices.units.get(position) or survey.columns[position].unit
+    if unit is not None and unit != "counts":
+        for axis in ("prismatic", "revolute"):
+            if measures(unit, "position", axis):
+                return axis
+    if choices.torque_constant is not None:
+        force = choices.torque_constant[1].rpartition("/")[0]
+        return "revolute" if measures(force, "force", "revolute") else "prismatic"
+    units = [c.unit for c in survey.columns.values() if c.unit and is_unit(c.unit)]
+    names = {word for name in survey.columns for word in words_of(name)}
+    rates = {a for a in AXES for u in units if measures(u, "velocity", a)}
+    forces = [u for u in units if measures(u, "force")]
+    turned = [u for u in units if measures(u, "force", "revolute")]
+    if len(rates) == 1:
+        axis = next(iter(rates))
+        unit = next(u for u in units if measures(u, "velocity", axis))
+        why = f"a velocity is in {unit}"
+    elif forces and not turned or any(measures(u, "position") for u in units):
+        lengths = [u for u in units if measures(u, "position")]
+        why = f"forces are in {forces[0]}" if forces else f"a column is in {lengths[0]}"
+        axis = "prismatic"
+    elif turned and not forces:
+        why, axis = f"forces are in {turned[0]}", "revolute"
+    else:
+        words = words_of(position)
+        turning = TURNING.intersection(words)
+        torques = TORQUES.intersection(names)
+        revolute = turning or torques or unit == "counts" or "A" in units
+        axis = "revolute" if revolute else "prismatic"
+        why = "no unit and no name of a column determines the axis"
+        if turning:
+            why = f"the name {position!r} is that of an angle"
+        elif torques:
+            why = f"the name of a column contains {min(torques)!r}"
+    survey.guesses["model.device.axis"] = f"the axis is {axis}: {why}"
+    return axis
