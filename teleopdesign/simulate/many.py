@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
+from ..realise.simulated import refuse_massless
 from .case_results import REDUCTIONS, CaseResults
-from .cases import Group, columns_of, groups, list_refusals, simulated_values
+from .cases import Group, columns_of, groups, list_refusals, set_case, simulated_values
 from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare, simulated_form
@@ -207,6 +208,8 @@ class _Study:
         ladder = setup.ladder(self.long_step, grid[1])
         for i, case in enumerate(map(int, cases)):
             try:
+                if not outcome.is_finite[i]:
+                    self._refuse_massless(case)
                 inner = ladder.next(timing, float(outcome.worst[i]), bool(outcome.is_finite[i]))
                 setup.check_size(setup.timing(inner, grid[1]))
             except ModelError as error:
@@ -215,6 +218,12 @@ class _Study:
             if inner != timing.inner:
                 finer[i] = inner
         return finer
+
+    def _refuse_massless(self, case: int) -> None:
+        """Raise ModelError if a body of this case has no inertia."""
+        there = set_case(self.diagram, self.columns, case)
+        if 0 in there.values.values():
+            refuse_massless(self._form(there), self.arguments["motion"] or ())
 
     def _form(self, diagram: Diagram) -> Diagram:
         a = self.arguments
