@@ -80,9 +80,20 @@ def decimal(number: sp.Expr) -> str:
 
 
 def readable(expression: sp.Expr) -> str:
-    """An expression as text for people: fractions of many digits become decimals of six digits."""
-    long = {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
-    return str(expression.xreplace({x: sp.Float(x, 6) for x in long}))
+    """An expression as text for people: fractions of many digits become decimals of six digits.
+
+    The denominator of such an expression begins with the coefficient 1, as that of `Impedance`.
+    """
+    if not _long_fractions(expression):
+        return str(expression)
+    above, below = sp.fraction(expression)
+    first = sp.expand(below).as_ordered_terms()[0].as_coeff_Mul()[0]
+    expression = sp.expand(above / first) / sp.expand(below / first)
+    return str(expression.xreplace({x: sp.Float(x, 6) for x in _long_fractions(expression)}))
+
+
+def _long_fractions(expression: sp.Expr) -> set[sp.Rational]:
+    return {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
 
 
 def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction]:
