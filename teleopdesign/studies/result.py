@@ -133,6 +133,8 @@ def read_study(path: str | Path) -> Study:
     import xarray
 
     check_netcdf()
+    if not Path(path).is_file():
+        raise ExperimentError(f"{path}: no such file")
     try:
         read_on_trial(path, largest=LARGEST)
         _check_size(path)

@@ -126,9 +126,10 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     return made
 
 
-def exact(number: Any) -> sp.Rational:
+def exact(number: Any, where: str = "") -> sp.Rational:
     """A number, or its text, as an exact rational; a float as its shortest decimal.
 
+    where: beginning of the message, such as "z_width: damping: "
     raises ModelError: no finite real number, or a truth value
     """
     if isinstance(number, sp.Expr) and number.is_Rational:
@@ -141,7 +142,8 @@ def exact(number: Any) -> sp.Rational:
         value = float(number)
         return sp.Rational(repr(value))
     except (TypeError, ValueError, OverflowError):
-        raise ModelError(f"expected a finite real number, found {describe_value(number)}") from None
+        text = describe_value(number)
+        raise ModelError(f"{where}expected a finite real number, found {text}") from None
 
 
 def _from_sympy(system: Any) -> Impedance:
