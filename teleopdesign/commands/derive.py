@@ -61,10 +61,9 @@ def run(options: argparse.Namespace) -> int:
         if path is not None:
             check_output(path, endings)
     from ..derive import all_transfers
-    from ..realise.tips import linear_tips
 
     diagram = _diagram(options)
-    transfers = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
+    transfers = all_transfers(diagram)
     print(transfers.latex() if options.latex else _page(transfers, options.speed))
     if options.json is not None:
         write_json(options.json, transfers.as_data(speed=options.speed))

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ..by_name import ByName
 from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
 from ..diagrams.short_form import kind_of
 from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
+from ..realise.tips import linear_tips
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
 from .transfer_functions import Case, named_cases
 from .two_port import has_two_sides, two_port_cases
@@ -59,7 +61,7 @@ class Transfer:
 
 
 @dataclass(frozen=True)
-class Transfers:
+class Transfers(ByName):
     """The transfer functions of a diagram.
 
     transfers: name -> transfer function;  undone: name -> reason why it was not derived
@@ -68,6 +70,9 @@ class Transfers:
     diagram: Diagram
     transfers: Mapping[str, Transfer]
     undone: Mapping[str, str]
+
+    def _names(self) -> Mapping[str, Transfer]:
+        return self.transfers
 
     def __getitem__(self, name: str) -> Transfer:
         if name not in self.transfers:
@@ -141,8 +146,9 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
 
     From each outside signal to each measured signal and to each force of an attached body. For a
     haptic interface or a teleoperator, the named functions come first (`transfer_functions`,
-    `two_port_functions`). Blocks need not commute. Functions that take longer than `seconds`, or
-    have no solution, are listed in `undone`.
+    `two_port_functions`). A device with a linear transmission is two bodies, and the motion of its
+    tip is measured. Blocks need not commute. Functions that take longer than `seconds`, or have no
+    solution, are listed in `undone`.
     """
     transfers: dict[str, Transfer] = {}
     undone: dict[str, str] = {}
@@ -153,6 +159,7 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
         named = two_port_cases(diagram)
     for name, case in named.items():
         _derive(name, case, transfers, undone, seconds)
+    diagram = linear_tips(diagram)
     outputs = [*diagram.measured]
     outputs += [b.force for b in diagram.blocks if isinstance(b, Attached)]
     for output in dict.fromkeys(outputs):

@@ -8,24 +8,31 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..by_name import ByName
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
 from ..frozen import Frozen
+from ..realise.parted import linear_parted
+from ..realise.tips import linear_tips
 from .elimination import round_trip, transfer
 from .printing import as_latex, as_text, with_gamma
 
 
 @dataclass(frozen=True)
-class TransferFunctions:
+class TransferFunctions(ByName):
     """Symbolic transfer functions by name; `Gamma` stands for I + H where the diagram has H."""
 
     diagram: Diagram
     expressions: Mapping[str, sp.Expr]
     texts: Mapping[str, str]
 
+    def _names(self) -> Mapping[str, sp.Expr]:
+        return self.expressions
+
     def __getitem__(self, name: str) -> sp.Expr:
         if name not in self.expressions:
-            raise ModelError(f'transfer functions: no "{name}", have {", ".join(self.expressions)}')
+            has = ", ".join(self.expressions)
+            raise ModelError(f'transfer functions: no "{name}", have {has}')
         return self.expressions[name]
 
     def text(self) -> str:
@@ -85,11 +92,16 @@ class Case:
     text: str
 
     def derive(self, *, seconds: float = math.inf) -> sp.Expr:
-        """The expression in the blocks; arguments and errors are those of `transfer`."""
-        transfers = transfer(
-            self.diagram, self.output, (self.input,), given=self.given, seconds=seconds
-        )
-        return transfers[self.input]
+        """The expression in the blocks; arguments and errors are those of `transfer`.
+
+        A device with a linear transmission is two bodies, as in `with_values`, and a prescribed
+        motion is that of its tip.
+        """
+        motions = self.given if isinstance(self.given, tuple) else (self.given,)
+        apart, tips = linear_parted(self.diagram, tuple(m for m in motions if m))
+        output, input = (tips.get(s, s) for s in (self.output, self.input))
+        given = tuple(tips.values())
+        return transfer(apart, output, (input,), given=given, seconds=seconds)[input]
 
 
 def named_cases(diagram: Diagram) -> dict[str, Case]:
@@ -124,6 +136,7 @@ def return_difference(diagram: Diagram, name: str) -> sp.Expr:
 
     raises ModelError: `name` is no controller
     """
+    diagram = linear_tips(diagram)
     block = diagram.block(name)
     if not isinstance(block, Control):
         raise ModelError(f"{diagram.name}: {name} is no controller, its loop cannot be opened")

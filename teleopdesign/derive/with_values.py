@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ..diagrams import Diagram
+from ..errors import ModelError
 from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
 from ..realise.parted import linear_parted
 from .elimination import transfer
@@ -27,7 +28,7 @@ def with_values(
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
-    For one degree of freedom.
+    For one degree of freedom. Raises ModelError where a loop has no solution at its values.
 
     given: prescribed motions
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
@@ -38,7 +39,10 @@ def with_values(
     output, input = tips.get(output, output), tips.get(input, input)
     linear = linear_blocks(diagram, speed=speed, held=held)
     form = transfer(diagram, output, (input,), given=tuple(tips.values()))[input]
-    return sp.sympify(form).subs(symbol_values(linear)), linear
+    expression = sp.sympify(form).subs(symbol_values(linear))
+    if expression.has(sp.zoo, sp.nan, sp.oo):
+        raise ModelError(f"{output}/{input}: a loop has no solution at these values")
+    return expression, linear
 
 
 def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:

@@ -87,7 +87,7 @@ def z_width(
     wall_damping: values of B, N s/m; default: 0 to b
     raises ModelError: damping or sample time not > 0, or a law that is not linear in both
     """
-    b, late = exact(damping), exact(sample_time)
+    b, late = exact(damping, "z_width: damping: "), exact(sample_time, "z_width: sample_time: ")
     if b <= 0 or late <= 0:
         raise ModelError(f"z_width: damping and sample time must be > 0, found {b} and {late}")
     if law is None:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: panels side by side that can still be read on a page
 MOST_PANELS = 9
+#: most ticks of a linear axis: labels such as 0.00125 are wide beside a panel of 1.5 in
+_FEW_TICKS = 4
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,21 @@ def _draw_mesh(
     )
     study.label_axis(axis, "x", across)
     study.label_axis(axis, "y", up)
+    for one, scale, name in (
+        (axis.xaxis, axis.get_xscale(), across),
+        (axis.yaxis, axis.get_yscale(), up),
+    ):
+        if scale == "linear":
+            _place_ticks(one, study.data[name].values)
     return mesh
+
+
+def _place_ticks(axis: Any, values: np.ndarray) -> None:
+    """Ticks at the values of a linear axis if they are few, else some, so that labels are apart."""
+    from matplotlib.ticker import FixedLocator, MaxNLocator
+
+    few = len(values) <= _FEW_TICKS
+    axis.set_major_locator(FixedLocator(values.tolist()) if few else MaxNLocator(_FEW_TICKS))
 
 
 def _draw_marks(

@@ -182,9 +182,16 @@ class _Builder:
         return known, {s: e.xreplace(forces) for s, e in joined.items()}
 
     def _feeds_analog(self, name: str) -> bool:
-        """Whether an analog part uses this outside signal directly."""
-        parts = [p for p in self.diagram.parts if isinstance(p, Junction)]
-        return any(name in p.terms and p.output not in self.digital for p in parts)
+        """Whether an analog part uses this outside signal directly, as a load of a body does."""
+        for part in self.diagram.parts:
+            if isinstance(part, Moving) and name in part.loads:
+                return True
+            if isinstance(part, Control) and part.analog and name in (part.input, *part.others):
+                return True
+            if isinstance(part, Junction) and name in part.terms:
+                if part.output not in self.digital:
+                    return True
+        return False
 
     def _analog_rows(self) -> tuple[list[sp.Expr], list[sp.Symbol]]:
         rows: list[sp.Expr] = []

@@ -62,12 +62,12 @@ def to_iosystem(
         this step: the diagram with its computer of this period, as in `simulate` (velocity by the
         difference of readings, no delay of commands, no encoder). All inputs are held over a step.
         Outputs are the signals at the sample; measured ones just before the command changes
-    step: longest inner step of bodies and analog blocks between samples, s Inputs are the signals
-        from outside, outputs all others; states are those of `simulate`. Parameters are its
-        `params`, by their names in `Diagram.values`. They can change without building it anew:
-        `input_output_response(..., params={"Z_M.inertia": 0.2})`. With dt, `params` are those of
-        the diagram as its computer realises it, and states are also the held commands ("u_held"),
-        the last position readings ("L_read") and the samples of delay blocks.
+    step: longest inner step of bodies and analog blocks between samples, s
+    Inputs are the signals from outside, outputs all others; states are those of `simulate`.
+        Parameters are its `params`, by their names in `Diagram.values`. They can change without
+        building it anew: `input_output_response(..., params={"Z_M.inertia": 0.2})`. With dt,
+        `params` are those of the diagram as its computer realises it, and states are also the held
+        commands ("u_held"), the last position readings ("L_read") and the samples of delay blocks.
     raises ModelError: a block has no laws, a delay block has no `delay_order` (with dt: an analog
         one), an actuator has a dead time, or, with dt, a motion is prescribed, which cannot be held
     """

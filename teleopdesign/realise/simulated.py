@@ -13,7 +13,7 @@ import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..diagrams import Attached, Block, Control, Diagram, Moving, with_shared_states
+from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
 from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
@@ -242,3 +242,27 @@ def prepare_for_simulation(
         b.name: with_bristle(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)
     }
     return _with_blocks(apart, dict(tips))
+
+
+def refuse_massless(diagram: Diagram, prescribed: Iterable[str] = ()) -> None:
+    """Raise ModelError if nothing on a motion has inertia: no acceleration follows from its forces.
+
+    Motions to which kinematics or a linked impedance may give inertia are not judged.
+    """
+    linked = {m for b in diagram.blocks if isinstance(b, Linked) for m in b.motions}
+    for part in diagram.blocks if not diagram.kinematics else ():
+        if not isinstance(part, Moving) or part.motion in linked.union(prescribed):
+            continue
+        on_it = [b.body for b in diagram.bodies if b.motion == part.motion]
+        if all(isinstance(body, Body) and _has_no_inertia(body) for body in on_it):
+            raise ModelError(
+                f"{diagram.name}: nothing on {part.motion} has inertia, so no acceleration "
+                f"follows from its forces: {part.name}.inertia must be more than 0"
+            )
+
+
+def _has_no_inertia(body: Body) -> bool:
+    if body.parameters["inertia"].value > 0:
+        return False
+    inertia = sp.sympify(body.equation().inertia).subs(body.numbers())
+    return not inertia.free_symbols and float(inertia) == 0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..diagrams import Diagram
-from ..errors import ModelError
+from ..errors import ModelError, did_you_mean
 from .setup import MOST_NUMBERS
 from .units import signal_units
 
@@ -119,3 +119,24 @@ class CaseResults:
         fixed = {n: v for n, v in diagram.values.items() if n not in columns}
         attributes |= {f"parameter {n}": v for n, v in fixed.items()}
         return xarray.Dataset(data, coordinates, attributes)
+
+
+class Mistake(ModelError):
+    """An error in the arguments that does not depend on the values of a case."""
+
+
+def read_reduction(name: str, what: Any) -> tuple[Any, str]:
+    """A reduction as (signal, kind) or ((force, motion), "energy"), checked."""
+    expected = 'expected (signal, "rms") or ((force, motion), "energy")'
+    if not (isinstance(what, tuple) and len(what) == 2):
+        raise Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
+    signal, kind = what
+    if kind not in REDUCTIONS:
+        raise Mistake(
+            f'simulate_many: reduce: {name}: no reduction "{kind}", has {", ".join(REDUCTIONS)}'
+            f"{did_you_mean(str(kind), REDUCTIONS)}"
+        )
+    is_port = isinstance(signal, tuple) and len(signal) == 2
+    if is_port != (kind == "energy"):
+        raise Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
+    return signal, kind

@@ -12,8 +12,17 @@ from numpy.typing import ArrayLike
 
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
-from .case_results import REDUCTIONS, CaseResults
-from .cases import Group, columns_of, delays_of_cases, groups, list_refusals, simulated_values
+from ..realise.simulated import refuse_massless
+from .case_results import CaseResults, Mistake, read_reduction
+from .cases import (
+    Group,
+    columns_of,
+    delays_of_cases,
+    groups,
+    list_refusals,
+    set_case,
+    simulated_values,
+)
 from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare, simulated_form
@@ -81,10 +90,6 @@ def simulate_many(
     return result.label(diagram, columns, study.reductions_of(result.numbers), duration)
 
 
-class _Mistake(ModelError):
-    """An error in the arguments that does not depend on the values of a case."""
-
-
 @dataclass
 class _Study:
     """The diagram, its cases, and the results that the caller wants."""
@@ -116,7 +121,7 @@ class _Study:
         for group in groups(self.diagram, self.columns, np.flatnonzero(result.open)):
             try:
                 self.run(group, result)
-            except _Mistake as error:
+            except Mistake as error:
                 raise ModelError(str(error)) from None
             except ModelError as error:
                 first_error = first_error or error
@@ -225,6 +230,10 @@ class _Study:
         ladder = setup.ladder(self.long_step, grid[1])
         for i in np.flatnonzero(~ladder.is_resolved(outcome.worst, outcome.is_finite)):
             try:
+                if not outcome.is_finite[i]:
+                    there = set_case(self.diagram, self.columns, int(cases[i]))
+                    if 0 in there.values.values():
+                        refuse_massless(self._form(there), self.arguments["motion"] or ())
                 inner = ladder.next(timing, float(outcome.worst[i]), bool(outcome.is_finite[i]))
                 setup.check_size(setup.timing(inner, grid[1]))
                 finer[int(i)] = inner
@@ -251,7 +260,7 @@ class _Study:
                 isinstance(name, str) and name.startswith(f"{b.name}_") for b in self.diagram.blocks
             ):
                 return None
-            raise _Mistake(
+            raise Mistake(
                 f'simulate_many: {where}: no signal "{name}", has {", ".join(names)}'
                 f"{did_you_mean(str(name), names)}"
             )
@@ -259,13 +268,13 @@ class _Study:
         kept = {name: column(name, "keep") for name in self.keep}
         reductions: dict[str, Reduction] = {}
         for name, what in self.choose_reductions(names).items():
-            signal, kind = _reduction(name, what)
+            signal, kind = read_reduction(name, what)
             if (
                 name in self.keep
                 or name in self.columns
                 or name in ("case", "time", "step", "reason")
             ):
-                raise _Mistake(
+                raise Mistake(
                     f'simulate_many: reduce: "{name}" is taken: call the result otherwise'
                 )
             if kind == "energy":
@@ -276,23 +285,6 @@ class _Study:
             if first is not None and other is not None:
                 reductions[name] = Reduction(kind, first, other)
         return {n: i for n, i in kept.items() if i is not None}, reductions
-
-
-def _reduction(name: str, what: Any) -> tuple[Any, str]:
-    """A reduction as (signal, kind) or ((force, motion), "energy"), checked."""
-    expected = 'expected (signal, "rms") or ((force, motion), "energy")'
-    if not (isinstance(what, tuple) and len(what) == 2):
-        raise _Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
-    signal, kind = what
-    if kind not in REDUCTIONS:
-        raise _Mistake(
-            f'simulate_many: reduce: {name}: no reduction "{kind}", has {", ".join(REDUCTIONS)}'
-            f"{did_you_mean(str(kind), REDUCTIONS)}"
-        )
-    is_port = isinstance(signal, tuple) and len(signal) == 2
-    if is_port != (kind == "energy"):
-        raise _Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
-    return signal, kind
 
 
 def _check_size(setup: Setup, inner: int, delays: tuple[float, ...]) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelError
+from ..expectations import describe_value
 from ..realise.delays import is_whole
 
 Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
@@ -49,14 +50,30 @@ def input_table(
     table = np.zeros((max(len(names), 1), len(time)))
     for i, name in enumerate(names):
         value = signals.get(name, 0.0)
-        row = _evaluate_at(value, time) if callable(value) else np.asarray(value, dtype=float)
+        row = _evaluate_at(value, time, name) if callable(value) else np.asarray(value, dtype=float)
         if row.ndim and row.shape != time.shape:
-            raise ModelError(f'input "{name}" has {len(row)} samples, expected {len(time)}')
+            raise ModelError(
+                f'input "{name}" has {len(row)} samples, expected {len(time)}{_grid(time)}; a '
+                "function takes samples of other times: lambda t: np.interp(t, times, samples)"
+            )
+        if not np.isfinite(row).all():
+            k = int(np.argmin(np.isfinite(row)))
+            raise ModelError(
+                f'input "{name}" is {row.flat[k]:g} at {time[k]:.4g} s, expected finite numbers'
+            )
         table[i] = row
     return table
 
 
-def _evaluate_at(function: Callable[[np.ndarray], np.ndarray], time: np.ndarray) -> np.ndarray:
+def _grid(time: np.ndarray) -> str:
+    if len(time) < 2:
+        return ""
+    return f", one each {1e3 * (time[1] - time[0]):.4g} ms from 0 to {time[-1]:.4g} s"
+
+
+def _evaluate_at(
+    function: Callable[[np.ndarray], np.ndarray], time: np.ndarray, name: str
+) -> np.ndarray:
     """A function of time at times (n,): called once, or time by time where it takes one number.
 
     `lambda t: 1.0 if t > 0.5 else 0.0` and functions of `math` take one number.
@@ -65,4 +82,10 @@ def _evaluate_at(function: Callable[[np.ndarray], np.ndarray], time: np.ndarray)
         return np.asarray(function(time), dtype=float)
     except (TypeError, ValueError):
         one_by_one: Callable[[float], Any] = function  # type: ignore[assignment]
-        return np.array([float(one_by_one(t)) for t in time.tolist()])
+    values = [one_by_one(t) for t in time.tolist()]
+    try:
+        return np.array([float(value) for value in values])
+    except (TypeError, ValueError) as error:
+        raise ModelError(
+            f'input "{name}": its function returns {describe_value(values[0])}, expected a number'
+        ) from error

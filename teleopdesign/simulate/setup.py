@@ -13,7 +13,7 @@ import numpy as np
 from ..diagrams import Diagram, Moving, with_shared_states
 from ..errors import ModelError, did_you_mean
 from ..realise.delays import delay_in_samples, is_whole
-from ..realise.simulated import prepare_for_simulation, realise_in_computer
+from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
 from .on_grid import Input, delay_in_steps, input_table, samples_of, whole_steps
 from .sampling import SAMPLED, Sampling
 from .step_ladder import StepLadder
@@ -286,12 +286,18 @@ class Setup:
         """
         from ..realise.kernel import fastest_rate
 
+        refuse_massless(self.diagram, self.motion)
         ladder = self.ladder(long_step)
         inner = ladder.first(*fastest_rate(self.program, self.diagram.values))
         limit = math.inf
         while True:
             timing = self.timing(inner)
             rows, worst = self.run(timing, every_step=every_step, limit=limit)
+            if not np.isfinite(rows[0]).all():
+                raise ModelError(
+                    f"{self.diagram.name}: signals are no finite numbers at the start: a loop "
+                    "without delay has no solution at these values, or a parameter makes no sense"
+                )
             finer = ladder.next(timing, worst, bool(np.isfinite(rows).all()))
             if finer == inner:
                 return rows, timing

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ..by_name import ByName
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation(ByValue):
+class Simulation(ByName, ByValue):
     """Signals over time.
 
     data: one variable for each signal and hidden state over `time` (s), with units in the
@@ -51,6 +52,9 @@ class Simulation(ByValue):
 
     def __getstate__(self) -> dict[str, Any]:
         return {"diagram": self.diagram, "data": self.data}
+
+    def _names(self) -> list[str]:
+        return list(map(str, self.data))
 
     def __getitem__(self, name: str) -> xarray.DataArray:
         if name not in self.data:

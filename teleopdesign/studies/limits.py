@@ -17,7 +17,7 @@ import numpy as np
 from ..arguments import check_types
 from ..by_value import ByValue
 from ..diagrams import Diagram
-from ..errors import ModelError, UnstableLoop
+from ..errors import ModelError, UnstableLoop, did_you_mean
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.family import family_of
@@ -26,6 +26,7 @@ from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holding
 from ..quantity import unit_after_number
 from .chosen_measures import Measure, measures_of
+from .measures import MEASURES
 
 #: margins of the loop of a controller, and their units
 LOOP_MARGINS = {"delay margin": "s", "gain margin": "1", "phase margin": "deg"}
@@ -84,7 +85,11 @@ def limit(
     controller: name of the controller whose loop has the margin
     raises ModelError: no measure of that name, no bound or two
     """
-    known = isinstance(what, str) and what in (*CLAIMS, *LOOP_MARGINS)
+    names = (*CLAIMS, *LOOP_MARGINS)
+    known = isinstance(what, str) and what in names
+    if isinstance(what, str) and not known and what not in MEASURES:
+        near = did_you_mean(what, (*names, *MEASURES))
+        raise ModelError(f'limit: no limit "{what}", has {", ".join(names)} or a measure{near}')
     measure = None if known else measures_of([what])[0]
     name = what if measure is None else measure.name
     if known and what in CLAIMS and least is None:

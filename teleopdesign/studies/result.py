@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arguments import check_types
+from ..by_name import ByName
 from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..notebook import html_table
@@ -32,7 +33,7 @@ LARGEST = 1.6e9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Study(ByValue):
+class Study(ByName, ByValue):
     """Measures over the points of a study.
 
     data: one variable for each measure over the axes, NaN (or "") where the point failed, and
@@ -43,11 +44,14 @@ class Study(ByValue):
 
     data: xarray.Dataset
 
+    def _names(self) -> list[str]:
+        return [str(n) for n in self.data.variables]
+
     def __getitem__(self, name: str) -> xarray.DataArray:
         if name not in self.data:
             if not self.measures:
                 raise ModelError(f"study: every point failed, most: {next(iter(self.failures))}")
-            known = [str(n) for n in self.data.variables]
+            known = self._names()
             raise ModelError(
                 f'study: no measure or parameter "{name}", has {", ".join(known)}'
                 f"{did_you_mean(name, known)}"
@@ -129,6 +133,8 @@ def read_study(path: str | Path) -> Study:
     import xarray
 
     check_netcdf()
+    if not Path(path).is_file():
+        raise ExperimentError(f"{path}: no such file")
     try:
         read_on_trial(path, largest=LARGEST)
         _check_size(path)

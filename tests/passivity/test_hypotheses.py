@@ -84,6 +84,7 @@ def test_outside_of_its_hypotheses_a_theorem_proves_nothing(theorem, function):
             with pytest.raises(ModelError) as caught:
                 function(**arguments)
             assert "\n" not in str(caught.value)
+            assert str(caught.value).startswith(f"{function.__name__}: {name}: ")
             count += 1
     assert count >= 3 * sum(bool(h.outside) for h in hypotheses_of(function).values())
 

@@ -51,3 +51,23 @@ def test_frequencies_in_a_list_are_those_in_an_array():
     for wrong in ([-1.0, 1.0], [float("nan")], [[1.0]]):
         with pytest.raises(ModelError, match=r"bode: frequency"):
             td.bode(LOOP, frequency=wrong)
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        (float("nan"), "found the number nan"),
+        (lambda t: np.where(t > 0.02, np.nan, 1.0), "is nan at 0.02005 s"),
+        (lambda t: np.full_like(t, np.nan), "is nan at 0 s, expected finite numbers"),
+        (np.full(1001, np.inf), "is inf at 0 s"),
+        (lambda t: "2 N", 'its function returns the text "2 N", expected a number'),
+        (lambda t: {"R_D": t}, "its function returns the dict"),
+        (np.ones(10), "10 samples, expected 1001, one each 0.05 ms from 0 to 0.05 s.*np.interp"),
+    ],
+)
+def test_an_input_that_is_no_number_is_not_called_an_unstable_loop(force, words):
+    """NaN ended in "signals grow beyond all bounds", a text in a ValueError."""
+    with pytest.raises(ModelError, match=words):
+        moved(force)
+    with pytest.raises(ModelError, match=words):
+        td.simulate_many(LOOP, {}, duration=0.05, inputs={"R_D": force})

@@ -165,3 +165,21 @@ def test_a_figure_has_the_house_font_also_where_matplotlib_writes_it(gridded):
     figure = gridded.plot.curves(over="x", at={"z": 1.0})
     texts = [t for t in figure.findobj(Text) if t.get_text()]
     assert {t.get_fontfamily()[0] for t in texts} == {"STIXGeneral"}
+
+
+@pytest.mark.parametrize("delays", [[0.0, 1e-3], np.linspace(0.0, 1e-3, 9)])
+def test_labels_of_small_values_do_not_lie_on_one_another(delays):
+    """Of two panels over a delay of the computer the numbers of the x-axis were one black line."""
+    axes = {"z": [0.0, 1.0], "y": [0.1, 0.2], "x": delays}
+    study = td.study(plane, axes, measures=value, units={"x": "s"}, workers=1)
+    figure = study.plot.panels("value", x="x", y="y")
+    figure.canvas.draw()
+    for axis in figure.axes:
+        boxes = [t.get_window_extent() for t in axis.get_xticklabels() if t.get_text()]
+        assert all(a.x1 < b.x0 for a, b in zip(boxes, boxes[1:], strict=False))
+
+
+def test_a_limit_of_no_such_name_lists_margins_and_claims():
+    """Only measures were listed: "delay margn" was none of them."""
+    with pytest.raises(ModelError, match=r'passive.*delay margin.*did you mean "delay margin"'):
+        td.limit("delay margn", least=1e-3)

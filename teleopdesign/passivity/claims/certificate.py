@@ -61,6 +61,8 @@ def read_certificate(path: str | Path) -> Certificate:
 
     path: the JSON file;  raises ModelError: not readable, or no certificate
     """
+    if not Path(path).is_file():
+        raise ModelError(f"{path}: no such file")
     try:
         content = load(str(path))
     except Refused as problem:

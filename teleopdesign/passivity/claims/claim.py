@@ -20,6 +20,16 @@ from .certificate import Certificate
 _EXACT = "decided in exact arithmetic; a certificate would ask for more work than its checker does"
 
 
+class NotTrueOrFalse:
+    """A result with four statuses: `if claim:` is refused, it would pass if refuted, too."""
+
+    def __bool__(self) -> bool:
+        raise ModelError(
+            f"{type(self).__name__}: a claim is proved, refuted, evidence or unknown, neither true "
+            "nor false: ask for its status, or whether it holds (.status, .holds)"
+        )
+
+
 class Counterexample(Protocol):
     """A motion that releases energy."""
 
@@ -145,7 +155,7 @@ Verdict = Proof | Refutation | Evidence | Unknown
 
 
 @dataclass(frozen=True, eq=False)
-class Claim(ByValue):
+class Claim(NotTrueOrFalse, ByValue):
     """A statement about passivity at a port, with its proof, refutation or evidence."""
 
     statement: str

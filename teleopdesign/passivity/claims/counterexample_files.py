@@ -48,6 +48,8 @@ def read_record(path: str | Path) -> Counterexample:
 
     raises ModelError: no such file, or the replay does not confirm the energy that the file states
     """
+    if not Path(path).is_file():
+        raise ModelError(f"{path}: no such file")
     try:
         content = json.loads(read_whole(path).decode("utf-8"))
         record = _make_counterexample(content)

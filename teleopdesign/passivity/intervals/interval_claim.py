@@ -12,7 +12,7 @@ from ...by_value import ByValue
 from ...notebook import html_table
 from ...quantity import unit_after_number
 from ..claims.certificate import Certificate
-from ..claims.claim import Claim
+from ..claims.claim import Claim, NotTrueOrFalse
 from .box import ValueBox
 from .worst import Worst
 
@@ -20,7 +20,7 @@ Status = Literal["proved", "refuted", "evidence", "unknown"]
 
 
 @dataclass(frozen=True, eq=False)
-class IntervalClaim(ByValue):
+class IntervalClaim(NotTrueOrFalse, ByValue):
     """A claim over intervals of values, with its status and worst case.
 
     status: "proved" over the whole box; "refuted" at `worst`; "evidence": the claim holds at all

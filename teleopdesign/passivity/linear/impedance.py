@@ -80,9 +80,20 @@ def decimal(number: sp.Expr) -> str:
 
 
 def readable(expression: sp.Expr) -> str:
-    """An expression as text for people: fractions of many digits become decimals of six digits."""
-    long = {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
-    return str(expression.xreplace({x: sp.Float(x, 6) for x in long}))
+    """An expression as text for people: fractions of many digits become decimals of six digits.
+
+    The denominator of such an expression begins with the coefficient 1, as that of `Impedance`.
+    """
+    if not _long_fractions(expression):
+        return str(expression)
+    above, below = sp.fraction(expression)
+    first = sp.expand(below).as_ordered_terms()[0].as_coeff_Mul()[0]
+    expression = sp.expand(above / first) / sp.expand(below / first)
+    return str(expression.xreplace({x: sp.Float(x, 6) for x in _long_fractions(expression)}))
+
+
+def _long_fractions(expression: sp.Expr) -> set[sp.Rational]:
+    return {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
 
 
 def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction]:
@@ -115,9 +126,10 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     return made
 
 
-def exact(number: Any) -> sp.Rational:
+def exact(number: Any, where: str = "") -> sp.Rational:
     """A number, or its text, as an exact rational; a float as its shortest decimal.
 
+    where: beginning of the message, such as "z_width: damping: "
     raises ModelError: no finite real number, or a truth value
     """
     if isinstance(number, sp.Expr) and number.is_Rational:
@@ -130,7 +142,8 @@ def exact(number: Any) -> sp.Rational:
         value = float(number)
         return sp.Rational(repr(value))
     except (TypeError, ValueError, OverflowError):
-        raise ModelError(f"expected a finite real number, found {describe_value(number)}") from None
+        text = describe_value(number)
+        raise ModelError(f"{where}expected a finite real number, found {text}") from None
 
 
 def _from_sympy(system: Any) -> Impedance:

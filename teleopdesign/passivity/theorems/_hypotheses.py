@@ -107,7 +107,11 @@ def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Function], Functio
             bound.apply_defaults()
             for name, value in bound.arguments.items():
                 needs = hypotheses[name]
-                if not needs.holds(value):
+                try:
+                    holds = needs.holds(value)
+                except ModelError as error:
+                    raise ModelError(f"{function.__name__}: {name}: {error}") from None
+                if not holds:
                     off = isinstance(value, int | float) and not _is_of_size(exact(value))
                     sizes = f" {_SIZES}" if off else ""
                     raise ModelError(

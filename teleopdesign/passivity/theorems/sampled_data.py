@@ -95,7 +95,8 @@ def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -
     """
     late = _positive(sample_time)
     law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
-    operator = travel_operator(law, sp.S(0), late, exact(stiffness))
+    held = exact(stiffness, "required_damping: stiffness: ")
+    operator = travel_operator(law, sp.S(0), late, held)
     return max(-float(late) * float(damping_excess(operator)), 0.0)
 
 
@@ -124,7 +125,7 @@ def travel_operator(law: sp.Expr, b: sp.Expr, late: sp.Expr, k: sp.Expr) -> Impe
 
 
 def _positive(sample_time: Any) -> sp.Expr:
-    late = exact(sample_time)
+    late = exact(sample_time, "sample_time: ")
     if late <= 0:
         raise ModelError(f"sample_time: expected a time > 0 s, found {late}")
     return late

@@ -72,18 +72,37 @@ def _function(entry: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
     return made
 
 
-def two_port(entries: Sequence[Sequence[Any]]) -> TwoPort:
+def two_port(entries: Any) -> TwoPort:
     """A two-port from its impedances [[z11, z12], [z21, z22]], force over velocity.
 
-    entries: N s/m, rational in s, with exp(-s T) for dead times; floats are read as decimals
-    raises ModelError: another shape, a free symbol, a negative dead time
+    entries: N s/m, rational in s, with exp(-s T) for dead times; floats are read as decimals. Or
+        systems of python-control, one for each entry, or one with two inputs and two outputs
+    raises ModelError: another shape, a free symbol, a negative dead time, a discrete system
     """
-    if len(entries) != 2 or any(len(row) != 2 for row in entries):
-        raise ModelError("two_port: expected [[z11, z12], [z21, z22]]")
+    if hasattr(entries, "isdtime"):
+        if (entries.ninputs, entries.noutputs) != (2, 2):
+            raise ModelError(
+                "two_port: expected two inputs and two outputs, found "
+                f"{entries.ninputs} and {entries.noutputs}"
+            )
+        entries = [[entries[i, j] for j in range(2)] for i in range(2)]
+    if isinstance(entries, sp.MatrixBase):
+        entries = entries.tolist()
+    if isinstance(entries, str) or not (_is_pair(entries) and all(map(_is_pair, entries))):
+        raise ModelError(
+            "two_port: expected [[z11, z12], [z21, z22]] or a system of python-control, found "
+            f"{describe_value(entries)}"
+        )
     return TwoPort(sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries]))
 
 
+def _is_pair(value: Any) -> bool:
+    return hasattr(value, "__len__") and not isinstance(value, str) and len(value) == 2
+
+
 def _entry(entry: Any) -> sp.Expr:
+    if hasattr(entry, "isdtime"):
+        entry = impedance(entry)
     try:
         e = sp.sympify(entry.expression if isinstance(entry, Impedance) else entry, strict=True)
     except sp.SympifyError:  # a text among them, which would be run
