@@ -23,16 +23,18 @@ from .decision import is_better
 from .fit import Fit, estimate
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
+from .prepare import Prepared
 from .rung import Rung
-from .rungs import ranking_alone, reorder_and_refit
+from .rungs import estimate_without, ranking_alone, reorder_and_refit, without_rise
+from .search import keep_absent
 
 
 def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The ladder with a straight line for curved forces of position; None: the curved ones stay.
 
     The line replaces effects with more parameters unless these are surely better, and effects with
-    as many parameters if the line is surely better. This happens once in a ladder, so that both
-    cannot take turns.
+    as many or fewer parameters if the line is surely better. This happens once in a ladder, so that
+    both cannot take turns.
     """
     if state.straightened:
         return None
@@ -66,7 +68,7 @@ def _with_line(
     line = [c for c in line if c.key not in gone | {one.key for one in back}]
     saved = sum(_count_required(r.added.effect) for r in bent if r.added is not None)
     saved -= len(line) + sum(_count_required(one.effect) for one in back)
-    if not line or saved < 0:
+    if not line:
         return None
     fit = _exchange_for_line(state.fit.model, bent, line, search)
     if fit is None:
@@ -81,9 +83,12 @@ def _with_line(
     first = next(i for i, r in enumerate(state.rungs) if r is bent[0])
     before, after = state.rungs[:first], state.rungs[first:]
     rungs = (*before, *_line_rungs(before[-1].fit, line, search))
-    rungs = (*rungs, *(r for r in after if all(r is not b for b in bent)))
-    order = reorder_and_refit(rungs, fit, search.prepared)
-    if order is None:
+    others = [r for r in after if all(r is not b for b in bent)]
+    if others:
+        order = reorder_and_refit((*rungs, *others), fit, search.prepared)
+    else:
+        order = without_rise((*rungs[:-1], replace(rungs[-1], fit=fit)))
+    if order is None or order[-1].fit is not fit:
         return None
     return replace(state.with_rungs(order), straightened=True)
 
@@ -103,16 +108,34 @@ def _exchange_for_line(
 
 
 def _line_rungs(base: Fit, line: Sequence[Candidate], search: LadderSearch) -> list[Rung]:
-    """A rung for each part of the line, the part with the least check error first."""
+    """A rung for each part of the line, the part with the least check error first.
+
+    A part that explains nothing by itself stays at zero: far from its rest position, a spring does
+    next to nothing without the constant force that moves this position. What it explains is judged
+    beside the other part.
+    """
+    prepared = search.prepared
     rungs: list[Rung] = []
     left = list(line)
     while left:
-        fits = [estimate(base.model.with_effect(c.effect, at=c.at), search.prepared) for c in left]
+        models = [base.model.with_effect(c.effect, at=c.at) for c in left]
+        fits = [estimate(model, prepared) for model in models]
         best = min(range(len(left)), key=lambda i: fits[i].check_error)
-        ranking = ranking_alone(base, left[best], fits[best], search.prepared)
-        rungs.append(Rung(left.pop(best), fits[best], ranking))
-        base = fits[best]
-    return rungs
+        fit = fits[best]
+        if fit.check_error > base.check_error:
+            fit = keep_absent(models[best], base)
+        ranking = ranking_alone(base, left[best], fit, prepared)
+        rungs.append(Rung(left.pop(best), fit, ranking))
+        base = fit
+    return [_judge_beside(r, base, prepared) if r is not rungs[-1] else r for r in rungs]
+
+
+def _judge_beside(rung: Rung, line: Fit, prepared: Prepared) -> Rung:
+    """The rung of a part of the line, with its evidence from the line with and without it."""
+    without = estimate_without(line.model, rung, prepared)
+    if rung.added is None or without is None:
+        return rung
+    return replace(rung, ranking=ranking_alone(without, rung.added, line, prepared))
 
 
 @lru_cache(maxsize=256)

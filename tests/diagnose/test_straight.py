@@ -16,7 +16,14 @@ def swings(amplitude, slow, fast):
     return lambda t: amplitude * (np.sin(2 * np.pi * slow * t) + 0.1 * np.sin(2 * np.pi * fast * t))
 
 
-def diagnosed(folder, place_force, user=USER):
+def as_a_slide(folder):
+    """Write the same numbers as those of a prismatic axis."""
+    path = folder / "experiment.toml"
+    text = path.read_text().replace('"revolute"', '"prismatic"').replace('"kg*m^2"', '"kg"')
+    path.write_text(text.replace('"N*m"', '"N"').replace('"rad"', '"m"'))
+
+
+def diagnosed(folder, place_force, user=USER, *, prismatic=False):
     """What the user's model lacks where this force of the place acts beside friction."""
     records = {
         "fit": [(20.0, swings(0.7, 0.21, 0.9)), (20.0, swings(0.35, 0.13, 0.7))],
@@ -27,6 +34,8 @@ def diagnosed(folder, place_force, user=USER):
         return place_force(x) + 0.1 * np.tanh(v / 1e-3) + 0.02 * v
 
     write_made(folder, records, force, effects=user, step=1e-5, noise=0.004)
+    if prismatic:
+        as_a_slide(folder)
     return td.find_missing(td.load_experiment(folder), among=AMONG)
 
 
@@ -36,7 +45,9 @@ def test_bends_and_lines_are_recognised_by_their_laws():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("stiffness", "neutral"), [(0.6, 0.35), (1.4, -0.5)])
+@pytest.mark.parametrize(
+    ("stiffness", "neutral"), [(0.6, 0.35), (1.4, -0.5), (0.8, 3.2), (0.8, -3.2)]
+)
 def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
     diagnosis = diagnosed(tmp_path / "line", lambda x: stiffness * (x - neutral))
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
@@ -44,6 +55,15 @@ def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stif
     assert errors == sorted(errors, reverse=True)
     value = diagnosis.model.parameters["device.spring.stiffness"].value
     assert value == pytest.approx(stiffness, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("neutral", [2.0, -2.0])
+def test_a_spring_on_a_slide_whose_zero_is_far_away_is_a_spring_and_a_constant(tmp_path, neutral):
+    """An absolute encoder: the position never comes near the zero of its log."""
+    diagnosis = diagnosed(tmp_path, lambda x: 0.6 * (x - neutral), prismatic=True)
+    assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
+    assert diagnosis.rungs[-1].fit.check_error < 0.05
 
 
 @pytest.mark.slow
