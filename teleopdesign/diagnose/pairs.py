@@ -12,7 +12,7 @@ from .evidence import check_score, check_squares
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
 from .noise_floor import NoiseFloor
-from .order import alternatives_of
+from .order import alternatives_of, look_alikes_of
 from .outside_tone import best_tone
 from .ranking import Ranking
 from .rung import Rung, make_replaced
@@ -116,7 +116,13 @@ def _best_pair(
             continue
         alternatives = alternatives_of(second, beside, first.fit, floor, criteria=criteria)
         rungs = (
-            Rung(first.candidate, first.fit, ranking, replaced=make_replaced(first, here.model)),
+            Rung(
+                first.candidate,
+                first.fit,
+                ranking,
+                look_alikes_of(first, ranking, criteria=criteria),
+                replaced=make_replaced(first, here.model),
+            ),
             Rung(
                 second.candidate,
                 second.fit,

@@ -14,6 +14,7 @@ from .prepare import Prepared
 from .rank import make_ranked
 from .ranking import Ranking
 from .rung import Rung
+from .search import estimate_from_starts
 
 
 def first_rise(rungs: Sequence[Rung]) -> int | None:
@@ -57,13 +58,15 @@ def order_by_falling_error(rungs: Sequence[Rung], prepared: Prepared) -> tuple[R
         first = Rung(
             masking.added,
             alone,
-            ranking_alone(before, masking.added, alone, prepared, instead_of=masking.instead_of),
+            ranking_alone(before, masking.added, alone, prepared, masking),
+            masking.alternatives,
             replaced=masking.replaced,
         )
         second = Rung(
             masked.added,
             masking.fit,
-            ranking_alone(alone, masked.added, masking.fit, prepared, instead_of=masked.instead_of),
+            ranking_alone(alone, masked.added, masking.fit, prepared, masked),
+            masked.alternatives,
             replaced=masked.replaced,
         )
         order = (*order[:rise], first, second, *order[rise + 2 :])
@@ -75,12 +78,22 @@ def ranking_alone(
     candidate: Candidate,
     fit: Fit,
     prepared: Prepared,
-    *,
-    instead_of: Candidate | None = None,
+    rung: Rung | None = None,
 ) -> Ranking:
-    """The ranking of one candidate that is already fitted."""
-    alone = make_ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)
-    return Ranking(base, (alone,))
+    """The ranking of one candidate that is already fitted, and of its look-alikes.
+
+    rung: that of the candidate before, with the effect that it replaced and its look-alikes
+    """
+    instead_of = None if rung is None else rung.instead_of
+    ranked = [make_ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)]
+    for other in () if rung is None else rung.alternatives:
+        try:
+            model = base.model.with_effect(other.effect, at=other.at)
+        except ModelError:  # it is there already, or needs an effect that comes later
+            continue
+        best = estimate_from_starts(model, prepared, base, worth=0.0)
+        ranked.append(make_ranked(base, other, best, prepared=prepared))
+    return Ranking(base, tuple(ranked))
 
 
 def reorder_and_refit(

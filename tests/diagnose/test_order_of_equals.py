@@ -8,6 +8,7 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.order import (
     alternatives_of,
     is_simpler,
+    look_alikes_of,
     rank_key,
     select_equals,
     select_other_helpers,
@@ -82,6 +83,17 @@ def test_what_does_as_well_with_as_many_parameters_is_an_alternative():
     assert alternatives_of(best, ranking, base, floor(0.01)) == (one.candidate,)
     of_two = Ranking(base, (two, alike(0.3003, best, "gravity"), one))
     assert [c.effect.name for c in alternatives_of(two, of_two, base, floor(0.01))] == ["gravity"]
+
+
+def test_a_candidate_that_only_a_pair_supports_has_look_alikes_too():
+    """A bias beside a gain was called an asymmetry of friction, with certainty."""
+    base, one = fit(0.31), ranked(0.3, "coulomb_asymmetry")
+    same, worse = alike(0.3001, one, "bias"), ranked(0.32, "spring")
+    nothing = alike(0.3, one, "viscous", is_identifiable=False)
+    two = alike(0.3, one, "stribeck")  # two parameters
+    ranking = Ranking(base, (ranked(0.2, "cogging"), one, same, worse, nothing, two))
+    assert look_alikes_of(one, ranking) == (same.candidate,)
+    assert look_alikes_of(worse, ranking) == ()
 
 
 def test_only_what_the_records_support_is_an_alternative():

@@ -1,5 +1,6 @@
 """Rungs stand in an order in which the error falls, each fitted without what comes later."""
 
+from dataclasses import replace
 from itertools import pairwise, permutations
 from types import SimpleNamespace
 
@@ -37,8 +38,13 @@ def estimated(monkeypatch):
         monkeypatch.setattr(module, "estimate", table.estimate)
         monkeypatch.setattr(
             module,
+            "estimate_from_starts",
+            lambda model, prepared, base, *, worth: table.estimate(model, prepared),
+        )
+        monkeypatch.setattr(
+            module,
             "make_ranked",
-            lambda base, candidate, fit, *, prepared, instead_of: SimpleNamespace(
+            lambda base, candidate, fit, *, prepared, instead_of=None: SimpleNamespace(
                 candidate=candidate, fit=fit, instead_of=instead_of
             ),
         )
@@ -127,6 +133,25 @@ def test_a_masked_rung_changes_places_with_the_next_wherever_it_stands(estimated
     for before, rung in pairwise(order[1:4]):
         assert rung.ranking.base is before.fit
         assert rung.ranking.best.candidate == rung.added and rung.ranking.best.fit is rung.fit
+
+
+def test_a_rung_that_changes_its_place_keeps_its_look_alikes(estimated):
+    table = stated(
+        {(): 1.0, ("bias",): 1.1, ("spring",): 0.8, ("bias", "spring"): 0.5, ("viscous",): 0.9}
+        | {("cogging",): 1.0, ("spring", "cogging"): 0.5}
+    )
+    estimated(table)
+    rungs = table.rungs("bias", "spring")
+    likes = {"bias": (candidate("cogging"),), "spring": (candidate("viscous"),)}
+    rungs = [
+        r if r.added is None else replace(r, alternatives=likes[r.added.effect.name]) for r in rungs
+    ]
+    order = order_by_falling_error(rungs, None)
+    assert names_of(order) == ["spring", "bias"]
+    for rung in order[1:]:
+        (other,) = likes[rung.added.effect.name]
+        assert rung.alternatives == (other,)
+        assert [r.candidate for r in rung.ranking.ranked] == [rung.added, other]
 
 
 def test_a_last_rung_that_leaves_more_has_no_order(estimated):
