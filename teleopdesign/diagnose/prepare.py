@@ -139,7 +139,19 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
                 stretches.append(replace(stretch, force_is_sensed=sensed))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
+    _refuse_without_force(experiment, stretches)
     return Prepared(experiment, chosen, tuple(stretches))
+
+
+def _refuse_without_force(experiment: Experiment, stretches: Sequence[Stretch]) -> None:
+    """The force error is relative to the measured force: raises ExperimentError where that is 0."""
+    for use in ("fit", "check"):
+        there = [s for s in stretches if s.use == use]
+        if there and not sum(s.measured for s in there) > 0.0:
+            raise ExperimentError(
+                f"{experiment.folder.name}: {use} records: the measured force, of actuator and "
+                "interaction together, is 0, expected a force"
+            )
 
 
 def stretch_of(motion: Motion, use: str, bandwidth: float, offset_names: frozenset[str]) -> Stretch:

@@ -307,3 +307,17 @@ def test_a_friction_that_takes_up_whatever_acts_gains_nothing(beside):
     value, slope = squares(0.3, relative_residuals)
     ahead, back = (squares(0.3 + h, relative_residuals)[0] for h in (1e-5, -1e-5))
     assert slope == pytest.approx((ahead - back) / 2e-5, rel=1e-3)
+
+
+@pytest.mark.parametrize("use", ["fit", "check"])
+def test_records_without_any_force_are_refused(use, experiment):
+    """The error is relative to the measured force: there would be none."""
+    zeros = {"device.actuator_force": 0.0, "device.interaction_force": 0.0}
+    records = [
+        replace(r, signals={n: s * zeros.get(n, 1.0) for n, s in r.signals.items()})
+        if r.use == use
+        else r
+        for r in experiment.records
+    ]
+    with pytest.raises(ExperimentError, match=f"{use} records: the measured force"):
+        prepare(replace(experiment, records=tuple(records)))
