@@ -8,6 +8,11 @@ import numpy as np
 
 from ..measurement.motion import Motion
 
+#: size (SI) up to which a signal is none: quotients by its cube are finite above
+LEAST = 1e-60
+#: size that stands for that of such a signal
+STILL = 1e-12
+
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
     """Quantity -> typical size along these motions (SI): rms values and their quotients.
@@ -16,7 +21,8 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
     """
 
     def rms(parts: list[np.ndarray]) -> float:
-        return float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) or 1e-12
+        size = float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+        return size if size > LEAST else STILL
 
     force = rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     position = rms([m.position - m.position.mean() for m in motions])

@@ -174,6 +174,15 @@ def test_scales_are_those_of_the_record(prepared):
     assert all(np.isfinite(v) and v > 0 for v in unit.values())
 
 
+@pytest.mark.parametrize("factor", [0.0, 1e-300, 1e-110, 1e-30, 1e30])
+def test_scales_are_numbers_whatever_the_size_of_the_motion(factor, prepared):
+    (motion,) = [s.motion for s in prepared.of("fit")]
+    signals = {n: factor * getattr(motion, n) for n in ("position", "velocity", "acceleration")}
+    unit = scales([replace(motion, **signals)], prepared.bandwidth)
+    assert all(np.isfinite(v) for v in unit.values())
+    assert all(v > 0.0 for n, v in unit.items() if n != "travel")
+
+
 def test_every_quantity_of_an_effect_has_a_scale(prepared):
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     wanted = {p.scale for e in EFFECTS.values() for p in e.parameters.values()}
