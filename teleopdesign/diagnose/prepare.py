@@ -139,6 +139,13 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
                 stretches.append(replace(stretch, force_is_sensed=sensed))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
+    if all(s.use == "fit" for s in stretches):  # each then has blocks that are held out in turn
+        stretches = [s for s in stretches if len(s.keep) >= FOLDS]
+        if not stretches:
+            raise ExperimentError(
+                f"{experiment.folder.name}: fit records: fewer than {FOLDS} samples count at a "
+                f"bandwidth of {chosen:.3g} Hz: use longer records, or a larger bandwidth"
+            )
     _refuse_without_force(experiment, stretches)
     return Prepared(experiment, chosen, tuple(stretches))
 

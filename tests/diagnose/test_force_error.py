@@ -321,3 +321,13 @@ def test_records_without_any_force_are_refused(use, experiment):
     ]
     with pytest.raises(ExperimentError, match=f"{use} records: the measured force"):
         prepare(replace(experiment, records=tuple(records)))
+
+
+def test_records_with_too_few_samples_for_blocks_are_refused_and_left_out_beside_others(experiment):
+    """Blocks are held out in turn where there is no check record: each needs a sample."""
+    (record,) = experiment.fit_records
+    with pytest.raises(ExperimentError, match="fewer than 4 samples count at a bandwidth of 0.05"):
+        prepare(replace(experiment, records=(record,)), bandwidth=0.05)
+    prepared = prepare(replace(experiment, records=(record,)), bandwidth=1.0)
+    for kept, held_out in folds(prepared.stretches):
+        assert all(len(s.keep) for s in (*kept, *held_out))
