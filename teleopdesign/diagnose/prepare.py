@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from ..by_value import ByValue
 from ..errors import ExperimentError
 from ..measurement.bandwidth import default_bandwidth
-from ..measurement.experiment import Experiment
+from ..measurement.experiment import Experiment, Record
 from ..measurement.filtering import Array, spectrum
 from ..measurement.motion import SMOOTHING, Motion, motions
-from .scales import scales
+from .scales import LARGEST, scales
 from .shared_links import Shared, share_again
 
 #: seconds at each end of a stretch where the low-pass is not yet in steady state
@@ -125,6 +125,7 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
     chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
     stretches = []
     for record in experiment.records:
+        _refuse_huge(experiment, record)
         if chosen > 0.4 / record.sample_time:
             raise ExperimentError(
                 f"{experiment.folder.name}/experiment.toml: comparison.bandwidth: {chosen:g} Hz is "
@@ -148,6 +149,17 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             )
     _refuse_without_force(experiment, stretches)
     return Prepared(experiment, chosen, tuple(stretches))
+
+
+def _refuse_huge(experiment: Experiment, record: Record) -> None:
+    """Squares and cubes of signals must be numbers: raises ExperimentError where they are not."""
+    for name, signal in record.signals.items():
+        largest = float(np.max(np.abs(signal), initial=0.0, where=np.isfinite(signal)))
+        if largest > LARGEST:
+            raise ExperimentError(
+                f"{experiment.folder.name}/{record.file}: channels.{name}: found {largest:.3g} "
+                f"(SI), expected at most {LARGEST:g}"
+            )
 
 
 def _refuse_without_force(experiment: Experiment, stretches: Sequence[Stretch]) -> None:

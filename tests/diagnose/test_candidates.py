@@ -174,7 +174,7 @@ def test_scales_are_those_of_the_record(prepared):
     assert all(np.isfinite(v) and v > 0 for v in unit.values())
 
 
-@pytest.mark.parametrize("factor", [0.0, 1e-300, 1e-110, 1e-30, 1e30])
+@pytest.mark.parametrize("factor", [0.0, 1e-300, 1e-110, 1e-30, 1e30, 1e150])
 def test_scales_are_numbers_whatever_the_size_of_the_motion(factor, prepared):
     (motion,) = [s.motion for s in prepared.of("fit")]
     signals = {n: factor * getattr(motion, n) for n in ("position", "velocity", "acceleration")}

@@ -331,3 +331,12 @@ def test_records_with_too_few_samples_for_blocks_are_refused_and_left_out_beside
     prepared = prepare(replace(experiment, records=(record,)), bandwidth=1.0)
     for kept, held_out in folds(prepared.stretches):
         assert all(len(s.keep) for s in (*kept, *held_out))
+
+
+@pytest.mark.parametrize("channel", ["position", "actuator_force"])
+def test_a_signal_whose_cubes_are_no_numbers_is_refused_by_its_channel(channel, experiment):
+    (record,) = experiment.fit_records
+    signals = {n: s * (1e90 if channel in n else 1.0) for n, s in record.signals.items()}
+    huge = replace(experiment, records=(replace(record, signals=signals),))
+    with pytest.raises(ExperimentError, match=rf"channels.device.{channel}: found .*e\+.* \(SI\)"):
+        prepare(huge)

@@ -23,6 +23,11 @@ UNSETTLED = {
     "a loop by one hair": [[1, 1], [R(101, 100) * S / (S + 1), 1]],
     "a spring that is none": [[1 + 1 / S, 2 / S], [2 / S, 1 + 1 / S]],
     "residues by one hair": [[1 + 1 / S, R(1001, 1000) / S], [R(1001, 1000) / S, 1 + 1 / S]],
+    "residues of a resonance by one hair": [
+        [1 + S / (S**2 + 4), R(10**6 + 1, 10**6) * S / (S**2 + 4)],
+        [R(10**6 + 1, 10**6) * S / (S**2 + 4), 1 + S / (S**2 + 4)],
+    ],
+    "masses by one hair": [[1 + S, R(10**6 + 1, 10**6) * S], [R(10**6 + 1, 10**6) * S, 1 + S]],
     "a resonance that is none": [[1 + S / (S**2 + 9), 2 * S / (S**2 + 9)],
                                  [2 * S / (S**2 + 9), 1 + S / (S**2 + 9)]],
     "one direction that grows": [[S + 1, 3 / (S - 2)], [0, S + 1]],

@@ -6,7 +6,6 @@ FUZZ=5000 draws that many; what fails is kept: copy it to corpus_of_records/.
 import os
 import random
 import shutil
-import warnings
 from pathlib import Path
 
 import pytest
@@ -21,7 +20,8 @@ KEPT = Path(os.environ.get("FUZZ_KEPT", "build/fuzz"))
 CORPUS = Path(__file__).parent / "corpus_of_records"
 SECONDS = 30  # of the processor, among few effects: such a diagnosis takes one or two
 
-pytestmark = pytest.mark.slow
+# a user's terminal shows warnings; they end nothing
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 
 
 def diagnose(folder, random, capsys):
@@ -29,8 +29,7 @@ def diagnose(folder, random, capsys):
     options = ["--report", str(folder.parent / "page.html")] if random.random() < 0.1 else []
     options += ["--json", str(folder.parent / "answer.json")] if random.random() < 0.3 else []
     options += ["--quick"] if random.random() < 0.5 else []
-    with in_time(SECONDS), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with in_time(SECONDS):
         status = main(["diagnose", str(folder), *options])
     said = capsys.readouterr().err
     assert status in (0, 2), said
