@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from ..by_value import ByValue
 from ..errors import ExperimentError
 from ..measurement.bandwidth import default_bandwidth
-from ..measurement.experiment import Experiment, Record
+from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array, spectrum
 from ..measurement.motion import SMOOTHING, Motion, motions
+from ..measurement.record import Record
 from .scales import LARGEST, scales
 from .shared_links import Shared, share_again
 

@@ -11,8 +11,6 @@ from ..measurement.motion import Motion
 #: size (SI) up to which a signal is none, and largest size that counts: cubes of sizes between
 #: them, and quotients of these, are numbers
 LEAST, LARGEST = 1e-60, 1e60
-#: size that stands for that of such a signal
-STILL = 1e-12
 
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
@@ -23,7 +21,7 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
 
     def rms(parts: list[np.ndarray]) -> float:
         size = float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
-        return min(size, LARGEST) if size > LEAST else STILL
+        return min(size, LARGEST) if size > LEAST else 1e-12
 
     force = rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     position = rms([m.position - m.position.mean() for m in motions])
