@@ -42,7 +42,7 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "drag": force / velocity**2,
         "cubic_stiffness": force / position**3,
         "per_square_of_position": 1.0 / position**2,
-        "travel": max(float(np.ptp(m.position)) for m in motions),
+        "travel": max(float(np.ptp(m.position)) for m in motions) or 1e-12,
         "duration": max(float(np.ptp(m.time)) for m in motions),
         "frequency": bandwidth,
         "angle": 1.0,
