@@ -7,6 +7,7 @@ import sympy as sp
 from teleopdesign.passivity import two_port
 from teleopdesign.passivity.two_port.claims import _find_active_points
 from teleopdesign.passivity.two_port.resonances import resonances
+from teleopdesign.passivity.two_port.waves import find_wave_at
 from teleopdesign.realise.lti import S
 
 R = sp.Rational
@@ -59,3 +60,11 @@ def test_frequencies_crowd_about_each_resonance_in_hertz(damping):
     width = float(damping) / 2
     assert np.abs(near).min() < 0.1 * width
     assert (np.abs(near) < 3 * width).sum() >= 5 and near.min() < -width and near.max() > width
+
+
+@pytest.mark.parametrize("size", [1, R(1, 10**9)])
+def test_a_wave_is_found_however_little_energy_it_takes_out(size):
+    """The same two-port in another unit of force."""
+    z = [[size * e for e in row] for row in ACTIVE["a negative damper"][0]]
+    wave = find_wave_at(two_port(z).z, 0.05)
+    assert wave is not None and 0 < wave.energy < 10 * float(size)

@@ -48,6 +48,7 @@ def test_a_late_spring_is_stable_up_to_its_exact_limit(share, status):
     box = {TIME: (0.01, float(share * limit(STIFFNESS)))}
     claim = claim_over_intervals(held(0.01, damping=DAMPING), box, claim="stable", points=4)
     assert claim.status == status, claim
+    assert (claim.proved_margin == 0.0) is (status == "proved")
 
 
 @pytest.mark.slow
