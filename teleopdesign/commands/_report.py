@@ -5,16 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import ModelError
 from ._options import say
 
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis, Diagnosis
+    from ..finding import Finding
 
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the page, with findings on the recording, the residual, and what to measure next."""
     from ..check import check_experiment
-    from ..next_experiment import propose
     from ..report import write_report
     from ..unexplained import where_it_fails
 
@@ -22,10 +23,22 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
     soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
     say("describing what is left")
     left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
-    open_questions = diagnosis.verdict == "undecided" or bool(diagnosis.groups)
-    steps = propose(diagnosis, progress=say).findings() if open_questions else ()
+    steps = _next_steps(diagnosis)
     say("")
     write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
+
+
+def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:
+    """What to measure next; nothing where nothing is open, or no motion was shown to be safe."""
+    from ..next_experiment import propose, shown_limits
+
+    if diagnosis.verdict != "undecided" and not diagnosis.groups:
+        return ()
+    try:
+        shown_limits(diagnosis.prepared)
+    except ModelError:
+        return ()
+    return propose(diagnosis, progress=say).findings()
 
 
 def write_arm_page(diagnosis: ArmDiagnosis, path: Path) -> None:

@@ -15,6 +15,7 @@ from ..effects import (
     CONTACT_ROLES,
     SIGNALS,
     Effect,
+    Parameter,
     are_alike,
     delayed,
     depends_on_position,
@@ -196,7 +197,8 @@ def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, f
 def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
     """The model with its absent effects at each combination of their starting values.
 
-    scale: quantity -> its size in the records (SI)
+    scale: quantity -> its size in the records (SI); a start outside of a parameter's range is
+        taken at the end of the range
     returns: the model alone where no effect is absent
     """
     models = [model]
@@ -207,9 +209,7 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
             for n, p in parameters.items()
             if p.search.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
         ]
-        grids = [
-            [m * scale[parameters[n].scale] for m in parameters[n].search.starts] for n in free
-        ]
+        grids = [_starts_of(parameters[n], scale) for n in free]
         names = [f"{place}.{name}.{n}" for n in free]
         models = [
             m.with_values(dict(zip(names, values, strict=True)))
@@ -217,3 +217,8 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
             for values in product(*grids)
         ]
     return models
+
+
+def _starts_of(parameter: Parameter, scale: dict[str, float]) -> list[float]:
+    starts = [m * scale[parameter.scale] for m in parameter.search.starts]
+    return list(dict.fromkeys(min(max(s, parameter.lower), parameter.upper) for s in starts))

@@ -67,6 +67,8 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
     smaller acting force is no gain. Nor is an error that falls only relative to the acting force.
     """
     before = check_squares(base)
+    if not (before > 0.0 and other.check_error < base.check_error):
+        return False  # of no error nothing can be less
     of_force = (before - check_squares(other)) / before
 
     def is_enough(gain: float, score: float) -> bool:
@@ -80,7 +82,6 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
 
     return (
         not refusal(base, other, criteria=criteria)
-        and other.check_error < base.check_error
         and is_enough(of_force, check_score(base, other))
         and is_enough(gain_at_command(base, other), score_at_command(base, other))
     )

@@ -72,8 +72,10 @@ def gain_at_command(before: Fit, after: Fit) -> float:
     """
     rows = before.at_command.sighted & after.at_command.sighted
     whole, left = (float(np.sum(f.at_command.residual[rows] ** 2)) for f in (before, after))
+    if not (whole > 0.0 and before.at_command.error > 0.0):
+        return 0.0
     by_error = 1.0 - (after.at_command.error / before.at_command.error) ** 2
-    return min(by_error, 1.0 - left / whole) if whole > 0.0 else 0.0
+    return min(by_error, 1.0 - left / whole)
 
 
 def whole_score(before: Fit, after: Fit) -> float:

@@ -12,7 +12,7 @@ commanded force is no input: otherwise it would be predicted from itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any
@@ -244,12 +244,12 @@ def _predict_held_out(
         for i in mine:
             if held[i].any():
                 motion, rows = stretches[i].motion, stretches[i].keep[held[i]]
-                predicted[i] = motion.lowpassed(trees.predict(inputs[i]))[rows]
+                predicted[i] = motion.lowpassed(trees(inputs[i]))[rows]
     return predicted
 
 
-def _trees(inputs: Array, target: Array, seed: int) -> Any:
-    """Boosted trees trained on the target (n,) with inputs (n, k)."""
+def _trees(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
+    """Prediction by boosted trees trained on the target (n,) with inputs (n, k)."""
     from sklearn.ensemble import HistGradientBoostingRegressor
 
     trees = HistGradientBoostingRegressor(
@@ -260,7 +260,12 @@ def _trees(inputs: Array, target: Array, seed: int) -> Any:
         early_stopping=False,
         random_state=seed,
     )
-    return trees.fit(inputs, target)
+    varies = np.ptp(inputs, axis=0) > 0.0  # the trees find no borders in a signal that is constant
+    if not varies.any():
+        mean = float(np.mean(target))
+        return lambda along: np.full(len(along), mean)
+    trees.fit(inputs[:, varies], target)
+    return lambda along: np.asarray(trees.predict(along[:, varies]))
 
 
 def _mark_near(motion: Motion) -> NDArray[np.bool_]:

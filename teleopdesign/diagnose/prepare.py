@@ -15,7 +15,8 @@ from ..measurement.bandwidth import default_bandwidth
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array, spectrum
 from ..measurement.motion import SMOOTHING, Motion, motions
-from .scales import scales
+from ..measurement.record import Record
+from .scales import LARGEST, scales
 from .shared_links import Shared, share_again
 
 #: seconds at each end of a stretch where the low-pass is not yet in steady state
@@ -125,6 +126,7 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
     chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
     stretches = []
     for record in experiment.records:
+        _refuse_huge(experiment, record)
         if chosen > 0.4 / record.sample_time:
             raise ExperimentError(
                 f"{experiment.folder.name}/experiment.toml: comparison.bandwidth: {chosen:g} Hz is "
@@ -139,7 +141,37 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
                 stretches.append(replace(stretch, force_is_sensed=sensed))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
+    if all(s.use == "fit" for s in stretches):  # each then has blocks that are held out in turn
+        stretches = [s for s in stretches if len(s.keep) >= FOLDS]
+        if not stretches:
+            raise ExperimentError(
+                f"{experiment.folder.name}: fit records: fewer than {FOLDS} samples count at a "
+                f"bandwidth of {chosen:.3g} Hz: use longer records, or a larger bandwidth"
+            )
+    _refuse_without_force(experiment, stretches)
     return Prepared(experiment, chosen, tuple(stretches))
+
+
+def _refuse_huge(experiment: Experiment, record: Record) -> None:
+    """Squares and cubes of signals must be numbers: raises ExperimentError where they are not."""
+    for name, signal in record.signals.items():
+        largest = float(np.max(np.abs(signal), initial=0.0, where=np.isfinite(signal)))
+        if largest > LARGEST:
+            raise ExperimentError(
+                f"{experiment.folder.name}/{record.file}: channels.{name}: found {largest:.3g} "
+                f"(SI), expected at most {LARGEST:g}"
+            )
+
+
+def _refuse_without_force(experiment: Experiment, stretches: Sequence[Stretch]) -> None:
+    """The force error is relative to the measured force: raises ExperimentError where that is 0."""
+    for use in ("fit", "check"):
+        there = [s for s in stretches if s.use == use]
+        if there and not sum(s.measured for s in there) > 0.0:
+            raise ExperimentError(
+                f"{experiment.folder.name}: {use} records: the measured force, of actuator and "
+                "interaction together, is 0, expected a force"
+            )
 
 
 def stretch_of(motion: Motion, use: str, bandwidth: float, offset_names: frozenset[str]) -> Stretch:

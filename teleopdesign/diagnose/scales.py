@@ -8,6 +8,10 @@ import numpy as np
 
 from ..measurement.motion import Motion
 
+#: size (SI) up to which a signal is none, and largest size that counts: cubes of sizes between
+#: them, and quotients of these, are numbers
+LEAST, LARGEST = 1e-60, 1e60
+
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
     """Quantity -> typical size along these motions (SI): rms values and their quotients.
@@ -16,7 +20,8 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
     """
 
     def rms(parts: list[np.ndarray]) -> float:
-        return float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) or 1e-12
+        size = float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+        return min(size, LARGEST) if size > LEAST else 1e-12
 
     force = rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     position = rms([m.position - m.position.mean() for m in motions])
@@ -37,7 +42,7 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "drag": force / velocity**2,
         "cubic_stiffness": force / position**3,
         "per_square_of_position": 1.0 / position**2,
-        "travel": max(float(np.ptp(m.position)) for m in motions),
+        "travel": max(float(np.ptp(m.position)) for m in motions) or 1e-12,
         "duration": max(float(np.ptp(m.time)) for m in motions),
         "frequency": bandwidth,
         "angle": 1.0,

@@ -84,7 +84,8 @@ def _select(search: LadderSearch, state: LadderState, ranking: Ranking) -> list[
 
 
 def _leave_the_same(one: Fit, other: Fit) -> bool:
-    return abs(check_squares(one) / check_squares(other) - 1.0) < PLAN.same
+    squares, others = check_squares(one), check_squares(other)
+    return squares == others or abs(squares - others) < PLAN.same * others
 
 
 def _fit_all(search: LadderSearch, base: Fit, chosen: Sequence[Ranked]) -> Fit:

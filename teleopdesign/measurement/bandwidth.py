@@ -76,7 +76,7 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
     limits = []
     for name, record in _moving(experiment):
         frequency, density, noise = _spectrum(record, name, even_out=True)
-        above = (density > ABOVE * noise) & (frequency <= PROPOSED / record.sample_time)
+        above = (density > ABOVE * noise) & (frequency <= PROPOSED * record.rate_of(name))
         # only the part above the noise of the readings
         acceleration = np.where(above, density - noise, 0.0) * frequency**4
         beyond = frequency > chosen
@@ -91,7 +91,7 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
 def _highest_acceleration(experiment: Experiment) -> float:
     limits, needed = [], [LOWEST]
     for name, record in _moving(experiment):
-        rate = 1.0 / record.sample_time
+        rate = record.rate_of(name)
         frequency, density, noise = _spectrum(record, name)
         above = (density > ABOVE * noise) & (frequency <= CHOSEN * rate)
         limits.append(frequency[above].max() if above.any() else 0.02 * rate)
@@ -102,7 +102,7 @@ def _highest_acceleration(experiment: Experiment) -> float:
 def _frequency_of_motion(record: Record, name: str) -> float:
     """The frequency (Hz) below which `SHARE` of the squared velocity lies; 0 without a motion."""
     frequency, density, noise = _spectrum(record, name, even_out=True)
-    above = (density > ABOVE * noise) & (frequency <= CHOSEN / record.sample_time)
+    above = (density > ABOVE * noise) & (frequency <= CHOSEN * record.rate_of(name))
     velocity = np.where(above, density - noise, 0.0) * frequency**2
     if not above.any():
         return 0.0
@@ -130,4 +130,6 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     spectra = np.fft.rfft(varying * np.hanning(n))
     density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
     frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
-    return frequency, density, float(np.median(density[frequency > 0.3 / record.sample_time]))
+    rate = record.rate_of(name)
+    noise = density[(frequency > 0.3 * rate) & (frequency <= 0.5 * rate)]
+    return frequency, density, float(np.median(noise))

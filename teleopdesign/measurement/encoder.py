@@ -19,6 +19,9 @@ ON_GRID = 0.9
 DIFFERENT = 0.9
 #: most values that are evaluated
 ENOUGH = 20_000
+#: fewest changes of a reading that show a period, and least part of them that lies a whole number
+#: of periods apart: a slow body changes its reading at odd rows
+CHANGES, IN_TURN = 50, 0.9
 #: samples of a piece for the comparison of scatter and speed, and fewest pieces
 PIECE, PIECES = 64, 8
 #: order of the difference that separates scatter from motion. Of a motion at a tenth of the sample
@@ -90,13 +93,27 @@ def _fitted_step(position: Array, step: float) -> float:
         reach *= 2.0
 
 
+def update_period(*stretches: Array) -> int:
+    """Rows from one reading of a channel to the next: 1 unless each one is held for several rows.
+
+    Nearly all changes then lie a whole number of periods apart.
+    """
+    apart = np.concatenate([np.diff(np.flatnonzero(np.diff(x))) for x in stretches])
+    if len(apart) < CHANGES:
+        return 1
+    every = int(np.median(apart))
+    return every if every > 1 and np.mean(apart % every == 0) >= IN_TURN else 1
+
+
 def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
     """Rms error of the sampling times (s), from the growth of a position's scatter with its speed.
 
     The square of the scatter is that at rest, plus the square of the time error times the square of
     the speed. The slowest and the fastest quarter of the pieces are compared; 0 where the scatter
-    does not grow with speed.
+    does not grow with speed. Of readings that are held for several rows, one row each counts.
     """
+    every = update_period(x)
+    x, sample_time = x[::every], every * sample_time
     count = len(x) // PIECE
     if count < PIECES:
         return 0.0

@@ -24,6 +24,7 @@ class ReadingStep:
     size: part of the measured force that the correction may add to the force error; NaN: unknown
     topic: of the finding that reports the step;  numbers: name -> value in SI
     interpolates: the values then lie between the steps of an encoder
+    channel: that has stamps of its own, with its "rate" (Hz) in `numbers`; "" for other steps
     """
 
     file: str
@@ -34,6 +35,7 @@ class ReadingStep:
     topic: str = "reading"
     numbers: tuple[tuple[str, float], ...] = ()
     interpolates: bool = False
+    channel: str = ""
 
 
 def log_name(file: str) -> str:

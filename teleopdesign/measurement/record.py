@@ -15,6 +15,7 @@ from .description import BodyDescription
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
+from .slower_body import with_slower_bodies
 from .spans import cut_to
 from .tables import LogColumns, read_columns
 
@@ -48,6 +49,11 @@ class Record(ByValue):
     def duration(self) -> float:
         """Length of all segments together, s."""
         return len(self.time) * self.sample_time
+
+    def rate_of(self, channel: str) -> float:
+        """Readings of a channel in a second, Hz: fewer than samples where it was interpolated."""
+        rates = [dict(s.numbers)["rate"] for s in self.reading if s.channel == channel]
+        return min([*rates, 1.0 / self.sample_time])
 
     def __repr__(self) -> str:
         segments = f", {len(self.segments)} segments" if len(self.segments) > 1 else ""
@@ -134,6 +140,9 @@ def record_of(
     to_seconds = None
     if sample_rate is None:
         to_seconds = factor_of(channels["time"], bodies, "channels.time")
+    columns = with_slower_bodies(
+        columns, channels, name, sample_rate=sample_rate, to_seconds=to_seconds
+    )
     clock, steps = clock_of_log(
         columns, channels, name, file=file, sample_rate=sample_rate, to_seconds=to_seconds
     )

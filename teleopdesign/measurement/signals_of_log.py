@@ -52,9 +52,7 @@ def signals_of_log(
             text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
             steps.append(ReadingStep(file, text, "moved back", "none"))
         if conversion.columns[0] in columns.stamps:
-            signals[key], step = _resample_by_stamps(
-                columns, channel, conversion, clock, file, name
-            )
+            signals[key], step = _resample_by_stamps(columns, key, channel, conversion, clock, file)
             steps.append(step)
             continue
         rows = clock.clock.rows
@@ -135,11 +133,11 @@ def _restore_steps(out: Array, values: Array, channel: Channel, step: float) -> 
 
 def _resample_by_stamps(
     columns: LogColumns,
+    key: str,
     channel: Channel,
     conversion: Conversion,
     clock: LogClock,
     file: str,
-    name: str,
 ) -> tuple[Array, ReadingStep]:
     """A channel with separate time stamps, as those of a bag's topic, and its reading step."""
     stamps = columns.stamps[conversion.columns[0]] - conversion.delay
@@ -166,8 +164,16 @@ def _resample_by_stamps(
     )
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
     rate = (len(at) - 1) / max(float(at[-1] - at[0]), 1e-300)
-    text = f"{name} has stamps of its own, {rate:.4g} Hz"
-    done = ReadingStep(file, text, words[rule], "none", interpolates=rule == "position")
+    text = f"{key.removeprefix('device.')} has stamps of its own, {rate:.4g} Hz"
+    done = ReadingStep(
+        file,
+        text,
+        words[rule],
+        "none",
+        numbers=(("rate", rate),),
+        interpolates=rule == "position",
+        channel=key,
+    )
     return _restore_steps(out, values, channel, step), done
 
 

@@ -90,10 +90,13 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
     deflection: m or rad;  damping_ratio: of the inertia on this bristle while it sticks; of a
         friction that nearly vanishes without a load `UNDAMPED` at most
     returns: the body itself where it has no friction level, or a friction shape already
+    raises ModelError: a deflection of zero, that of a record that never moves
     """
     roles = {e.role for e in body.effects}
     if "friction_level" not in roles or "friction_shape" in roles:
         return body
+    if not deflection > 0.0:
+        raise ModelError("a bristle needs a length: the recorded position never moves")
     unloaded, level = _levels_by_load(body)
     if unloaded == 0.0:
         body = with_least_level(body)

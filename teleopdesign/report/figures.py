@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,11 +45,15 @@ def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
-        largest = max(*(r.check_error for r in rows), *(r.fit_error for r in rows), floor)
+        # an error that is no number has no bar
+        checked = [r.check_error if isfinite(r.check_error) else 0.0 for r in rows]
+        fitted = [r.fit_error if isfinite(r.fit_error) else 0.0 for r in rows]
+        line = floor if isfinite(floor) else 0.0
+        largest = max(*checked, *fitted, line) or 1.0
         for y, row in enumerate(rows):
             colour = BEFORE if y == 0 else AFTER
-            axes.barh(y, 100 * row.check_error, height=0.42, color=colour)
-            axes.plot(100 * row.fit_error, y, "o", ms=4.5, mfc="w", mec="k", mew=0.9)
+            axes.barh(y, 100 * checked[y], height=0.42, color=colour)
+            axes.plot(100 * fitted[y], y, "o", ms=4.5, mfc="w", mec="k", mew=0.9)
             name = row.name if y == 0 else f"+ {row.name}"
             # on separate paper, for the line of the noise floor may cross it
             paper = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
@@ -58,7 +63,7 @@ def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
             error = percent(row.check_error)
             right = axes.get_yaxis_transform()
             axes.text(1.0, y, error, transform=right, ha="right", va="center", weight="bold")
-        axes.axvline(100 * floor, color="k", lw=0.9, ls="--")
+        axes.axvline(100 * line, color="k", lw=0.9, ls="--")
         axes.set_ylim(len(rows) - 0.55, -0.62)
         axes.set_xlim(0, 122 * largest)  # the figures stand to the right of the longest bar
         axes.set_yticks([])

@@ -118,9 +118,10 @@ def _view(
     axis = diagnosis.experiment.axis(body)
     position, velocity = _edges(rows.position, CELLS[0]), _edges(rows.velocity, CELLS[1])
     means = [_mean(rows, r, position, velocity) for r in rows.residual]
-    largest = [float(np.quantile(np.abs(m[np.isfinite(m)]), 0.98)) for m in means if m.size]
+    known = [np.abs(m[np.isfinite(m)]) for m in means]
+    largest = [float(np.quantile(m, 0.98)) for m in known if m.size]
     noise = _noise(diagnosis)
-    limit = _round_up(max(*largest, OUTSIDE * noise))
+    limit = _round_up(max([*largest, OUTSIDE * noise]))
     buckets = np.array_split(np.arange(len(rows.time)), min(BUCKETS, len(rows.time)))
     force = choose_prefix(unit_of("force", axis), size_of(rows.residual[0]))
     steps = tuple(

@@ -208,7 +208,10 @@ def _relative_to_force(columns: Array, rows: Rows) -> Array:
     """
     learnt = rows.learnt
     carried = (rows.root**2 * rows.measured)[learnt]
-    share = carried @ columns[learnt] / float(carried @ rows.measured[learnt])
+    whole = float(carried @ rows.measured[learnt])
+    if not whole > 0.0:  # no force acts where the motion is known
+        return columns
+    share = carried @ columns[learnt] / whole
     return columns - np.outer(rows.residual, share)
 
 

@@ -3,11 +3,18 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from teleopdesign import load_experiment
 from teleopdesign.cli import main
+from teleopdesign.commands._report import _next_steps
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.errors import ModelError
+from teleopdesign.next_experiment import shown_limits
 
 
 @pytest.fixture(scope="module")
@@ -90,3 +97,18 @@ def test_two_answers_are_one_line(answer, refused):
 
 def test_a_page_in_another_format_is_refused(answer, refused):
     assert "expected .html" in refused("report", answer, "--output", answer.with_suffix(".pdf"))
+
+
+def test_a_record_that_never_moved_has_a_page_without_a_next_experiment(short_rod):
+    """It has shown no stroke to be safe, so nothing can be proposed; the diagnosis stands."""
+    prepared = prepare(load_experiment(short_rod))
+    still = [
+        replace(s, motion=replace(s.motion, position=0.0 * s.motion.position))
+        for s in prepared.stretches
+    ]
+    undecided = SimpleNamespace(
+        verdict="undecided", groups=(), prepared=replace(prepared, stretches=tuple(still))
+    )
+    assert _next_steps(undecided) == ()
+    with pytest.raises(ModelError, match="the stroke ends at"):
+        shown_limits(undecided.prepared)

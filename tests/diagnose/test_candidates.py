@@ -140,19 +140,22 @@ def needs_of(name):
     return list(dict.fromkeys([*(n for need in needs for n in needs_of(need)), *needs]))
 
 
+@pytest.mark.parametrize("slower", [1.0, 1e4], ids=["as recorded", "in a band 10^4 times narrower"])
 @pytest.mark.parametrize(
     "name", sorted(n for n, e in EFFECTS.items() if e.role not in CONTACT_ROLES)
 )
-def test_a_search_starts_within_bounds_at_every_combination(name, model, prepared):
+def test_a_search_starts_within_bounds_at_every_combination(name, slower, model, prepared):
     effect = EFFECTS[name]
     base = model
     for other in ("coulomb", "viscous"):
         base = base.without_effect(other)
     for need in needs_of(name):
         base = base.with_effect(need, values=dict.fromkeys(EFFECTS[need].parameters, 1.0))
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth / slower)
     starts = make_starts(base.with_effect(name), unit)
-    assert len(starts) >= np.prod([len(p.search.starts) for p in effect.parameters.values()])
+    if slower == 1.0:
+        every = [len(p.search.starts) for p in effect.parameters.values()]
+        assert len(starts) >= np.prod(every)
     for start in starts:
         values = start.body("device").parameters
         for parameter, declared in effect.parameters.items():
@@ -169,6 +172,14 @@ def test_scales_are_those_of_the_record(prepared):
     assert unit["stiffness"] * unit["position"] == pytest.approx(unit["force"])
     assert unit["inertia"] * unit["acceleration"] == pytest.approx(unit["force"])
     assert all(np.isfinite(v) and v > 0 for v in unit.values())
+
+
+@pytest.mark.parametrize("factor", [0.0, 1e-300, 1e-110, 1e-30, 1e30, 1e150])
+def test_scales_are_numbers_whatever_the_size_of_the_motion(factor, prepared):
+    (motion,) = [s.motion for s in prepared.of("fit")]
+    signals = {n: factor * getattr(motion, n) for n in ("position", "velocity", "acceleration")}
+    unit = scales([replace(motion, **signals)], prepared.bandwidth)
+    assert all(np.isfinite(v) and v > 0.0 for v in unit.values())
 
 
 def test_every_quantity_of_an_effect_has_a_scale(prepared):

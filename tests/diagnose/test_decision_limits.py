@@ -36,6 +36,7 @@ from teleopdesign.diagnose.order import (
     select_simplest,
     simplicity,
 )
+from teleopdesign.diagnose.together import _leave_the_same
 from teleopdesign.effects import EFFECTS
 
 MORE, LESS = 1.0 + 1e-9, 1.0 - 1e-9
@@ -239,3 +240,18 @@ def test_the_verdict_asks_for_half_of_the_squares_above_the_floor():
     assert verdict([rung(0.5), rung(0.2, one, (one,))], floor()) == "undecided", "all look alike"
     two = [rung(0.5), rung(0.3, one, (one,)), rung(0.2, one)]
     assert verdict(two, floor()) == "effects_missing"
+
+
+def test_of_no_error_at_all_nothing_is_less():
+    """As of a still record whose force is a power of two."""
+    assert not is_better(fit(0.0), fit(0.0), floor(0.0))
+    assert not is_better(fit(0.0), fit(0.1), floor(0.0))
+    assert is_better(fit(0.1), fit(0.0), floor(0.0))
+
+
+def test_two_candidates_that_leave_nothing_leave_the_same():
+    assert _leave_the_same(fit(0.0), fit(0.0))
+    assert _leave_the_same(fit(0.3), fit(0.3))
+    assert not _leave_the_same(fit(0.0), fit(0.3))
+    assert not _leave_the_same(fit(0.3), fit(0.0))
+    assert not _leave_the_same(fit(0.3), fit(0.4))

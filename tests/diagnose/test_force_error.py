@@ -309,3 +309,36 @@ def test_a_friction_that_takes_up_whatever_acts_gains_nothing(beside):
     value, slope = squares(0.3, relative_residuals)
     ahead, back = (squares(0.3 + h, relative_residuals)[0] for h in (1e-5, -1e-5))
     assert slope == pytest.approx((ahead - back) / 2e-5, rel=1e-3)
+
+
+@pytest.mark.parametrize("use", ["fit", "check"])
+def test_records_without_any_force_are_refused(use, experiment):
+    """The error is relative to the measured force: there would be none."""
+    zeros = {"device.actuator_force": 0.0, "device.interaction_force": 0.0}
+    records = [
+        replace(r, signals={n: s * zeros.get(n, 1.0) for n, s in r.signals.items()})
+        if r.use == use
+        else r
+        for r in experiment.records
+    ]
+    with pytest.raises(ExperimentError, match=f"{use} records: the measured force"):
+        prepare(replace(experiment, records=tuple(records)))
+
+
+def test_records_with_too_few_samples_for_blocks_are_refused_and_left_out_beside_others(experiment):
+    """Blocks are held out in turn where there is no check record: each needs a sample."""
+    (record,) = experiment.fit_records
+    with pytest.raises(ExperimentError, match="fewer than 4 samples count at a bandwidth of 0.05"):
+        prepare(replace(experiment, records=(record,)), bandwidth=0.05)
+    prepared = prepare(replace(experiment, records=(record,)), bandwidth=1.0)
+    for kept, held_out in folds(prepared.stretches):
+        assert all(len(s.keep) for s in (*kept, *held_out))
+
+
+@pytest.mark.parametrize("channel", ["position", "actuator_force"])
+def test_a_signal_whose_cubes_are_no_numbers_is_refused_by_its_channel(channel, experiment):
+    (record,) = experiment.fit_records
+    signals = {n: s * (1e90 if channel in n else 1.0) for n, s in record.signals.items()}
+    huge = replace(experiment, records=(replace(record, signals=signals),))
+    with pytest.raises(ExperimentError, match=rf"channels.device.{channel}: found .*e\+.* \(SI\)"):
+        prepare(huge)

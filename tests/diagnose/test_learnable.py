@@ -140,3 +140,14 @@ def test_samples_near_a_reversal_are_those_that_have_one_within_reach(direction,
         last = d or last
     expected = [any(abs(i - t) <= within for t in turned) for i in range(len(direction))]
     assert reversals.tolist() == expected
+
+
+def test_the_black_box_learns_from_a_motion_of_which_one_signal_or_every_signal_is_constant():
+    """A body that stands still or is always driven one way; the trees find no border there."""
+    rng = np.random.default_rng(3)
+    x = rng.normal(size=400)
+    target = np.sin(x)
+    still = np.stack([np.ones(400), x, np.zeros(400)], axis=1)
+    assert np.mean((module._trees(still, target, 0)(still) - target) ** 2) < 0.1 * target.var()
+    constant = np.ones((400, 3))
+    assert module._trees(constant, target, 0)(constant) == pytest.approx(target.mean())

@@ -148,3 +148,18 @@ def test_a_written_matrix_is_read_as_it_was_meant():
     certificate = absolute_stability_certificate("any title", z)
     assert certificate.kind == "absolute stability"
     assert "Z(s) = [[s + 1/s, 1/(3*s)], [1/(3*s), s + 1/s]]" in certificate.check()
+
+
+@pytest.mark.parametrize(("coupled", "holds"), [("1/5", True), ("1/4", True), ("3/10", False)])
+@pytest.mark.parametrize("below", [1, 4, 9])
+def test_masses_at_high_frequency_are_coefficients_over_those_of_the_denominator(
+    coupled, holds, below
+):
+    """Masses of 1/4 kg at both ports, written over a denominator that is not monic."""
+    at_port = f"({below}*s**2/4 + s + 1)/({below}*s + 1)"
+    content = sealed([[at_port, f"{coupled}*s"], [f"{coupled}*s", at_port]])
+    if holds:
+        assert check(content)
+    else:
+        with pytest.raises(Refused, match="infinity"):
+            check(content)

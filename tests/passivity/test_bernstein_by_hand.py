@@ -9,6 +9,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.passivity.checker import Refused, box_signs
 from teleopdesign.passivity.intervals import bernstein
 from teleopdesign.passivity.intervals.bernstein import (
     ProofEffort,
@@ -137,3 +138,16 @@ def test_a_proof_ends_when_its_effort_is_spent_and_counts_what_it_looked_at():
         assert is_non_negative_over(p, UNIT, Fraction(1), effort) is shown
         # the same is asked of -p, for a product may have its sign by two factors
         assert effort.cells == effort.polynomials == 2 and effort.left == left - 2 * size
+
+
+def test_a_certificate_may_ask_for_so_many_coefficients_and_for_no_more(monkeypatch):
+    """Of degrees 2 in x and 1 in v there are 3 times 2."""
+    polynomial = dict.fromkeys(((2, 1), (2, 0), (0, 0)), Fraction(1))
+    ends = [(Fraction(0), Fraction(1))]
+    for most, allowed in ((6, True), (5, False)):
+        monkeypatch.setattr(box_signs, "COEFFICIENTS", most)
+        if allowed:
+            assert box_signs.are_apart_from_zero([polynomial], ends, [10**9])
+        else:
+            with pytest.raises(Refused, match="more work"):
+                box_signs.are_apart_from_zero([polynomial], ends, [10**9])

@@ -29,6 +29,7 @@ from teleopdesign.passivity.intervals.bernstein import (
 from teleopdesign.passivity.intervals.box import box_of
 from teleopdesign.passivity.intervals.conditions import Conditions
 from teleopdesign.passivity.intervals.family import family_of
+from teleopdesign.passivity.intervals.friction import _rest_is_passive
 from teleopdesign.passivity.linear.polynomials import X
 from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.realise.lti import S
@@ -175,6 +176,16 @@ def test_vertices_decide_how_much_friction_may_be_cancelled():
     assert claim.status == "refuted" and claim.worst["Z_M.coulomb.level"] == 0.3
 
 
+@pytest.mark.parametrize("late", [False, True])
+def test_of_a_late_rest_beside_friction_nothing_is_shown_over_a_box(late):
+    """A rod that a spring holds, through an actuator with or without a dead time."""
+    more = {"actuation_delay__delay": 1e-3} if late else {}
+    device = body(0.3, viscous__damping=5.0, coulomb__level=0.5, **more)
+    diagram = haptic_interface(device, position_loop=controller("gain", {"gain": 20.0}))
+    box = box_of(diagram, {"Z_M.inertia": (0.2, 0.4)})
+    assert _rest_is_passive(*box) is not late
+
+
 @pytest.mark.slow
 def test_friction_that_is_proved_over_a_box_is_so_at_points_inside():
     rng = np.random.default_rng(3)
@@ -288,6 +299,24 @@ def test_what_a_varied_block_cancels_inside_counts_as_a_mode():
     family = family_of(*box_of(diagram, box))
     assert sp.rem(family.characteristic(), S - 1, S) == 0
     assert claim_over_intervals(diagram, box).status == "unknown"
+
+
+@pytest.mark.parametrize("hides", [False, True])
+def test_a_mode_that_no_port_shows_has_a_certificate_beside_that_of_the_port(hides):
+    """1/(s + 1), then (s + 1)/(s + 2): the mode at -1 dies out, and this must be certified, too."""
+    lag = from_control(ct.tf([1.0], [1.0, 1.0]), name="one")
+    undone = from_control(ct.tf([1.0, 1.0], [1.0, 2.0]), name="two")
+    law = (lag.then(undone) if hides else lag).then(controller("gain", {"gain": 0.1}))
+    diagram = haptic_interface(body(0.3, viscous__damping=2.0), position_loop=law)
+    claim = claim_over_intervals(diagram, {"K.gain.gain": (0.1, 0.2)}, points=2)
+    assert claim.status == "proved"
+    kinds = [one.kind for one in claim.certificates]
+    assert kinds == ["positive real over a box", *["stable over a box"] * hides]
+    for one in claim.certificates:
+        one.check()
+    if hides:
+        mode = sp.sympify(claim.certificates[1].content["polynomial"])
+        assert mode.subs(sp.Symbol("s"), -1) == 0
 
 
 def test_a_port_that_nothing_resists_has_the_impedance_zero():

@@ -204,6 +204,23 @@ BOUNDS = {
 }
 
 
+#: forces of one direction alone: less than the bound, or twice as much
+ONE_WAY = {
+    f"{size} times the bound {way}": (
+        f"{size} * p.level * (now.velocity {sign} now.speed) / 2 / (p.second + now.speed)",
+        size < 1,
+    )
+    for size in (0.9, 2)
+    for way, sign in (("forward", "+"), ("backward", "-"))
+}
+
+
+@pytest.mark.parametrize(("law", "kept"), (BOUNDS | ONE_WAY).values(), ids=BOUNDS | ONE_WAY)
+def test_a_law_stays_within_its_bound_only_where_it_does_so_both_ways(tmp_path, law, kept):
+    mine = load_controller(law_file(tmp_path, law, 'bound="level"'))
+    assert keeps_its_bound(controller(mine, {"level": 0.4, "second": 0.01}).stages[0]) is kept
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("law", "kept"), BOUNDS.values(), ids=BOUNDS)
 def test_a_bound_counts_where_intervals_show_it(tmp_path, law, kept):

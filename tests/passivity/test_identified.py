@@ -242,3 +242,19 @@ def test_a_cancellation_of_several_stages_is_not_judged_by_one_of_them(gain, fir
     (alone,) = friction_pairs(haptic_interface(body, cancellation=dahl))
     assert [one.claim.status for one in pair_claims(alone)] == ["proved"]
     assert friction_pairs(haptic_interface(body, cancellation=Controller(stages))) == []
+
+
+def test_unknown_is_what_is_neither_fixed_nor_has_an_error_nor_is_absent():
+    """An optional parameter of zero is a part that is not there."""
+    body = body_of(viscous={"damping": 2.0}, presliding={"stiffness": 2e4, "bristle_damping": 0.0})
+    values = {
+        "inertia": td.Value(0.1, fixed=True),
+        "coulomb.level": td.Value(0.5),
+        "viscous.damping": td.Value(2.0, stderr=0.1),
+        "presliding.stiffness": td.Value(2e4),
+        "presliding.bristle_damping": td.Value(0.0),
+    }
+    for damping, more in ((0.0, ()), (3.0, ("presliding.bristle_damping",))):
+        values["presliding.bristle_damping"] = td.Value(damping)
+        unknown = identify_device(body.with_values(values)).unknown
+        assert sorted(unknown) == sorted(("coulomb.level", "presliding.stiffness", *more))

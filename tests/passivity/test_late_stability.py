@@ -48,6 +48,7 @@ def test_a_late_spring_is_stable_up_to_its_exact_limit(share, status):
     box = {TIME: (0.01, float(share * limit(STIFFNESS)))}
     claim = claim_over_intervals(held(0.01, damping=DAMPING), box, claim="stable", points=4)
     assert claim.status == status, claim
+    assert (claim.proved_margin == 0.0) is (status == "proved")
 
 
 @pytest.mark.slow
@@ -162,3 +163,14 @@ def test_a_zero_a_hair_beyond_the_axis_is_never_called_stable():
     for damping in (Fraction(1, 10**17), Fraction(0), Fraction(-1, 10**17)):
         rows = [(1, 2, 0), (damping, 1, 0), (1, 0, 0), (Fraction(1, 10**18), 0, 1)]
         assert is_zero_free(terms(rows), most=20_000) is None
+
+
+@pytest.mark.parametrize("others", [[1.0], [1.0, 2.0], [0.5, 1.0, 2.0]])
+def test_a_zero_on_the_axis_is_met_whatever_the_degree(others):
+    """(s^2 + 9) times decaying factors, and (s^2 + s + 9) times the same."""
+    for middle, shown in ((0.0, False), (1.0, True)):
+        whole = np.polymul(np.poly(np.negative(others)), [1.0, middle, 9.0])[::-1]
+        rows = [(Fraction(float(c)), k, 0) for k, c in enumerate(whole)]
+        # 1e-6 (e^(-s T) - 1) is zero at T = 0, where the plain polynomial counts
+        rows += [(Fraction(1, 10**6), 0, 1), (-Fraction(1, 10**6), 0, 0)]
+        assert (is_zero_free(terms(rows), most=20_000) is not None) is shown

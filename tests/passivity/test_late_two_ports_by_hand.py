@@ -84,6 +84,23 @@ def test_what_must_not_be_negative_at_low_frequency_is_that_of_both_criteria(shi
         assert values == pytest.approx(figures, rel=1e-7, abs=1e-9), criterion
 
 
+@pytest.mark.parametrize("shift", range(4))
+def test_no_coefficient_counts_that_the_rest_of_a_series_would_change(shift, monkeypatch):
+    """Of series that are twice as long, the first coefficients are the same."""
+    z = [(ENTRIES[1:5] + ENTRIES[7:])[(i + shift) % 6] for i in range(4)]
+    points = {}
+    for terms in (late._TERMS, 2 * late._TERMS):
+        monkeypatch.setattr(late, "_TERMS", terms)
+        series = [late._series(terms_of(e)) for e in z]
+        points[terms] = [
+            p for c in ("passive", "absolutely stable") for p in late._low_frequency(series, c)
+        ]
+    short, long = points.values()
+    assert min(map(len, short)) > 6
+    for few, many in zip(short, long, strict=True):
+        assert few == [*many, *[0] * len(few)][: len(few)]
+
+
 @pytest.mark.parametrize("entry", ENTRIES)
 @pytest.mark.parametrize("s", [2j, 1j])
 def test_a_residue_is_the_limit_of_the_entry_times_the_distance(entry, s):
@@ -181,3 +198,12 @@ def test_late_dampers_stay_within_those_of_the_ports_up_to_their_mean():
         passive = not late.obstacles(system, "passive")
         assert stable == (r1 * r2 >= forth * back)
         assert not passive or 2 * (r1 * r2) ** 0.5 >= forth + back
+
+
+@pytest.mark.parametrize(("r1", "r2"), [(1, 4), (4, 1), (1, 1), (2, 2)])
+def test_what_counts_far_out_is_what_is_left_of_both_ports_there(r1, r2):
+    """Dampers that are ten times as strong at low frequency bound no late coupling beyond."""
+    for forth, back in ((1, 1), (2, 2), (4, 2), (1, 4)):
+        rest = 10 / (S + 1)
+        system = two_port([[r1 + rest, forth * E_T], [back * E_T, r2 + rest]])
+        assert (not late.obstacles(system, "absolutely stable")) == (r1 * r2 >= forth * back)

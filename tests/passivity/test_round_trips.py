@@ -76,3 +76,12 @@ def test_friction_that_is_what_is_cancelled_gives_out_nothing():
         same = Dahl(float(level), float(stiffness))
         assert most_released(same, [same])[0] == 0
         assert most_released(Dahl(1.001 * float(level), float(stiffness)), [same])[0] > 0
+
+
+def test_a_load_is_the_force_of_the_last_element_whatever_stands_before_it():
+    helps, rail, spring = Dahl(3.5, 3e4), Coulomb(1.0), Spring(2.0, 1e4)
+    two = most_released(helps, [rail, spring], 0.2)
+    three = most_released(helps, [rail, Coulomb(1e-12), spring], 0.2)
+    assert three == pytest.approx(two, rel=1e-6)
+    with_more = most_released(helps, [rail, Coulomb(0.3), spring], 0.2)
+    assert with_more[0] == pytest.approx(two[0] - 0.3, rel=1e-6)

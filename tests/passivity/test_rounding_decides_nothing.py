@@ -20,6 +20,8 @@ from teleopdesign.passivity import (
     positive_real,
     sampled_passivity,
 )
+from teleopdesign.passivity.linear.positive_real import NEARBY
+from teleopdesign.passivity.linear_diagrams import _nearby
 
 MASS, DAMPING = 0.15, 2.0
 BANDWIDTHS = (1, 2, 5, 10, 20, 50, 100, 200, 500)  # Hz
@@ -129,3 +131,19 @@ def test_a_damper_that_another_outdoes_by_rounding_alone_is_not_refuted(damping,
     diagram = Diagram("held", (device, control_block), (minus,), {"f": "force"}, ("x",))
     statuses = [claim.status for claim in claims(diagram)]
     assert statuses[0] == status and ("refuted" in statuses) is (status == "refuted")
+
+
+def test_a_refutation_is_asked_again_at_four_sets_of_values_to_either_side_of_each_value():
+    """Neighbours change together in two of them, and against each other in the other two."""
+    diagram = haptic_interface(body(MASS, viscous__damping=DAMPING, spring__stiffness=30.0))
+    values = {n: v for n, v in diagram.values.items() if v}
+    sides = [
+        [(other.values[n] / v - 1.0) / NEARBY for n, v in values.items()]
+        for other in _nearby(diagram)
+    ]
+    assert len(values) > 2 and len(sides) == 4
+    np.testing.assert_allclose(np.abs(sides), 1.0, rtol=0.3)  # in floats of 53 bits
+    signs = np.sign(sides)
+    assert not signs.sum(axis=0).any(), "as often up as down"
+    assert len({tuple(s) for s in signs.tolist()}) == 4
+    assert not (signs[:, 0] @ signs[:, 1])

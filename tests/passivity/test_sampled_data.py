@@ -1,5 +1,7 @@
 """Sampled controllers: the condition of Colgate and Schenkel, exact, and the Z-width."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -17,7 +19,7 @@ from teleopdesign.passivity import (
     write_record,
     z_width,
 )
-from teleopdesign.passivity.theorems.sampled_data import Z
+from teleopdesign.passivity.theorems.sampled_data import Z, sampled_wave
 
 T, K, B = sp.Rational(1, 1000), 1000, sp.Rational(3, 10)
 DIFFERENCE = (Z - 1) / (T * Z)
@@ -176,3 +178,15 @@ def test_a_wall_of_damping_alone_is_passive_up_to_that_of_the_device():
     law = WALL_DAMPING * (Z - 1) / (sp.Rational(1, 1000) * Z)
     width = z_width(damping=5, sample_time=0.001, law=law, wall_damping=np.array([0, 4.9, 5.1, 50]))
     assert np.isinf(width.stiffness[:2]).all() and np.isnan(width.stiffness[2:]).all()
+
+
+@pytest.mark.parametrize(("rate", "frequency"), [(1, 0), (2, 0), (Fraction(1, 3), 0), (1, 2)])
+def test_the_travel_of_a_wave_grows_by_the_bilinear_image_of_its_rate(rate, frequency):
+    """(1 + s)/(1 - s) from one sample to the next; at s = 1 all of it is the last travel."""
+    at = Fraction(rate), Fraction(frequency)
+    wave = sampled_wave(-B * DIFFERENCE, sp.Rational(1, 10), T, sp.S(0), *at)
+    assert np.isfinite(wave.travel).all() and np.abs(wave.travel).max() > 0
+    one = complex(float(rate), float(frequency))
+    assert wave.factor * (1 - one) == pytest.approx(1 + one) or (
+        one == 1 and abs(wave.factor) > 1e9
+    )

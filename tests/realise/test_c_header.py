@@ -81,6 +81,26 @@ def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):
     assert np.abs(out - expected).max() <= 1e-9 * max(np.ptp(expected), 1e-12)
 
 
+@compiled
+@pytest.mark.parametrize("late", [1e-3, 2.4e-3])
+def test_a_late_lag_is_the_difference_equation_that_it_is_by_hand(late, tmp_path):
+    """y(n + 1) = y(n) + (1 - e^(-w T)) (u(n) - y(n)), u linear between samples; zero before."""
+    block = controller("delay", {"time": late}).then(controller("low_pass", {"bandwidth": 20.0}))
+    x = np.cos(0.2 * np.arange(40.0)) + 0.3
+    out = np.zeros_like(x)
+    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (x, x, out)]
+    library(as_c_header(block, period=PERIOD, name="law"), tmp_path).run(len(x), *pointers)
+    whole, part = divmod(round(late / PERIOD, 9), 1.0)
+    before = np.concatenate([np.zeros(4), x])
+    n = np.arange(40) + 4 - int(whole)
+    u = (1.0 - part) * before[n] + part * before[n - 1]
+    y, expected = 0.0, []
+    for now in u:
+        expected.append(y)
+        y += (1.0 - np.exp(-2 * np.pi * 20.0 * PERIOD)) * (now - y)
+    np.testing.assert_allclose(out, expected, rtol=1e-12, atol=1e-15)
+
+
 def test_a_name_that_is_no_name_or_a_law_that_is_code_is_refused():
     block = from_control(NOTCH)
     for name in ("", "a b", "x;}", "1st", "Law"):

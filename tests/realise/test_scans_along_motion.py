@@ -12,8 +12,9 @@ from teleopdesign.blocks import Body, Value
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
 from teleopdesign.effects._effect import State
 from teleopdesign.errors import ModelError
-from teleopdesign.realise.along_motion import residual_along
+from teleopdesign.realise.along_motion import measured_along, residual_along
 from teleopdesign.realise.ode_scan import ode_scan
+from teleopdesign.realise.shape_scan import shape_bounds
 from teleopdesign.realise.traced import Along, Traced
 
 RATE = 1000.0
@@ -140,6 +141,25 @@ def test_where_a_reading_tells_no_motion_friction_is_what_balances_within_a_step
         sure = body_of("coulomb", "presliding", values={"presliding.stiffness": stiffness})
         middle = residual_along(sure, replace(motion, direction=np.ones(n))).friction.value
         assert np.abs(along.friction.value - middle)[still].max() <= stiffness * step / 2 + 1e-9
+
+
+def test_where_a_reading_tells_no_motion_elements_are_open_by_the_sum_of_their_stiffness():
+    """Half a step of the encoder moves each of four elements that have not slipped."""
+    step, n, stiffness = 1e-4, 600, (300.0, 150.0, 60.0, 20.0)
+    values = {f"maxwell_slip.stiffness_{i + 1}": k for i, k in enumerate(stiffness)}
+    values |= {f"maxwell_slip.level_{i}": 0.1 for i in (2, 3, 4)}
+    body = body_of("coulomb", "maxwell_slip", values=values | {"coulomb.level": 0.5})
+    x = np.repeat(np.arange(6), 100) * step  # 0.5 mm: no element slips
+    still = np.arange(n) < 450
+    motion = motion_along(x, 0.0 * x, resolution=step, bandwidth=100.0)
+    motion = replace(motion, direction=np.where(still, 0, 1))
+    known = measured_along(body, motion)
+    level = known.constant(np.full(n, 0.5))
+    low, high = shape_bounds(EFFECTS["maxwell_slip"], motion, known, forward=level, backward=level)
+    middle = sum(stiffness) * (motion.position - motion.position[0])
+    half = np.where(still, sum(stiffness) * step / 2, 0.0)
+    np.testing.assert_allclose(high.value, np.minimum(middle + half, 0.5), atol=1e-9)
+    np.testing.assert_allclose(low.value, np.maximum(middle - half, -0.5), atol=1e-9)
 
 
 @pytest.mark.parametrize("case", ["needs another", "goes by another", "has no stop"])

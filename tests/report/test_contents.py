@@ -225,3 +225,12 @@ def test_what_the_file_states_is_shown_also_with_few_candidates(diagnosis):
     rows = parameter_rows(replace(diagnosis, rungs=rungs))
     assert [r.stated for r in rows] == [r.stated for r in parameter_rows(diagnosis)]
     assert any(r.stated is not None for r in rows)
+
+
+def test_a_record_too_short_for_any_cell_of_the_map_has_a_page(diagnosis):
+    few = tuple(replace(s, keep=s.keep[:2]) for s in diagnosis.prepared.stretches)
+    short = replace(diagnosis, prepared=replace(diagnosis.prepared, stretches=few))
+    views = body_views(short, tuple(str(i) for i in range(len(diagnosis.rungs))))
+    for step in views[0].steps:
+        assert np.isnan(step.mean).all(), "a mean of fewer than three samples"
+    assert views[0].limit >= 4 * views[0].noise

@@ -98,6 +98,14 @@ def test_bars_are_check_errors_rings_fit_errors_and_the_line_the_floor(drawn, nu
     assert f"Noise floor: {100 * floor:.2f}\u202f%" in alt
 
 
+@pytest.mark.parametrize("error", [np.inf, np.nan])
+def test_an_error_that_is_no_number_has_no_bar_and_hides_no_other(drawn, error):
+    rows = (LADDER[0], replace(LADDER[1], check_error=error, fit_error=error))
+    figures.ladder_figure(rows, 0.01)
+    ((figure, _),) = drawn
+    assert figure.axes[0].get_xlim()[1] == pytest.approx(122 * LADDER[0].check_error)
+
+
 def test_more_rungs_have_a_higher_figure_with_the_same_room_for_each(drawn):
     for number in (1, 2, 3):
         figures.ladder_figure(LADDER[:number], 0.01)

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from ...finding import Finding
+from ..encoder import update_period
 from ..repeated_rows import repeats, stuck_stretches
 from .signal import Signal
 
@@ -64,12 +65,8 @@ def check_repeats(signal: Signal) -> list[Finding]:
 
 def check_update(signal: Signal) -> list[Finding]:
     """Report a channel that changes at a lower rate than the log."""
-    apart = np.concatenate([np.diff(np.flatnonzero(np.diff(x))) for _, x in signal.stretches])
-    if len(apart) < 50:
-        return []
-    every = int(np.median(apart))
-    # nearly all changes lie a whole number of periods apart
-    if every < 2 or np.mean(apart % every == 0) < 0.9:
+    every = update_period(*(x for _, x in signal.stretches))
+    if every == 1:
         return []
     period = every * signal.record.sample_time
     return [
@@ -90,7 +87,7 @@ def _of_one_body(signal: Signal) -> str:
     if not dot or signal.channel.quantity != "position":
         return ""
     return (
-        f" The steps between count as jitter of the clock and hide effects: diagnose the {body} in "
+        f" The motion has steps between readings, which hide effects: diagnose the {body} in "
         "an experiment with its channels alone, of which one row of each reading is read."
     )
 
