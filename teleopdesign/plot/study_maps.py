@@ -112,18 +112,17 @@ def _draw_mesh(
     up: str,
     limits: tuple[float, float],
 ) -> Any:
+    study.label_axis(axis, "x", across)
+    study.label_axis(axis, "y", up)
     mesh = axis.pcolormesh(
-        study.data[across].values,
-        study.data[up].values,
+        _borders(study.data[across].values, axis.get_xscale()),
+        _borders(study.data[up].values, axis.get_yscale()),
         np.ma.masked_invalid(values.transpose(up, across).values),
-        shading="nearest",
         cmap="RdBu_r" if limits[0] < 0 and limits[1] == -limits[0] else "viridis",
         vmin=limits[0],
         vmax=limits[1],
         rasterized=True,
     )
-    study.label_axis(axis, "x", across)
-    study.label_axis(axis, "y", up)
     for one, scale, name in (
         (axis.xaxis, axis.get_xscale(), across),
         (axis.yaxis, axis.get_yscale(), up),
@@ -131,6 +130,15 @@ def _draw_mesh(
         if scale == "linear":
             _place_ticks(one, study.data[name].values)
     return mesh
+
+
+def _borders(values: np.ndarray, scale: str) -> np.ndarray:
+    """Borders (n + 1,) of cells around values (n,), halfway to the next one on the axis' scale."""
+    at = np.log(values) if scale == "log" else np.asarray(values, dtype=float)
+    apart = np.diff(at) if len(at) > 1 else np.ones(1)
+    middle = at[:-1] + 0.5 * apart[: len(at) - 1]
+    borders = np.concatenate([[at[0] - 0.5 * apart[0]], middle, [at[-1] + 0.5 * apart[-1]]])
+    return np.exp(borders) if scale == "log" else borders
 
 
 def _place_ticks(axis: Any, values: np.ndarray) -> None:
@@ -162,7 +170,8 @@ def _draw_marks(
         held = study.data[proved] == "proved" if isinstance(proved, str) else proved
         inside = study.at(held, {k: v for k, v in (at or {}).items() if k in held.dims})
         shown = np.ma.masked_where(~inside.transpose(up, across).values.astype(bool), inside.T)
-        axis.pcolor(x, y, shown, shading="nearest", hatch="///", alpha=0.0)
+        borders = _borders(x, axis.get_xscale()), _borders(y, axis.get_yscale())
+        axis.pcolor(*borders, shown, hatch="///", alpha=0.0)
         axis.fill_between(
             [], [], facecolor="none", edgecolor="black", hatch="///", label=over.proved_label
         )

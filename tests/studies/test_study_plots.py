@@ -98,6 +98,14 @@ def test_a_map_shows_the_measure_with_proved_region_and_onset(gridded):
     assert legend == ["proved", "onset, simulated"]
 
 
+def test_each_point_lies_in_the_middle_of_its_cell_on_even_and_on_logarithmic_axes(gridded):
+    mesh = gridded.plot.map(at={"z": 0.0}, x="x", y="y").axes[0].collections[0]
+    corners = mesh.get_coordinates()
+    x, y = corners[0, :, 0], corners[:, 0, 1]
+    np.testing.assert_allclose(np.sqrt(x[1:] * x[:-1]), gridded["x"].values)
+    np.testing.assert_allclose(0.5 * (y[1:] + y[:-1]), gridded["y"].values, atol=1e-12)
+
+
 def test_points_that_failed_stay_empty_in_a_map():
     dataset = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
     shown = dataset.plot.map(x="x", y="y").axes[0].collections[0].get_array()
