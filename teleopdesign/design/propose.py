@@ -234,7 +234,7 @@ def _claims(
             errors=assumptions.errors,
         )
         compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
-        by_case["MBC"] += [compliant] if compliant else []
+        by_case["MBC"] += [compliant] if compliant is not None else []
     by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
     for case, diagram in four_cases(best.prediction.hybrid).items():
         by_case[case].append(

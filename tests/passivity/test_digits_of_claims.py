@@ -83,7 +83,7 @@ def test_the_limit_that_is_printed_is_proved_where_it_is_typed(tmp_path, capsys,
     answer = answer_with(tmp_path / "answer.json", AS_ESTIMATED | more)
     assert main(["passivity", answer]) == 0
     output = capsys.readouterr().out
-    limit = re.search(r"passive for every level in the interval: (\S+)", output)[1]
+    limit = re.search(r"for passivity at every level in the interval: (\S+)", output)[1]
     out = tmp_path / "claims.json"
     assert main(["passivity", answer, "--dahl", limit, "20000", "--json", str(out)]) == 0
     claims = {c["topic"]: c["status"] for c in json.loads(out.read_text())["claims"]}
