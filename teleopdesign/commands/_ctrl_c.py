@@ -47,7 +47,9 @@ def hear_ctrl_c(request: threading.Event) -> bool:
 
     def lost(unraisable: Any) -> None:
         if issubclass(unraisable.exc_type, KeyboardInterrupt):
-            interrupt_later(0.001)  # s: once this call is over
+            # s: once this call is over, and this hook, in which an interrupt would be lost. Both
+            # take 0.1 ms, but with 1 ms a busy machine once stayed here for longer than that
+            interrupt_later(0.05)
         else:
             sys.__unraisablehook__(unraisable)
 
