@@ -60,6 +60,7 @@ def test_a_position_as_its_encoder_reads_it_asks_for_no_narrower_band(experiment
     assert narrower_band(Model.from_experiment(plain), prepare(plain)) is None
 
 
+@pytest.mark.slow
 def test_steps_that_the_experiment_states_are_no_reason_for_a_narrower_band(diagnosis):
     """Of an adequate model 0.4 % was left up to 31 Hz, 1.4 % up to 62 Hz: noise in both bands."""
     step, name = 1e-3, "device.position"

@@ -16,6 +16,9 @@ from teleopdesign.realise.kernel import execute
 from teleopdesign.realise.side_by_side import execute_many
 from teleopdesign.simulate import simulate_many
 
+# the simulator of a GPU is a process of its own, which takes 3 s
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def on_simulated_gpu(tmp_path_factory):

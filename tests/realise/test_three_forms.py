@@ -175,6 +175,7 @@ def test_kernel_and_python_control_agree_on_the_force_error(case):
     assert np.abs(error - kernel["E"].values).max() < 1e-4 * np.abs(error).max()
 
 
+@pytest.mark.slow
 def test_kernel_and_python_control_agree_in_closed_loop(hybrid):
     """Position loop, hybrid compensation, LuGre friction; 1e-4 of the peak force as above."""
     time = np.linspace(0, 0.05, 51)

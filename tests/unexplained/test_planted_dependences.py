@@ -154,12 +154,14 @@ def test_the_residual_in_another_unit_says_the_same(rows, floor_squares):
     assert [d.score for d in a] == pytest.approx([d.score for d in b], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_what_another_value_of_a_parameter_explains_is_not_missing(rows, floor_squares):
     step = 0.05 * rows.tangents / np.linalg.norm(rows.tangents, axis=0)
     moved = replace(rows, residual=rows.residual + step @ np.ones(rows.tangents.shape[1]))
     assert dependences(moved, floor_squares)[0] == ()
 
 
+@pytest.mark.slow
 def test_nothing_is_learnt_from_the_checked_rows(rows, floor_squares):
     """A force on the check record alone is no dependence that the fit record tells of."""
     here = planted(rows, lambda a: a.push * 4.0 * position(a) * (a.stretch.use == "check"))
