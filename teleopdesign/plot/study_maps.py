@@ -127,14 +127,23 @@ def _draw_mesh(
         (axis.xaxis, axis.get_xscale(), across),
         (axis.yaxis, axis.get_yscale(), up),
     ):
-        if scale == "linear":
-            _place_ticks(one, study.data[name].values)
+        values_of = study.data[name].values
+        places = _places(values_of)
+        if places is not values_of:
+            one.set_ticks(places, labels=[str(value) for value in values_of])
+        elif scale == "linear":
+            _place_ticks(one, places)
     return mesh
+
+
+def _places(values: np.ndarray) -> np.ndarray:
+    """Coordinates of the values (n,) on an axis: the numbers themselves; words stand 1 apart."""
+    return values if values.dtype.kind in "biuf" else np.arange(len(values), dtype=float)
 
 
 def _borders(values: np.ndarray, scale: str) -> np.ndarray:
     """Borders (n + 1,) of cells around values (n,), halfway to the next one on the axis' scale."""
-    at = np.log(values) if scale == "log" else np.asarray(values, dtype=float)
+    at = np.log(values) if scale == "log" else _places(values).astype(float)
     apart = np.diff(at) if len(at) > 1 else np.ones(1)
     middle = at[:-1] + 0.5 * apart[: len(at) - 1]
     borders = np.concatenate([[at[0] - 0.5 * apart[0]], middle, [at[-1] + 0.5 * apart[-1]]])
@@ -159,7 +168,7 @@ def _draw_marks(
 ) -> None:
     """Draw the hatched region and the line of onset over a map."""
     (across, up), proved, onset = along, over.proved, over.onset
-    x, y = study.data[across].values, study.data[up].values
+    x, y = (_places(study.data[name].values) for name in (across, up))
     box = axis.get_xlim(), axis.get_ylim()
     if callable(proved):
         limit = np.minimum(np.broadcast_to(proved(x), x.shape), box[1][1])

@@ -106,6 +106,17 @@ def test_each_point_lies_in_the_middle_of_its_cell_on_even_and_on_logarithmic_ax
     np.testing.assert_allclose(0.5 * (y[1:] + y[:-1]), gridded["y"].values, atol=1e-12)
 
 
+def test_words_on_an_axis_stand_beside_their_cells():
+    axes = {"law": ["dahl", "lugre", "relay"], "x": [1.0, 2.0, 4.0]}
+    dataset = td.study(lambda x, law: x - len(law), axes, measures=value, workers=1)
+    figure = dataset.plot.map(x="x", y="law", onset=-2.0)
+    figure.canvas.draw()
+    axis, corners = figure.axes[0], figure.axes[0].collections[0].get_coordinates()
+    assert [t.get_text() for t in axis.get_yticklabels()] == axes["law"]
+    middle = 0.5 * (corners[1:, 0, 1] + corners[:-1, 0, 1])
+    np.testing.assert_allclose(axis.get_yticks(), middle, atol=1e-12)
+
+
 def test_points_that_failed_stay_empty_in_a_map():
     dataset = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
     shown = dataset.plot.map(x="x", y="y").axes[0].collections[0].get_array()
