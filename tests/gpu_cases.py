@@ -10,18 +10,16 @@ import math
 import sys
 
 import numpy as np
+import side_by_side_cases
 from devices import DAHL, LINK, body
+from side_by_side_cases import RUBBING, plain_loop, push, with_a_computer, with_late_signals
 
-from teleopdesign.controllers import controller
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
+from teleopdesign.diagrams import teleoperator
 from teleopdesign.errors import ModelError
 from teleopdesign.realise import side_by_side
-from teleopdesign.realise._loop import module_source
-from teleopdesign.realise.program import CompiledLoop
 from teleopdesign.realise.side_by_side import KINDS, GridRun, Reduction
-from teleopdesign.simulate import Sampling, prepare, simulate_many
+from teleopdesign.simulate import prepare, simulate_many
 
-RUBBING = {"coulomb__level": 0.5, "presliding__stiffness": 2e4, "viscous__damping": 0.4}
 #: exit status where numba has no simulator of a GPU
 NO_SIMULATOR = 3
 VALUES = {
@@ -31,67 +29,22 @@ VALUES = {
 }
 
 
-def push(t):
-    return 3.0 * np.sin(300.0 * t + 0.3)
-
-
 def with_bristles():
     bodies = [body(m, **RUBBING) for m in (0.15, 0.2)]
     return teleoperator(*bodies, coupling=LINK, hand=body(0.1), master_cancellation=DAHL)
-
-
-def with_a_computer():
-    """Actuators that are late, a controller that delays, commands that act between two samples."""
-    bodies = [body(m, **RUBBING, actuation_delay__delay=2e-4) for m in (0.15, 0.2)]
-    coupling = controller("delay", {"time": 2.4e-3}).then(LINK)
-    diagram = teleoperator(
-        *bodies, coupling=coupling, hand=body(0.1, viscous__damping=2.0), master_cancellation=DAHL
-    )
-    setting = Sampling(encoder_step=1e-5, delay=3e-4, velocity="observer", velocity_bandwidth=60.0)
-    return prepare(diagram, duration=6e-3, inputs={"F_u": push}, computer=setting, jit=False)
-
-
-def with_late_signals():
-    """Two bodies on springs, each of which feels the other body late."""
-    bodies = (
-        Moving("M", body(0.1, **RUBBING), "x", "u", {"f": 1}, "f"),
-        Moving("N", body(0.3, **RUBBING), "y", "w", {"g": 1}, "g"),
-    )
-    diagram = Diagram(
-        "late",
-        (
-            *bodies,
-            Control("T", controller("delay", {"time": 0.934e-3}), "x", "x_late", analog=True),
-            Control("S", controller("delay", {"time": 0.77e-3}), "y", "y_late", analog=True),
-            Control("P", LINK, "d", "u", "x", analog=True),
-            Control("Q", LINK, "y_late", "v", "y", analog=True),
-        ),
-        (Junction("d", {"x_late": -1, "y": 1}), Junction("w", {"u": -1, "v": -1})),
-        {"f": "force", "g": "force"},
-        measured=("x", "y"),
-    )
-    inputs = {"f": push, "g": lambda t: 2.0 - 500.0 * t}
-    return prepare(diagram, duration=3e-3, inputs=inputs, computer="continuous", jit=False)
 
 
 SETUPS = {
     "bristles": lambda: prepare(
         with_bristles(), duration=3e-3, inputs={"F_u": push}, computer="continuous", jit=False
     ),
-    "computer": with_a_computer,
-    "late signals": with_late_signals,
+    "computer": lambda: with_a_computer(6e-3, velocity="observer", velocity_bandwidth=60.0),
+    "late signals": lambda: with_late_signals(3e-3, 0.934e-3),
 }
 
 
 def cases_of(setup):
-    """Parameters of three cases; the second has a bristle too stiff for the step."""
-    values, names = setup.diagram.values, setup.program.layout.parameters
-    one = np.array([values[n] for n in names])
-    cases = one * (1.0 + 0.1 * np.sin(np.arange(3)[:, None] + 3 * np.arange(len(one))))
-    late = [i for i, n in enumerate(names) if n.endswith((".delay", ".time"))]
-    cases[:, late] = one[late]
-    cases[1, [i for i, n in enumerate(names) if n.endswith("presliding.stiffness")]] *= 300.0
-    return cases
+    return side_by_side_cases.cases_of(setup, 3)
 
 
 def start_of(setup):
@@ -112,12 +65,6 @@ def together(setup, execute, cases=None):
     kept = range(len(setup.program.layout.columns))
     wanted = {"kept": kept, "reductions": reductions_of(setup), "begin": 1}
     return execute(setup.program, [run], start=start_of(setup), **wanted)[0]
-
-
-def plain_loop(laws, lanes):
-    module = {"__name__": "plain"}
-    exec(compile(module_source(laws, jit=False, lanes=lanes), "<generated>", "exec"), module)
-    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
 
 
 def main(path):

@@ -6,29 +6,16 @@ simulation has alone is held against mathematics in the tests of the integrator 
 
 import numpy as np
 import pytest
-from devices import DAHL, LINK, body
+from side_by_side_cases import cases_of, plain_loop, with_a_computer, with_late_signals
 
-from teleopdesign.controllers import controller
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
 from teleopdesign.realise import side_by_side
-from teleopdesign.realise._loop import module_source
 from teleopdesign.realise.kernel import execute, fastest_rate, slopes_at_rest
-from teleopdesign.realise.program import CompiledLoop
 from teleopdesign.realise.side_by_side import (
     GridRun,
     Reduction,
     execute_many,
     rates_of_cases,
 )
-from teleopdesign.simulate import Sampling, prepare
-
-RUBBING = {"coulomb__level": 0.5, "presliding__stiffness": 2e4, "viscous__damping": 0.4}
-
-
-def plain_loop(laws, lanes):
-    module = {"__name__": "plain"}
-    exec(compile(module_source(laws, jit=False, lanes=lanes), "<generated>", "exec"), module)
-    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
 
 
 @pytest.fixture(autouse=True)
@@ -38,64 +25,20 @@ def three_lanes_of_plain_python(monkeypatch):
     monkeypatch.setattr(side_by_side, "workers", lambda: 1)
 
 
-def push(t):
-    return 3.0 * np.sin(300.0 * t + 0.3)
-
-
-def with_a_computer(**sampling):
-    """Two devices with friction, actuators that are late, and a controller that delays."""
-    bodies = [body(m, **RUBBING, actuation_delay__delay=2e-4) for m in (0.15, 0.2)]
-    coupling = controller("delay", {"time": 2.4e-3}).then(LINK)
-    diagram = teleoperator(
-        *bodies, coupling=coupling, hand=body(0.1, viscous__damping=2.0), master_cancellation=DAHL
-    )
-    setting = Sampling(encoder_step=1e-5, delay=3e-4, **sampling)
-    return prepare(diagram, duration=8e-3, inputs={"F_u": push}, computer=setting, jit=False)
-
-
-def in_continuous_time():
-    """Two bodies with friction, joined by a spring that feels one of them late."""
-    bodies = (
-        Moving("M", body(0.1, **RUBBING), "x", "u", {"f": 1}, "f"),
-        Moving("N", body(0.3, **RUBBING), "y", "w", {"g": 1}, "g"),
-    )
-    diagram = Diagram(
-        "late",
-        (
-            *bodies,
-            Control("T", controller("delay", {"time": 1.234e-3}), "x", "x_late", analog=True),
-            Control("S", controller("delay", {"time": 0.77e-3}), "y", "y_late", analog=True),
-            Control("P", LINK, "d", "u", "x", analog=True),
-            Control("Q", LINK, "y_late", "v", "y", analog=True),
-        ),
-        (Junction("d", {"x_late": -1, "y": 1}), Junction("w", {"u": -1, "v": -1})),
-        {"f": "force", "g": "force"},
-        measured=("x", "y"),
-    )
-    inputs = {"f": push, "g": lambda t: 2.0 - 500.0 * t}
-    return prepare(diagram, duration=8e-3, inputs=inputs, computer="continuous", jit=False)
-
-
 SETUPS = {
-    "filtered": lambda: with_a_computer(velocity_bandwidth=60.0),
+    "filtered": lambda: with_a_computer(8e-3, velocity_bandwidth=60.0),
     "observer of order 2": lambda: with_a_computer(
-        velocity="observer", velocity_bandwidth=60.0, observer_order=2
+        8e-3, velocity="observer", velocity_bandwidth=60.0, observer_order=2
     ),
-    "observer of order 3": lambda: with_a_computer(velocity="observer", velocity_bandwidth=60.0),
-    "continuous": in_continuous_time,
+    "observer of order 3": lambda: with_a_computer(
+        8e-3, velocity="observer", velocity_bandwidth=60.0
+    ),
+    "continuous": lambda: with_late_signals(8e-3, 1.234e-3),
 }
 
 
 def four_cases(setup):
-    """Parameters of four cases that differ in each; one has a bristle of many steps a step."""
-    values, names = setup.diagram.values, setup.program.layout.parameters
-    one = np.array([values[n] for n in names])
-    cases = one * (1.0 + 0.1 * np.sin(np.arange(4)[:, None] + 3 * np.arange(len(one))))
-    late = [i for i, n in enumerate(names) if n.endswith((".delay", ".time"))]
-    cases[:, late] = one[late]
-    stiff = [i for i, n in enumerate(names) if n.endswith("presliding.stiffness")]
-    cases[1, stiff] *= 300.0
-    return cases
+    return cases_of(setup, 4)
 
 
 def alone(setup, timing, row, start=None, **more):
