@@ -94,7 +94,9 @@ def test_the_lead_is_the_papers_lead():
     assert sp.simplify(form - g * (S + z) / (S + p)) == 0
 
 
-@pytest.mark.parametrize(("share", "moves"), [(0.8, False), (2.0, True)])
+@pytest.mark.parametrize(
+    ("share", "moves"), [(0.8, False), pytest.param(2.0, True, marks=pytest.mark.slow)]
+)
 def test_the_rod_moves_only_if_the_loop_can_overcome_friction(share, moves):
     """abs(K(0)) A > F_C, or a slow reference does not move the rod at all."""
     diagram = world_haptics_2005(position_loop=True).without("H", "C")

@@ -88,6 +88,7 @@ def check_a_run(*, delay, share, seed, **arguments):
     return simulation
 
 
+@pytest.mark.slow
 def test_without_tanks_the_channel_gives_out_what_it_wants_and_with_them_the_reserve():
     """30 ms each way, a third of the samples lost: the bound of 40 mJ is used, not passed."""
     case = {"delay": 0.03, "share": 0.3, "seed": 0.3}

@@ -60,6 +60,7 @@ def test_quotient_and_remainder_make_up_the_whole(p, q):
     assert len(rest) < len(q)
 
 
+@pytest.mark.slow
 @given(rows.filter(bool), rows.filter(bool), rows.filter(bool))
 def test_what_two_products_share_divides_both(p, q, shared):
     common = greatest_common_divisor(multiply(p, shared), multiply(q, shared))
@@ -119,6 +120,7 @@ def test_decay_and_growth_are_those_of_the_roots(given_pairs):
     assert is_free_of_growth(p) == all(a <= 0 for a, _ in given_pairs)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(rows, rows.filter(bool))
 def test_positive_real_agrees_with_the_test_in_sympy(p, q):

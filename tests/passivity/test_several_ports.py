@@ -72,7 +72,7 @@ def random_matrix(rng, size, less):
     return z
 
 
-@pytest.mark.parametrize("size", [3, 4, pytest.param(5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("size", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (4, 5))])
 def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
     """Against eigenvalues of Z + Z^H at random points of the right half plane."""
     rng = np.random.default_rng(size)

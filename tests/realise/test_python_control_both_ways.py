@@ -428,7 +428,11 @@ def opened(diagram):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.slow) if n == "three axes" else n for n in COUPLED]
+    "name",
+    [
+        n if n in ("masses", "free masses") else pytest.param(n, marks=pytest.mark.slow)
+        for n in COUPLED
+    ],
 )
 def test_a_plant_of_several_axes_has_its_transfer_functions(name):
     """Matrices in, transfer functions out: 1e-6 of each entry, over four decades."""

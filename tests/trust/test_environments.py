@@ -167,16 +167,9 @@ def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
 
+@pytest.mark.slow
 @posix
-@pytest.mark.parametrize(
-    "damage",
-    [
-        "another source",
-        pytest.param("short code", marks=pytest.mark.slow),
-        pytest.param("a short index", marks=pytest.mark.slow),
-        pytest.param("a folder", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("damage", ["another source", "short code", "a short index", "a folder"])
 def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kernel, tmp_path):
     run_kernel(XDG_CACHE_HOME=str(tmp_path))
     folder = tmp_path / "teleopdesign" / "machine_code"
@@ -271,6 +264,7 @@ def test_a_closed_standard_output_is_no_error():
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.slow
 @posix
 def test_a_reader_that_never_reads_is_no_error():
     reading, writing = os.pipe()
