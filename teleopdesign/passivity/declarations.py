@@ -3,8 +3,8 @@
 Tests check the declarations of the effects and laws in the catalogue. A declaration in a user's
 file counts only where the equations show that it is true. They can show it for a force without
 states that opposes the velocity for all values of its parameters, for a force that depends on
-position alone, and for a law whose size interval arithmetic bounds. A declaration that nothing has
-checked leaves the claim open, and the claim names it.
+position alone, and for a law whose size algebra or interval arithmetic bounds. A declaration that
+nothing has checked leaves the claim open, and the claim names it.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from ..controllers import (
     Controller,
     Stage,
     broken_declarations,
+    exact_decimal,
+    make_exact,
     parameter_symbol,
 )
 from ..diagrams import Control, Diagram
@@ -29,6 +31,7 @@ from ..errors import ModelError
 from ..realise.damping_interval import least_damping
 from ..realise.extremes import least_value
 from ..realise.reach import Reach
+from .linear.polynomials import has_positive_root, is_non_negative
 
 _ANY = (-math.inf, math.inf)
 
@@ -111,13 +114,28 @@ def _stays_within(alone: Controller, bound: float, way: int) -> bool:
 
     way: 1 or -1, the sign of the velocity
     """
+    v = sp.Symbol("v", positive=True)
+    signals = {**SIGNALS, "velocity": way * v, "speed": v, "period": sp.S(0)}
+    force = alone.equation("law", signals).output
+    numbers = {parameter_symbol("law", n): x for n, x in alone.names().items()}
+    square = sp.cancel(
+        make_exact(force.subs({n: exact_decimal(x) for n, x in numbers.items()})) ** 2
+    )
+    if square.free_symbols <= {v} and square.is_rational_function(v):
+        return _is_below(square, exact_decimal(bound) ** 2, v)
     share = sp.Symbol("share", positive=True)
-    speed = share / (1 - share)  # every speed, and a range that ends
-    signals = {**SIGNALS, "velocity": way * speed, "speed": speed, "period": sp.S(0)}
-    force = sp.cancel(alone.equation("law", signals).output)
-    numbers = {parameter_symbol("law", n): (x, x) for n, x in alone.names().items()}
+    force = sp.cancel(force.subs(v, share / (1 - share)))  # every speed, and a range that ends
     ranges = {SIGNALS["input"]: _ANY, SIGNALS["travel_rate"]: _ANY, share: (0.0, 1.0)}
+    ranges |= {n: (x, x) for n, x in numbers.items()}
     try:
-        return min(least_value(sign * force, ranges | numbers).bound for sign in (1, -1)) >= -bound
+        return min(least_value(sign * force, ranges).bound for sign in (1, -1)) >= -bound
     except ModelError:
         return False
+
+
+def _is_below(square: sp.Expr, limit: sp.Expr, v: sp.Symbol) -> bool:
+    """Whether 0 <= square <= limit for all v >= 0, exactly; the square is rational in v."""
+    above, below = (sp.Poly(part, v) for part in sp.fraction(sp.together(square)))
+    if below.eval(0) == 0 or has_positive_root(below.sqf_part()):
+        return False  # it has a pole
+    return is_non_negative(above * below) and is_non_negative((limit * below - above) * below)

@@ -44,7 +44,7 @@ EFFECT = Effect(
 )
 '''
 LAW_FILE = '''"""A law of one's own."""
-from sympy import Abs
+from sympy import Abs, sqrt, tanh
 from teleopdesign.controllers import ControlLaw, ControllerState
 from teleopdesign.effects import Parameter, delayed
 
@@ -201,6 +201,12 @@ BOUNDS = {
     "without end": ("p.level * now.velocity / p.second", False),
     "of its input": ("p.level * now.input", False),
     "half of it": ("p.level / 2 * now.velocity / (p.second + now.speed)", True),
+    "all of it at last": ("p.level * now.velocity / (p.second + now.speed)", True),
+    "a round edge": ("p.level * now.velocity / sqrt(p.second**2 + now.speed**2)", True),
+    "a hair above": ("1.0001 * p.level * now.velocity / sqrt(p.second**2 + now.speed**2)", False),
+    "a pole": ("p.level * now.velocity * p.second / (p.second - now.speed)**2", False),
+    "imaginary at first": ("p.level / 2 * sqrt((now.speed - p.second) / now.speed)", False),
+    "a hyperbolic tangent": ("p.level * tanh(now.velocity / p.second)", True),
 }
 
 
@@ -223,7 +229,7 @@ def test_a_law_stays_within_its_bound_only_where_it_does_so_both_ways(tmp_path, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("law", "kept"), BOUNDS.values(), ids=BOUNDS)
-def test_a_bound_counts_where_intervals_show_it(tmp_path, law, kept):
+def test_a_claim_rests_on_a_bound_only_where_it_is_kept(tmp_path, law, kept):
     mine = load_controller(law_file(tmp_path, law, 'bound="level"'))
     made = controller(mine, {"level": 0.4, "second": 0.01})
     assert keeps_its_bound(made.stages[0]) is kept
