@@ -68,16 +68,20 @@ def compensation_claims(
     compensator: Compensator,
     *,
     computer: Sampling | None = None,
-    rng: np.random.Generator,
+    rng: np.random.Generator | int = 0,
     tries: int = 15,
 ) -> list[TopicClaim]:
     """Claims about friction compensation, for all friction levels in the 95 % interval at once.
 
     computer: period, delay (whole periods) and encoder of the compensator; None: continuous time
-    rng: draws the motions of a search in simulation;  tries: number of these motions
+    rng: draws the motions of a search in simulation, or the seed of the generator that does
+    tries: number of these motions
     returns: claims by theorems, then one claim by the search
     """
-    question = Question(device, compensator.stage, computer=computer)
+    rng, question = (
+        np.random.default_rng(rng),
+        Question(device, compensator.stage, computer=computer),
+    )
     return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
 
 

@@ -74,7 +74,7 @@ class DiagramClaims(ByValue):
 
 
 def diagram_claims(
-    diagram: Diagram, *, rng: np.random.Generator, search: Search | None = None
+    diagram: Diagram, *, rng: np.random.Generator | int = 0, search: Search | None = None
 ) -> DiagramClaims:
     """Claims about the ports of a diagram, with all other outside signals zero.
 
@@ -82,10 +82,11 @@ def diagram_claims(
     search moves one port and keeps the hand or environment at the other ports. It runs where no
     claim decides about all ports, and where `search` states a sampling for controllers.
 
-    rng: draws the motions of the search;  search: its settings
+    rng: draws the motions of the search, or the seed of the generator that draws them
+    search: its settings
     raises ModelError: a block without values, or no port
     """
-    search = search or Search()
+    search, rng = search or Search(), np.random.default_rng(rng)
     whole = drop_absent_effects(diagram)
     alone = without_holding(whole)
     all_ports, bent = ports(alone), nonlinear_parts(alone)

@@ -183,7 +183,7 @@ def search_counterexample(
     *,
     stroke: float,
     speed: float,
-    rng: np.random.Generator,
+    rng: np.random.Generator | int = 0,
     port: tuple[str, str] = ("L", "R_V"),
     computer: Computer = "continuous",
     give: float = 1e-7,
@@ -192,7 +192,8 @@ def search_counterexample(
     """Does any motion within stroke and speed, from rest back to its start, take energy out?
 
     stroke: largest position, m or rad;  speed: largest speed, m/s or rad/s
-    port, computer: as in `released_energy`;  tries: number of motions;  rng: draws the motions
+    port, computer: as in `released_energy`;  tries: number of motions
+    rng: draws the motions, or the seed of the generator that does
     give: m or rad, of ideal Coulomb friction. The shortest motions are a thousandth of `stroke`:
         choose it far below this, and below any bristle length
     returns: refuted by a motion that was confirmed with half the step and a tenth of `give`;
@@ -205,6 +206,7 @@ def search_counterexample(
         raise ModelError(
             f"search_counterexample: expected stroke and speed > 0, found {stroke}, {speed}"
         )
+    rng = np.random.default_rng(rng)
     length, rate = (unit_of(q, first_axis(diagram)) for q in ("position", "velocity"))
     statement = (
         f"the port {port[0]}, {port[1]} of the {diagram.name} releases no energy over any motion "

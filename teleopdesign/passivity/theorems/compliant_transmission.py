@@ -101,7 +101,7 @@ def free_motion(
     transmission_stiffness: float,
     compensator_level: float,
     compensator_stiffness: float,
-    rng: np.random.Generator,
+    rng: np.random.Generator | int = 0,
     paths: int = 2000,
 ) -> Claim:
     """Does slow free motion of the joint never release energy?
@@ -114,11 +114,11 @@ def free_motion(
 
     motor_level, link_level: f_1, f_2, N;  transmission_stiffness: k, N/m
     compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
-    rng: draws the random paths;  paths: number of random paths
+    rng: draws the random paths, or the seed of the generator that does;  paths: their number
     returns: refuted by a closed path, or evidence, because the searched paths are not all motions
     raises ModelError: an argument outside of its hypothesis
     """
-    helps = Dahl(compensator_level, compensator_stiffness)
+    rng, helps = np.random.default_rng(rng), Dahl(compensator_level, compensator_stiffness)
     against: list[Element] = [Coulomb(motor_level), Spring(link_level, transmission_stiffness)]
     statement = (
         f"slow free motion of a joint (motor {motor_level:g} N, link {link_level:g} N behind "
