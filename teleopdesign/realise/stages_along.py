@@ -6,7 +6,7 @@ averages over parts of the row, because edges of the held command then lie betwe
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -108,26 +108,50 @@ def _stage(effect: Effect, along: Along, parts: int) -> ActuationStage:
 
 
 def _shift(along: Along, delay: sp.Expr) -> Traced:
-    """The held command delayed by `delay`, averaged over each hold: exact, linear between rows."""
+    """The held command delayed by `delay`, averaged over each hold.
+
+    Between holds by the cubic through four of them. The line through two would weaken a wave of
+    angular frequency w by up to (w h)^2/8, where h is the length of a hold; a search would then
+    prefer delays of whole holds.
+    """
     signal, step = along.signals[_COMMAND], along.step
-    tau = float(delay.subs(along.values))
-    whole, part = divmod(max(tau, 0.0) / step, 1.0)
-    late, later = int(whole), int(whole) + 1
-    shifted = filter_traced(
-        lambda y: (1 - part) * _delay_samples(y, late) + part * _delay_samples(y, later), signal
-    )
+    whole, part = divmod(max(float(delay.subs(along.values)), 0.0) / step, 1.0)
+    weights, slopes = _cubic(part)
+
+    def mix(y: Array, factors: Sequence[float]) -> Array:
+        holds = (f * _delay_samples(y, int(whole) + k - 1) for k, f in enumerate(factors) if f)
+        return sum(holds, np.zeros_like(y))
+
+    shifted = filter_traced(lambda y: mix(y, weights), signal)
     tangent = shifted.tangent.copy()
-    slope = (_delay_samples(signal.value, later) - _delay_samples(signal.value, late)) / step
+    slope = mix(signal.value, slopes) / step
     by_delay = [i for i, c in enumerate(along.columns) if isinstance(c, sp.Symbol) and delay.has(c)]
     for i in by_delay:
         tangent[i] += slope * float(sp.diff(delay, along.columns[i]).subs(along.values))
     return Traced(shifted.value, tangent, joined_rows(shifted, more=by_delay))
 
 
+def _cubic(p: float) -> tuple[list[float], list[float]]:
+    """Weights of four samples whose cubic is read `p` (0 to 1) after the second, and their slopes.
+
+    The samples are a hold less, none, one and two holds late.
+    """
+    weights = [
+        -p * (p - 1.0) * (p - 2.0) / 6.0,
+        (p + 1.0) * (p - 1.0) * (p - 2.0) / 2.0,
+        -(p + 1.0) * p * (p - 2.0) / 2.0,
+        (p + 1.0) * p * (p - 1.0) / 6.0,
+    ]
+    slopes = [
+        -(3.0 * p**2 - 6.0 * p + 2.0) / 6.0,
+        (3.0 * p**2 - 4.0 * p - 1.0) / 2.0,
+        -(3.0 * p**2 - 2.0 * p - 2.0) / 2.0,
+        (3.0 * p**2 - 1.0) / 6.0,
+    ]
+    return weights, slopes
+
+
 def _delay_samples(y: Array, steps: int) -> Array:
-    """Signals (..., n) delayed by `steps` samples; before that, they have their first value."""
-    held = min(steps, y.shape[-1])
-    shifted = np.empty_like(y)
-    shifted[..., :held] = y[..., :1]
-    shifted[..., held:] = y[..., : y.shape[-1] - held]
-    return shifted
+    """Signals (..., n) delayed by `steps` samples (-1: one early); the ends keep their value."""
+    last = y.shape[-1] - 1
+    return y[..., np.clip(np.arange(last + 1) - steps, 0, last)]

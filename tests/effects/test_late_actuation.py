@@ -40,3 +40,15 @@ def test_what_acts_is_the_command_through_its_transfer_function(effect, time):
     expected = 1 / (1 + s * tau) if effect == "actuator_lag" else np.exp(-s * tau)
     # averages over a quarter of a row: (omega T/4)^2/8 = 1e-3; over whole rows it is 1.5e-2
     assert abs(response(body, motion, frequency) - expected) < 1.5e-3
+
+
+@pytest.mark.parametrize("quarters", [0.0, 0.1, 0.5, 1.0, 1.5, 12.3])
+def test_a_delay_amid_a_hold_weakens_no_wave(quarters):
+    experiment = td.load_experiment(td.example("rod"))
+    (motion,) = [s.motion for s in prepare(experiment, bandwidth=60.0).of("fit")]
+    tau = quarters * motion.sample_time / 4
+    body = td.Model.from_experiment(experiment).body("device")
+    body = body.with_effect(td.EFFECTS["actuation_delay"], {"delay": tau})
+    for frequency in (20.0, 55.0):
+        acting = response(body, motion, frequency)
+        assert abs(acting - np.exp(-2j * np.pi * frequency * tau)) < 1e-5
