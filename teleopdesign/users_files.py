@@ -7,12 +7,13 @@ pickles is the digest of these bytes. Nothing is written beside the file.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, MutableMapping
+from collections.abc import Callable, Container, Iterator, MutableMapping
+from contextlib import contextmanager
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import TypeVar
 
-from .errors import ModelError, TeleopDesignError
+from .errors import ModelError, TeleopDesignError, did_you_mean
 from .recipes import remember
 
 Thing = TypeVar("Thing")
@@ -83,3 +84,28 @@ def run(content: bytes, path: Path, package: str) -> ModuleType:
     except (Exception, SystemExit) as error:  # any failure of a user's file is reported: its kind
         raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
     return module
+
+
+@contextmanager
+def laws_of(path: Path, parameters: Container[str]) -> Iterator[None]:
+    """Turn any failure of a user's law into a ModelError that names the file.
+
+    parameters: names of the parameters `p`;  the other signals are those of `now`
+    """
+    try:
+        yield
+    except TeleopDesignError:
+        raise
+    except (AttributeError, TypeError, ValueError) as error:  # SympifyError is a ValueError
+        raise ModelError(f"{path}: law: {_explain(error, parameters)}") from error
+    except (Exception, SystemExit) as error:  # a law is the user's Python too
+        raise ModelError(f"{path}: law: {type(error).__name__}: {error}") from error
+
+
+def _explain(error: Exception, parameters: Container[str]) -> str:
+    """The text of an error in a law; a misspelt signal or parameter is told by its name."""
+    if not isinstance(error, AttributeError) or not isinstance(error.obj, SimpleNamespace):
+        return str(error)
+    known = vars(error.obj)
+    holder = "p" if all(name in parameters for name in known) else "now"
+    return f'{holder} has no "{error.name}"{did_you_mean(error.name or "", known)}'

@@ -35,7 +35,7 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
     from ..passivity.diagram_claims import Search, diagram_claims
 
     search = Search(options.stroke, options.speed, computer=computer or "continuous")
-    diagram = diagram_of(str(options.source), options.effect)
+    diagram = diagram_of(str(options.source), options.effect, options.law)
     claims = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
     print(_text(claims))
     if options.json is not None:

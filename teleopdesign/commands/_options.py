@@ -31,6 +31,18 @@ def add_effect_files(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_law_files(parser: argparse.ArgumentParser) -> None:
+    """Argument: the user's files of control laws."""
+    parser.add_argument(
+        "--law",
+        action="append",
+        default=[],
+        type=Path,
+        metavar="FILE",
+        help="file that defines a further control law for the diagram (may be repeated)",
+    )
+
+
 def check_output(path: Path, endings: tuple[str, ...]) -> None:
     """Raise ExperimentError before the work, not after it, if a result cannot be written.
 

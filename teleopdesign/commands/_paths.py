@@ -17,7 +17,7 @@ from ..errors import ExperimentError
 from ..whole_files import read_whole
 
 #: options that name what a command reads, and what it writes: a file or a folder
-INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect")
+INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law")
 OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
 
 

@@ -11,7 +11,7 @@ from ..errors import ModelError, did_you_mean
 from ..plain_data import write_json
 from ._arms import add_body
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, check_output, say_written
+from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
 
 if TYPE_CHECKING:
     from ..derive import Transfers
@@ -53,6 +53,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "constants (default: 0)",
     )
     add_effect_files(parser)
+    add_law_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -84,23 +85,26 @@ def _diagram(options: argparse.Namespace) -> Diagram:
     for option in ("answer", "body", "pose"):
         if getattr(options, option):
             raise ModelError(f"--{option}: found beside a diagram, which has its own blocks")
-    return diagram_of(options.diagram, options.effect)
+    return diagram_of(options.diagram, options.effect, options.law)
 
 
-def diagram_of(name: str, effects: Sequence[Path] = ()) -> Diagram:
+def diagram_of(name: str, effects: Sequence[Path] = (), laws: Sequence[Path] = ()) -> Diagram:
     """The shipped diagram of that name, or the diagram in the file of that name.
 
-    effects: the user's effect files raises ModelError, ExperimentError: neither exists, or the file
-        cannot be read
+    effects, laws: the user's files of effects and of control laws
+    raises ModelError, ExperimentError: neither exists, or the file cannot be read
     """
+    from .. import controllers
+    from .. import effects as all_effects
     from ..diagrams import SHIPPED, load_shipped, read_diagram
-    from ..effects import catalogue
 
     if name in SHIPPED:
         return load_shipped(name)
     path = Path(name)
     if path.suffix == ".toml" or path.exists():
-        return read_diagram(path, effects=catalogue(effects))
+        return read_diagram(
+            path, effects=all_effects.catalogue(effects), laws=controllers.catalogue(laws)
+        )
     raise ModelError(
         f'found "{name}", expected a file NAME.toml or one of {", ".join(SHIPPED)}'
         f"{did_you_mean(name, SHIPPED)}"

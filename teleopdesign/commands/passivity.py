@@ -17,7 +17,7 @@ from ._arms import add_body
 from ._claims import WIDTH, claim_data, claim_lines
 from ._diagnosis import body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
-from ._options import add_answer, add_effect_files, check_output, say_written
+from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -71,6 +71,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="only check the certificates in a file that --json wrote",
     )
     add_effect_files(parser)
+    add_law_files(parser)
 
 
 def _add_compensator(parser: argparse.ArgumentParser) -> None:

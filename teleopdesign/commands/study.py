@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ExperimentError, did_you_mean
 from ..whole_files import read_whole
 from . import STOPPED
-from ._options import add_effect_files, check_output, count_argument, say
+from ._options import add_effect_files, add_law_files, check_output, count_argument, say
 from ._progress import PointReporter
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--figure", type=Path, metavar="F", help="write the figure (.pdf, .svg, .png)"
     )
     add_effect_files(parser)
+    add_law_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -91,10 +92,14 @@ def run(options: argparse.Namespace) -> int:
 def _arguments(options: argparse.Namespace) -> dict[str, Any]:
     path: Path = options.file
     if path.suffix == ".toml":
-        from ..effects import catalogue
+        from .. import controllers, effects
         from ..studies import read_study_file
 
-        return read_study_file(path, effects=catalogue(options.effect))
+        return read_study_file(
+            path,
+            effects=effects.catalogue(options.effect),
+            laws=controllers.catalogue(options.law),
+        )
     if path.suffix != ".py":
         raise ExperimentError(f"{path}: found {path.suffix!r}, expected .toml or .py")
     return _run_file(path)

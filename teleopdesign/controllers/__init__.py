@@ -6,7 +6,7 @@ controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": 0.015})
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -43,6 +43,7 @@ __all__ = [
     "exact_decimal",
     "broken_declarations",
     "calls_in",
+    "catalogue",
     "controller",
     "from_control",
     "make_exact",
@@ -73,6 +74,19 @@ def _law(name: str) -> ControlLaw:
 
 
 CONTROLLERS: Mapping[str, ControlLaw] = _laws()
+
+
+def catalogue(extra: Iterable[str | Path | ControlLaw] = ()) -> Mapping[str, ControlLaw]:
+    """Control laws by name: those of the package, and files or laws of the user.
+
+    extra: paths of files, or laws that `load_controller` returned; of two laws with one name, the
+        user's is used
+    raises ModelError: as `load_controller`; a law without a name
+    """
+    users = [law if isinstance(law, ControlLaw) else load_controller(law) for law in extra]
+    if any(not law.name for law in users):
+        raise ModelError("catalogue: found a law without a name: give it one, ControlLaw(name=...)")
+    return Catalogue({**CONTROLLERS, **{law.name: law for law in users}}, "control law")
 
 
 def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controller:

@@ -23,32 +23,47 @@ def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
     """Declarations that are wrong for a law in continuous time, in words; () if there are none."""
     if law.system is not None or law.response is not None or law.shift is not None:
         return ()  # no law that is written down: claims leave these out
-    values = {n: p.lower if p.lower > 0 else 1.0 for n, p in law.parameters.items()}
-    stage = Stage(law, values)
-    signals = {**SIGNALS, "period": sp.S(0)}
-    made = Controller((stage,)).equation("law", signals)
+    stage, made = _as_written(law, sp.S(0))
     symbols = {n: parameter_symbol("law", f"{stage.name}.{n}") for n in law.parameters}
     checks = {
-        "dead_time, for its output is not its input of that time earlier": (
+        "dead_time, but its output is not its input of that time earlier": (
             bool(law.dead_time) and made.output != _delay_factor(law, symbols)
         ),
-        "linear = True, for it is not linear in its input, velocity and states": (
+        "linear = True, but is not linear in its input, velocity and states": (
             law.linear and not _keeps_linear(made)
         ),
-        "a transfer function, for its states have another one": (
+        "a transfer function, but its states have another one": (
             law.transfer is not None and not law.dead_time and not _keeps_transfer(stage, made)
         ),
-        "smoothing, for it is not bound v/(smoothing + abs(v))": (
+        "smoothing, but is not bound v/(smoothing + abs(v))": (
             bool(law.smoothing) and not _keeps_smoothing(law, made.output, symbols)
         ),
-        "bristle_stiffness, for its law is not that of `dahl`": (
+        "bristle_stiffness, but its law is not that of `dahl`": (
             bool(law.bristle_stiffness) and not _keeps_bristle(law, made, symbols)
         ),
-        "filter_bandwidth, for it is no low-pass of first order": (
+        "filter_bandwidth, but is no low-pass of first order": (
             bool(law.filter_bandwidth) and not _keeps_bandwidth(law, made, symbols)
         ),
     }
     return tuple(words for words, is_broken in checks.items() if is_broken)
+
+
+def unknown_symbols(law: ControlLaw) -> list[sp.Symbol]:
+    """Symbols in the output and the rates of a law that are no signal, state or parameter of it."""
+    if law.system is not None or law.response is not None:
+        return []  # no law that is written down
+    stage, made = _as_written(law, SIGNALS["period"])
+    names = (parameter_symbol("law", f"{stage.name}.{n}") for n in law.parameters)
+    known = {*SIGNALS.values(), *made.rates, *names}
+    used = set[sp.Symbol]().union(*(e.free_symbols for e in (made.output, *made.rates.values())))
+    return sorted(used - known, key=str)
+
+
+def _as_written(law: ControlLaw, period: sp.Expr) -> tuple[Stage, ControllerEquation]:
+    """A stage of the law with any values, and its equations in the block "law"."""
+    values = {n: p.lower if p.lower > 0 else 1.0 for n, p in law.parameters.items()}
+    stage = Stage(law, values)
+    return stage, Controller((stage,)).equation("law", {**SIGNALS, "period": period})
 
 
 def _delay_factor(law: ControlLaw, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:

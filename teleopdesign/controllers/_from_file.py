@@ -8,9 +8,9 @@ from weakref import WeakValueDictionary
 
 from ..errors import ModelError
 from ..names import check_name
-from ..users_files import checked_path, load_once, run
+from ..users_files import checked_path, laws_of, load_once, run
 from ._controller import ControlLaw
-from ._declarations import broken_declarations
+from ._declarations import broken_declarations, unknown_symbols
 
 _LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary()
 
@@ -44,9 +44,15 @@ def _check_law(module: ModuleType, path: Path) -> ControlLaw:
     law = getattr(module, "CONTROLLER", None)
     if not isinstance(law, ControlLaw):
         raise ModelError(f"{path}: found no CONTROLLER = ControlLaw(...)")
-    for name in law.parameters:
+    for name in (*law.parameters, *law.states):
         check_name(name, where=f"{path}")
+    if both := set(law.parameters) & set(law.states):
+        raise ModelError(f'{path}: "{min(both)}" is a parameter and a state: call one otherwise')
     law = law.named(path.stem, module.__doc__ or "")
-    if broken := broken_declarations(law):
+    with laws_of(path, law.parameters):
+        if strange := unknown_symbols(law):
+            raise ModelError(f"{path}: law uses {', '.join(map(str, strange))}")
+        broken = broken_declarations(law)
+    if broken:
         raise ModelError(f"{path}: declares {broken[0]}")
     return law

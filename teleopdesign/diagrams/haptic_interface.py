@@ -111,12 +111,16 @@ def _check_position_loop(law: Controller | AnyBlock) -> None:
 def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
     """The diagram without compensation, with cancellation, with force feedback, and with both.
 
-    hybrid: a haptic interface with a cancellation C and a force feedback H
-    returns: case ("none", "MBC", "FF", "hybrid") -> diagram, as in the figures of the papers
+    hybrid: a haptic interface with a cancellation C, a force feedback H, or both
+    returns: case ("none", "MBC", "FF", "hybrid") -> diagram, as in the figures of the papers;
+        without C or H, only the cases that remain
     """
-    return {
+    cases = {
         "none": hybrid.without("C", "H"),
         "MBC": hybrid.without("H"),
         "FF": hybrid.without("C"),
         "hybrid": hybrid,
     }
+    present = {block.name for block in hybrid.blocks} & {"C", "H"}
+    needed = {"none": set(), "MBC": {"C"}, "FF": {"H"}, "hybrid": {"C", "H"}}
+    return {case: diagram for case, diagram in cases.items() if needed[case] <= present}

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
-from ..controllers import CONTROLLERS, Controller, Stage
+from ..controllers import CONTROLLERS, ControlLaw, Controller, Stage
 from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..measurement.description import BODY, body_from
@@ -38,25 +38,40 @@ WIRING = {
 }
 
 
-def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> Diagram:
+@dataclass(frozen=True)
+class _Known:
+    """What a file may name: effects of bodies and control laws."""
+
+    effects: Mapping[str, Effect]
+    laws: Mapping[str, ControlLaw]
+
+
+def read_diagram(
+    path: str | Path,
+    *,
+    effects: Mapping[str, Effect] = EFFECTS,
+    laws: Mapping[str, ControlLaw] = CONTROLLERS,
+) -> Diagram:
     """The diagram that a file describes; the page "Diagrams" of the documentation has the format.
 
     effects: known effects by name, for users who add effects (`effects.catalogue`); the effects of
         blocks, such as "environment", are known as well
+    laws: known control laws by name, for users who add laws (`controllers.catalogue`). A file names
+        laws and never holds code
     raises ExperimentError: the file cannot be read, or an entry has no meaning
     """
     path = Path(path)
-    root, effects = read_toml(path, path.name), with_block_effects(effects)
+    root, known = read_toml(path, path.name), _Known(with_block_effects(effects), laws)
     head = root.table("diagram")
     try:
         if "kind" in head.content:
-            return _read_short_form(root, head, effects)
-        return _read_free_diagram(root, head, effects)
+            return _read_short_form(root, head, known)
+        return _read_free_diagram(root, head, known)
     except ModelError as error:
         raise ExperimentError(f"{path.name}: {error}") from error
 
 
-def _read_short_form(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
+def _read_short_form(root: Table, head: Table, known: _Known) -> Diagram:
     """Read a diagram whose wiring the package knows: the file states only blocks."""
     root.allow(("diagram", "blocks"))
     head.allow(("kind", "name"))
@@ -69,16 +84,16 @@ def _read_short_form(root: Table, head: Table, effects: Mapping[str, Effect]) ->
         table = tables.table(name)
         if name in form.bodies:
             table.allow(BODY)
-            blocks[name] = _body(table, effects)
+            blocks[name] = _body(table, known)
             continue
         table.allow((*LAW, "analog") if form.has_analog else LAW)
-        blocks[name] = _controller(table)
+        blocks[name] = _controller(table, known)
         analog += [name] if table.flag("analog", False) else []
     diagram = form.wire(blocks, tuple(analog))
     return replace(diagram, name=_string(head, "name")) if "name" in head.content else diagram
 
 
-def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
+def _read_free_diagram(root: Table, head: Table, known: _Known) -> Diagram:
     """Read a diagram with all its blocks, junctions and outside signals."""
     root.allow(("diagram", "outside", "blocks", "kinematics", "junctions", "pose", "texts"))
     head.allow(("name", "measured", "kind"))
@@ -89,7 +104,7 @@ def _read_free_diagram(root: Table, head: Table, effects: Mapping[str, Effect]) 
         _refuse_ambiguous_pi(table, tables)
     return Diagram(
         _string(head, "name"),
-        tuple(_block(name, tables.table(name), effects) for name in tables.content),
+        tuple(_block(name, tables.table(name), known) for name in tables.content),
         tuple(Junction(name, _terms(junctions, name)) for name in junctions.content),
         {name: _one_of(outside, name, QUANTITIES) for name in outside.content},
         tuple(_strings(head, "measured")),
@@ -115,18 +130,19 @@ def _motions(block: Table) -> list[object]:
     return [block.content.get("motion"), *(motions if isinstance(motions, list) else [])]
 
 
-def _block(name: str, table: Table, effects: Mapping[str, Effect]) -> Block:
+def _block(name: str, table: Table, known: _Known) -> Block:
     kind = _one_of(table, "kind", WIRING)
     content = {"control": LAW, "linked": MATRICES}.get(kind, BODY)
     table.allow(("kind", *WIRING[kind], *content))
     if kind == "control":
         source, made = (_string(table, key) for key in ("input", "output"))
         along = _string(table, "motion") if "motion" in table.content else ""
-        return Control(name, _controller(table), source, made, along, table.flag("analog", False))
+        law = _controller(table, known)
+        return Control(name, law, source, made, along, table.flag("analog", False))
     if kind == "linked":
         motions, forces = (tuple(_strings(table, key)) for key in ("motions", "forces"))
         return Linked(name, read_matrices(table, len(motions)), motions, forces, _sign(table))
-    motion, body = _string(table, "motion"), _body(table, effects)
+    motion, body = _string(table, "motion"), _body(table, known)
     if kind == "attached":
         return Attached(name, body, motion, _string(table, "force"), _sign(table))
     command, driver, loads = (
@@ -171,17 +187,17 @@ def _kinematics(table: Table, name: str) -> Kinematics:
     return Kinematics(name, where, _one_of(entry, "axis", AXES))
 
 
-def _body(table: Table, effects: Mapping[str, Effect]) -> Body | AnyBlock:
+def _body(table: Table, known: _Known) -> Body | AnyBlock:
     if not any(key in table.content for key in BODY):
         return ANY
-    return body_of(body_from(table.key, table), effects, complete=True)
+    return body_of(body_from(table.key, table), known.effects, complete=True)
 
 
-def _controller(table: Table) -> Controller | AnyBlock:
+def _controller(table: Table, known: _Known) -> Controller | AnyBlock:
     if not any(key in table.content for key in LAW):
         return ANY
     if "series" not in table.content:
-        return Controller((_stage(table),))
+        return Controller((_stage(table, known),))
     for key in ("law", "parameters"):
         if key in table.content:
             raise ExperimentError(f"{table.where(key)}: found beside series, expected one of them")
@@ -191,13 +207,14 @@ def _controller(table: Table) -> Controller | AnyBlock:
     if not rows:
         raise ExperimentError(f"{table.where('series')}: found no law, expected one or more")
     try:
-        return Controller(tuple(_stage(replace(r, key=f"{table.key}.{r.key}")) for r in rows))
+        named = (replace(row, key=f"{table.key}.{row.key}") for row in rows)
+        return Controller(tuple(_stage(row, known) for row in named))
     except ModelError as error:
         raise ExperimentError(f"{table.where('series')}: {error}") from error
 
 
-def _stage(table: Table) -> Stage:
-    law = CONTROLLERS[_one_of(table, "law", CONTROLLERS)]
+def _stage(table: Table, known: _Known) -> Stage:
+    law = known.laws[_one_of(table, "law", known.laws)]
     parameters = table.table("parameters")
     parameters.allow(law.parameters)
     values = {name: parameters.number(name) for name in law.parameters}

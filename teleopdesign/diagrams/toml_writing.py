@@ -10,7 +10,7 @@ from typing import Any
 import sympy as sp
 
 from ..blocks import Body, Value, with_block_effects
-from ..controllers import CONTROLLERS, Controller
+from ..controllers import CONTROLLERS, ControlLaw, Controller
 from ..effects import EFFECTS, Effect
 from ..errors import ModelError
 from ..measurement.toml_text import inline_text, key_text, string_text
@@ -24,21 +24,31 @@ from .wiring import Diagram
 
 
 def write_diagram(
-    diagram: Diagram, path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
+    diagram: Diagram,
+    path: str | Path,
+    *,
+    effects: Mapping[str, Effect] = EFFECTS,
+    laws: Mapping[str, ControlLaw] = CONTROLLERS,
 ) -> None:
     """Write a diagram as a TOML file, in SI units.
 
     If the package knows the wiring, the file states only the blocks.
 
-    effects: effects that the reader of the file will know, as in `read_diagram`
-    raises ModelError: an effect of a body differs from the known one of that name, a law is not
-        from the package, an expression has functions that a file must not have
+    effects, laws: effects and control laws that the reader of the file will know, as in
+        `read_diagram`
+    raises ModelError: an effect of a body or a law differs from the known one of that name, an
+        expression has functions that a file must not have
     """
-    text = diagram_text(diagram, effects=effects)
+    text = diagram_text(diagram, effects=effects, laws=laws)
     write_text(path, text)
 
 
-def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -> str:
+def diagram_text(
+    diagram: Diagram,
+    *,
+    effects: Mapping[str, Effect] = EFFECTS,
+    laws: Mapping[str, ControlLaw] = CONTROLLERS,
+) -> str:
     """The text of the file that `write_diagram` writes."""
     kind, known = kind_of(diagram), with_block_effects(effects)
     lines = ["[diagram]"]
@@ -53,7 +63,7 @@ def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -
         lines += [] if kind is not None else _wiring_lines(block)
         if isinstance(block, Control):
             lines += ["analog = true"] if block.analog else []
-            lines += _laws(block)
+            lines += _laws(block, laws)
         elif not isinstance(block, Linked):
             lines += _body(block.name, block.body, known)
     if kind is None:
@@ -128,15 +138,16 @@ def body_lines(table: str, body: Body) -> list[str]:
     return lines
 
 
-def _laws(block: Control) -> Iterator[str]:
+def _laws(block: Control, known: Mapping[str, ControlLaw]) -> Iterator[str]:
     if not isinstance(block.controller, Controller):
         return
     stages = block.controller.stages
     for stage in stages:
-        if CONTROLLERS.get(stage.law.name) is not stage.law:
+        if known.get(stage.law.name) is not stage.law:
             raise ModelError(
-                f'{block.name}: law "{stage.law.name}" is none of the package, such as one from '
-                "python-control: it has no form in a file"
+                f'{block.name}: law "{stage.law.name}" is none of the package: name your file to '
+                'writer and reader, laws=controllers.catalogue(["my_law.py"]); a system of '
+                "python-control has no form in a file"
             )
         if len(stages) > 1:
             yield f"[[blocks.{key_text(block.name)}.series]]"

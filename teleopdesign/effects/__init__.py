@@ -13,17 +13,15 @@ import importlib
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 from weakref import WeakValueDictionary
 
-from sympy import SympifyError
-
 from ..arguments import check_arguments
-from ..errors import ModelError, TeleopDesignError, did_you_mean
+from ..errors import ModelError, did_you_mean
 from ..frozen import Catalogue
 from ..names import check_name
 from ..recipes import remember
-from ..users_files import checked_path, load_once, run
+from ..users_files import checked_path, laws_of, load_once, run
 from ._effect import (
     CONTACT_ROLES,
     FURTHER,
@@ -146,7 +144,7 @@ def _check_effect(module: ModuleType, path: Path) -> Effect:
         if name not in effect.parameters:
             raise ModelError(f'{path}: absent: no parameter "{name}"')
     effect = effect.named(path.stem, module.__doc__ or "")
-    try:
+    with laws_of(path, effect.parameters):
         allowed = {*SIGNALS.values(), *effect.symbols().values(), *effect.state_symbols().values()}
         needed = tuple(f"{name}_" for name in effect.needs)
         for law in (effect.expression(), *effect.rates().values()):
@@ -162,22 +160,7 @@ def _check_effect(module: ModuleType, path: Path) -> Effect:
         for law in effect.corrections().values():
             if strangers := law.free_symbols - allowed - {INERTIA, UNEXPLAINED}:
                 raise ModelError(f"{path}: correction uses {', '.join(map(str, strangers))}")
-    except TeleopDesignError:
-        raise
-    except (AttributeError, TypeError, SympifyError) as error:
-        raise ModelError(f"{path}: law: {_explain(error, effect)}") from error
-    except (Exception, SystemExit) as error:  # a law is the user's Python too
-        raise ModelError(f"{path}: law: {type(error).__name__}: {error}") from error
     return effect
-
-
-def _explain(error: Exception, effect: Effect) -> str:
-    """The text of an error in a law; a misspelt signal or parameter is told by its name."""
-    if not isinstance(error, AttributeError) or not isinstance(error.obj, SimpleNamespace):
-        return str(error)
-    known = vars(error.obj)
-    holder = "p" if set(known) == set(effect.parameters) else "now"
-    return f'{holder} has no "{error.name}"{did_you_mean(error.name or "", known)}'
 
 
 def _shipped_effects() -> dict[str, Effect]:

@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from ..controllers import CONTROLLERS, ControlLaw
 from ..diagrams import Diagram, read_diagram
 from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError, did_you_mean, quote
@@ -49,10 +50,15 @@ class SineInput:
         return np.asarray(self.offset + self.amplitude * turned)
 
 
-def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> dict[str, Any]:
+def read_study_file(
+    path: str | Path,
+    *,
+    effects: Mapping[str, Effect] = EFFECTS,
+    laws: Mapping[str, ControlLaw] = CONTROLLERS,
+) -> dict[str, Any]:
     """The arguments of `study` that a file describes.
 
-    effects: known effects by name
+    effects, laws: known effects and control laws by name, as `read_diagram` takes them
     raises ExperimentError: the file cannot be read, or an entry has no meaning
     """
     path = Path(path)
@@ -61,7 +67,7 @@ def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
     head = root.table("study")
     head.allow(("model", "experiments", "seed"))
     try:
-        arguments = _read_model(head, path.parent, effects)
+        arguments = _read_model(head, path.parent, effects, laws)
         arguments["axes"] = [*arguments.pop("axes", []), *read_axes(root)]
         arguments["measures"] = _read_measures(root.table("measures")) or arguments.get(
             "measures", {}
@@ -78,13 +84,15 @@ def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
     return arguments
 
 
-def _read_model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str, Any]:
+def _read_model(
+    head: Table, folder: Path, effects: Mapping[str, Effect], laws: Mapping[str, ControlLaw]
+) -> dict[str, Any]:
     if ("model" in head.content) == ("experiments" in head.content):
         raise ExperimentError(
             f"{head.where()}: expected model (a diagram) or experiments (folders), one of them"
         )
     if "model" in head.content:
-        return {"model": _read_diagram(head, folder, effects)}
+        return {"model": _read_diagram(head, folder, effects, laws)}
     content = head.content["experiments"]
     if not isinstance(content, list) or not all(isinstance(g, str) for g in content):
         raise ExperimentError(
@@ -108,7 +116,9 @@ def _list_folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
     return list(dict.fromkeys(folders))
 
 
-def _read_diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagram:
+def _read_diagram(
+    head: Table, folder: Path, effects: Mapping[str, Effect], laws: Mapping[str, ControlLaw]
+) -> Diagram:
     from ..diagrams import SHIPPED, load_shipped
 
     name = head.text("model")
@@ -119,7 +129,7 @@ def _read_diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> D
             f"{head.where('model')}: found {quote(name)}, expected a file NAME.toml or one of "
             f"{', '.join(SHIPPED)}{did_you_mean(name, SHIPPED)}"
         )
-    return read_diagram(folder / name, effects=effects)
+    return read_diagram(folder / name, effects=effects, laws=laws)
 
 
 def _read_simulation(table: Table) -> dict[str, Any]:
