@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import SimpleNamespace
 
 import sympy as sp
@@ -174,10 +175,9 @@ class Controller:
             mean of the held output, as H(e^(s T)) (1 - e^(-s T))/(s T), without copies at other
             multiples of the sampling rate
         """
-        parts = self.linear_parts(prefix, s, speed, held=held)
-        if parts is None or parts[1] == 0:
-            return None if parts is None else parts[0]
-        return sp.simplify(sp.Add(*parts))
+        if not self._is_linear(held):
+            return None
+        return _linear_form(self._forms(), prefix, s, speed)
 
     def linear_parts(
         self, prefix: str, s: sp.Symbol, speed: sp.Expr, *, held: bool = False
@@ -186,22 +186,18 @@ class Controller:
 
         Arguments are those of `linear_form`, which returns the sum of both, for a single signal.
         """
-        if not all(stage.law.linear or (held and has_numbers(stage)) for stage in self.stages):
+        if not self._is_linear(held):
             return None
-        if all(is_by_numbers(stage) for stage in self.stages):
-            return sp.Mul(*(insert_values(stage, s) for stage in self.stages)), sp.S(0)
-        drive, moved = sp.Symbol("drive"), sp.Symbol("moved")
-        motion = {"velocity": s * moved, "speed": speed, "travel_rate": s * moved}
-        value: sp.Expr = drive
-        for stage in self.stages:
-            if is_by_numbers(stage):
-                value *= insert_values(stage, s)
-                continue
-            signals = {**motion, "input": value, "period": sp.S(0)}
-            equation = Controller((stage,)).equation(prefix, signals)
-            states = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
-            value = equation.output.subs(states) if equation.rates else equation.output
-        return sp.simplify(sp.diff(value, drive)), sp.simplify(sp.diff(value, moved))
+        return _linear_parts(self._forms(), prefix, s, speed)
+
+    def _is_linear(self, held: bool) -> bool:
+        """Whether every law has a linear form; held: as in `linear_form`."""
+        return all(stage.law.linear or (held and has_numbers(stage)) for stage in self.stages)
+
+    def _forms(self) -> tuple[_Form, ...]:
+        return tuple(
+            _Form(g.law, g.name, g.values if is_by_numbers(g) else None, g) for g in self.stages
+        )
 
     @property
     def sees_velocity(self) -> bool:
@@ -231,6 +227,48 @@ class Controller:
             for n, v in g.values.items()
         ]
         return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
+
+
+@dataclass(frozen=True)
+class _Form:
+    """A stage, equal to every stage of the same linear form: its values are symbols there.
+
+    numbers: values of a law whose transfer function holds them as numbers; None: any values
+    """
+
+    law: ControlLaw
+    name: str
+    numbers: Mapping[str, float] | None
+    stage: Stage = field(compare=False)
+
+
+@lru_cache(maxsize=512)
+def _linear_form(forms: tuple[_Form, ...], prefix: str, s: sp.Symbol, speed: sp.Expr) -> sp.Expr:
+    """As `Controller.linear_form`, derived once: a claim asks for it some hundred times."""
+    from_input, from_motion = _linear_parts(forms, prefix, s, speed)
+    return from_input if from_motion == 0 else sp.simplify(from_input + from_motion)
+
+
+@lru_cache(maxsize=512)
+def _linear_parts(
+    forms: tuple[_Form, ...], prefix: str, s: sp.Symbol, speed: sp.Expr
+) -> tuple[sp.Expr, sp.Expr]:
+    """As `Controller.linear_parts`, derived once."""
+    stages = [form.stage for form in forms]
+    if all(is_by_numbers(stage) for stage in stages):
+        return sp.Mul(*(insert_values(stage, s) for stage in stages)), sp.S(0)
+    drive, moved = sp.Symbol("drive"), sp.Symbol("moved")
+    motion = {"velocity": s * moved, "speed": speed, "travel_rate": s * moved}
+    value: sp.Expr = drive
+    for stage in stages:
+        if is_by_numbers(stage):
+            value *= insert_values(stage, s)
+            continue
+        signals = {**motion, "input": value, "period": sp.S(0)}
+        equation = Controller((stage,)).equation(prefix, signals)
+        states = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
+        value = equation.output.subs(states) if equation.rates else equation.output
+    return sp.simplify(sp.diff(value, drive)), sp.simplify(sp.diff(value, moved))
 
 
 def _make_symbols(

@@ -112,7 +112,8 @@ def _forms_of_controller(
     """Transfer functions of a controller from its input, and from another motion; (): none."""
     if not isinstance(part.controller, Controller):
         raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
-    forms = part.controller.linear_parts(part.name, S, exact_decimal(abs(speed)), held=held)
+    at = part.name, S, exact_decimal(abs(speed))
+    forms = part.controller.linear_parts(*at, held=held)
     if forms is None:
         return ()
     if part.controller.sees_velocity and not part.motion:
@@ -120,7 +121,7 @@ def _forms_of_controller(
     numbers = {parameter_symbol(part.name, n): v for n, v in part.controller.names().items()}
     if acts_along_another(diagram, part):
         return tuple(_insert_numbers(form, numbers) for form in forms)
-    whole = forms[0] if forms[1] == 0 else sp.simplify(sp.Add(*forms))
+    whole = part.controller.linear_form(*at, held=held)
     return (_insert_numbers(whole, numbers),)
 
 

@@ -47,8 +47,8 @@ def test_wrong_data_is_reported_in_one_line(values, frequency, message):
 
 def test_an_unknown_case_names_the_nearest():
     response = bode(four_cases(DIAGRAM), frequency=F)
-    with pytest.raises(ModelError, match='did you mean "hybrid"'):
-        response.values("hybird")
+    with pytest.raises(ModelError, match='did you mean "FF"'):
+        response.values("F")
 
 
 def test_a_ratio_of_unlike_signals_has_their_unit():
