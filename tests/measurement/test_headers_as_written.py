@@ -4,6 +4,7 @@ import numpy as np
 import openpyxl
 import pytest
 
+from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.column_names import ALIASES, bare_name, unit_in_name, unit_of_text
 from teleopdesign.measurement.doors._cells import is_number, number_of
 from teleopdesign.measurement.doors._header import names_and_units
@@ -129,3 +130,57 @@ def test_german_units_are_those_of_a_german(name, quantity, unit):
 @pytest.mark.parametrize("text", ["Grad", "Mrad", "Mm", "Gs", "MA", "crad"])
 def test_a_prefix_that_nobody_uses_is_a_letter_of_another_word(text):
     assert not is_unit(text)
+
+
+def scope(folder, labels, rows, *, separator=";"):
+    """A log as a scope of a controller writes it: each row above the numbers has its label."""
+    head = [["Name", "Scope 1"], ["File", "C:\\scope"], [], *labels, []]
+    path = folder / "scope.csv"
+    lines = (separator.join(map(str, row)) for row in [*head, *rows])
+    path.write_text("\n".join(lines) + "\n")
+    return open_log(path, path.name)
+
+
+NUMBERS = [[k, 0.5 + k % 7, -float(k % 5)] for k in range(80)]
+
+
+def test_rows_with_labels_name_the_columns_and_the_unit_of_the_time(tmp_path):
+    labels = [
+        ["Name", "Axis 1.ActPos", "Axis 1.ActTorque"],
+        ["SymbolComment", "", ""],
+        ["Data-Type", "REAL64", "REAL64"],
+        ["SampleTime[ms]", 1, 1],
+        ["VariableSize", 8, 8],
+    ]
+    log = scope(tmp_path, labels, NUMBERS)
+    assert log.names == ("time", "Axis 1.ActPos", "Axis 1.ActTorque")
+    assert log.units["time"] == "ms"
+    columns = log.read({"time": "time", "Axis 1.ActTorque": "actuator_force"})
+    np.testing.assert_array_equal(columns["time"], np.arange(80.0))
+    np.testing.assert_array_equal(columns["Axis 1.ActTorque"], [row[2] for row in NUMBERS])
+
+
+def test_a_label_before_each_column_stands_over_its_times(tmp_path):
+    twice = [["Name", "pos", "Name", "cur"], ["SampleTime[ms]", 1, "SampleTime[ms]", 1]]
+    units = [["Unit", "mm", "Unit", "A"], ["Start", 3, "Monday", "12:00"]]
+    rows = [[k, x, k, y] for k, x, y in NUMBERS]
+    log = scope(tmp_path, [units[1], *twice, units[0]], rows, separator="\t")
+    assert log.names == ("time #1", "pos", "time #2", "cur")
+    assert log.units == {"time #1": "ms", "pos": "mm", "time #2": "ms", "cur": "A"}
+
+
+def test_a_first_column_called_name_is_no_label_where_nothing_else_is_labelled(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = [["name", "x", "f"], ["-", "mm", "N"], *NUMBERS]
+    path.write_text("\n".join(",".join(map(str, row)) for row in rows) + "\n")
+    assert open_log(path, path.name).names == ("name", "x", "f")
+
+
+def test_a_broken_first_cell_does_not_move_the_first_row(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = [["t", "x", "f"], ["abc", 1.0, 2.0], *NUMBERS]
+    path.write_text("\n".join(",".join(map(str, row)) for row in rows) + "\n")
+    log = open_log(path, path.name)
+    assert log.names == ("t", "x", "f")
+    with pytest.raises(ExperimentError, match="row 1.*abc"):
+        log.read({"t": "time", "x": "position"})

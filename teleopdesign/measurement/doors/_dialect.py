@@ -15,7 +15,13 @@ import numpy as np
 from ...errors import ExperimentError, quote
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
-from ._header import bare_unit, is_unit_cell, names_and_units
+from ._header import (
+    NAME_LABELS,
+    bare_unit,
+    is_unit_cell,
+    names_and_units,
+    names_of_labelled_rows,
+)
 from ._log import number_names
 
 COMMENTS = ("#", "%", "//")
@@ -110,7 +116,13 @@ def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, 
     begins = [n for n, k in enumerate(rows) if n == 0 or place[k] != place[rows[n - 1]] + 1]
     lengths = np.diff([*begins, len(rows)])
     whole = np.flatnonzero(lengths >= min(IN_A_ROW, lengths.max()))
-    return rows[begins[int(whole[0])]], width
+    here = begins[int(whole[0])]
+    above = (cells_of(line, separator) for line in lines[: rows[here]])
+    if any(cells and cells[0].casefold() in NAME_LABELS for cells in above):
+        # labelled rows of numbers, such as "SampleTime[ms]; 1", belong to what stands above
+        starts = [is_value(cells_of(lines[k], separator)[0], comma) for k in rows[here:]]
+        here += starts.index(True) if any(starts) else 0
+    return rows[here], width
 
 
 def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> None:
@@ -172,7 +184,8 @@ def _header(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines before the first row of numbers."""
     plain = [line for line in before if line.strip()]
-    rows = []
+    rows: list[tuple[str, ...]] = []
+    wide: list[tuple[str, ...]] = []
     cells: list[str] = []
     for line in plain:
         text = line.lstrip(" ")  # not tabs: the first cell of a row of titles may be empty
@@ -181,8 +194,12 @@ def _header(
         cells = cells_of(text.strip() if separator == " " else text.strip("\n"), separator)
         while len(cells) > width and not cells[-1]:
             cells = cells[:-1]
-        if len(cells) == width and not _is_data(cells, comma):
-            rows.append(tuple(cells))
+        if len(cells) == width:
+            wide.append(tuple(cells))
+            if not _is_data(cells, comma):
+                rows.append(tuple(cells))
+    if (labelled := names_of_labelled_rows(wide)) is not None:
+        return labelled
     if len(cells) > width > 1 and not any(is_number(c, True) or not c for c in cells):
         rows.append(tuple(cells[:width]))  # without names of empty columns, such as "Comment"
     if not rows:

@@ -11,6 +11,11 @@ from ..column_names import unit_of_text
 _BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")
 #: if at least this part of the cells of a row are units, the other cells are unknown units
 MOSTLY = 0.5
+#: begin of a label beside that of the names
+_LABEL = re.compile(r"data.?type|sample.?time|symbol|comment|description|unit", re.IGNORECASE)
+#: labels of a row above a table that holds the names, and of one that holds the units
+NAME_LABELS = ("name", "names", "channel name", "signal name")
+UNIT_LABELS = ("unit", "units")
 
 
 def bare_unit(cell: str) -> str:
@@ -62,6 +67,33 @@ def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tup
             for name, title in zip(names, titles, strict=True)
         ]
     return tuple(names), units
+
+
+def names_of_labelled_rows(
+    rows: Sequence[Sequence[str]],
+) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """Names and units where each row above the table says what it holds; None: they do not.
+
+    Scopes of controllers write such rows: "Name; Axis 1.ActPos", "Data-Type; REAL64",
+    "SampleTime[ms]; 1". The times stand below the labels, and a label may stand before each column.
+    """
+    named = next((row for row in rows if row[0].casefold() in NAME_LABELS), None)
+    if named is None:
+        return None
+    labels = [k for k, cell in enumerate(named) if cell == named[0]]
+    rows = [row for row in rows if row[0] and all(row[k] == row[0] for k in labels)]
+    if not any(_LABEL.match(row[0]) for row in rows):
+        return None
+    names = tuple("time" if k in labels else cell for k, cell in enumerate(named))
+    units = [""] * len(names)
+    for row in rows:
+        bracketed = _BRACKETED.search(row[0])
+        if "time" in row[0].casefold() and bracketed and is_unit(bare_unit(bracketed[0])):
+            for k in labels:
+                units[k] = bare_unit(bracketed[0])
+        if row[0].casefold() in UNIT_LABELS:
+            units = [u or bare_unit(c) * is_unit_cell(c) for u, c in zip(units, row, strict=True)]
+    return names, tuple(units)
 
 
 def _carried_on(titles: Sequence[str]) -> list[str]:
