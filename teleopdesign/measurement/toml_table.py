@@ -56,7 +56,8 @@ class Table:
         value = self.content.get(key, [])
         if not isinstance(value, list) or not all(isinstance(row, dict) for row in value):
             raise self._wrong_type(key, f"tables written as [[{key}]]")
-        return tuple(Table(row, self.file, f"{key}[{i}]") for i, row in enumerate(value, start=1))
+        path = f"{self.key}.{key}" if self.key else key
+        return tuple(Table(row, self.file, f"{path}[{i}]") for i, row in enumerate(value, start=1))
 
     def text(self, key: str, default: str | None = None) -> str:
         """The text under `key`, which must not be empty; without a default it is required."""

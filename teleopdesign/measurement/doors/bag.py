@@ -133,7 +133,8 @@ def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int
         stamp = int(header.sec) * 1_000_000_000 + int(header.nanosec) - begin
         numbers[STAMP] = stamp * 1e-9
     for name, value in numbers.items():
-        if name not in rows and len(rows) > MOST_FIELDS:
+        is_time = name in (STAMP, _WRITTEN)
+        if name not in rows and len(rows) > MOST_FIELDS and not is_time:
             continue
         column = rows.setdefault(name, [])
         column += [np.nan] * (count - len(column))
