@@ -114,3 +114,47 @@ def test_a_motion_beyond_the_chosen_bandwidth_is_noticed(period, beyond):
         None if beyond is None else pytest.approx(beyond, rel=0.02)
     )
     assert motion_beyond(replace(experiment, bandwidth=chosen), chosen) is None
+
+
+@pytest.mark.parametrize("slope", [5.0, 20.0])
+def test_a_motion_along_a_slope_is_as_fast_as_without_it(slope):
+    """Twice the frequency of the fastest motion is compared; a slope that goes on adds none."""
+    t = np.arange(8000) / 400.0
+    slow, fast = joined(0.4, 2.6).records
+    x = fast.signals["device.position"] + slope * t
+    moved = replace(fast, signals={**fast.signals, "device.position": x})
+    chosen = default_bandwidth(replace(recorded(1000.0), records=(slow, moved)))
+    assert chosen == pytest.approx(2 * 2.6, abs=0.2)  # a line of the spectrum is 0.1 Hz wide
+
+
+@pytest.mark.parametrize("rate", [100.0, 500.0])
+def test_a_motion_of_all_frequencies_is_compared_up_to_a_tenth_of_the_rate(rate):
+    random = np.random.default_rng(1)
+    t = np.arange(round(20 * rate)) / rate
+    x = np.cumsum(np.cumsum(random.standard_normal(len(t)))) / rate**2 + 0.3 * np.sin(3 * t)
+    experiment = td.experiment(
+        {"t": t, "x": x, "F": np.sign(np.cos(3 * t))},
+        axis="prismatic",
+        time="t",
+        position="x",
+        actuator_force="F",
+        inertia=0.1,
+    )
+    assert default_bandwidth(experiment) == pytest.approx(0.1 * rate, rel=0.01)
+
+
+@pytest.mark.parametrize("speed", [0.0, 10.0, 1000.0])
+def test_a_ripple_beyond_the_bandwidth_is_noticed_at_any_mean_speed(speed):
+    """A tremble at 2 Hz and a ripple at 100 Hz of a rotor that stands, or turns."""
+    t = np.arange(2000) / 500.0
+    x = speed * t + 2e-4 * np.sin(2 * np.pi * 100 * t) + 2e-3 * np.sin(2 * np.pi * 2 * t)
+    x = x + 1e-6 * np.random.default_rng(0).standard_normal(len(t))
+    experiment = td.experiment(
+        {"t": t, "x": x, "F": np.ones(len(t))},
+        axis="revolute",
+        time="t",
+        position="x",
+        actuator_force="F",
+        inertia=0.1,
+    )
+    assert motion_beyond(experiment, 20.0) == pytest.approx(100.0, abs=0.5)

@@ -296,3 +296,13 @@ def test_names_of_columns_that_are_never_filled_are_left_off(tmp_path, width, mo
     rows = "".join(",".join(f"{k + 0.5 * j}" for j in range(width)) + "\n" for k in range(100))
     path.write_text(f"{head}\n{rows}")
     assert open_text(path, "log.csv").names == tuple(names)
+
+
+@pytest.mark.parametrize(("length", "fits"), [(1000, True), (1001, False)])
+def test_a_name_has_a_thousand_characters_at_most(tmp_path, length, fits):
+    path, name = tmp_path / "log.csv", "x" * length
+    path.write_text(f"t,{name}\n" + "".join(f"{k},{k * k}\n" for k in range(200)))
+    if fits:
+        assert open_log(path, "log.csv").names == ("t", name)
+    else:
+        assert "characters, expected at most 1000" in refused(path, "t")

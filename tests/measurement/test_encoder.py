@@ -8,6 +8,7 @@ from teleopdesign.measurement.encoder import (
     reading_noise,
     reading_step,
     sampling_jitter,
+    update_period,
 )
 
 H = 0.002
@@ -73,3 +74,51 @@ def test_a_step_is_known_to_the_digits_that_the_whole_travel_tells_in_any_unit(u
     random = np.random.default_rng(0)
     counts = random.choice(10_000, 500, replace=False) + random.uniform(-0.1, 0.1, 500)
     assert grid_of(unit * counts, unit) == pytest.approx(unit, rel=1e-5)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e4])
+def test_units_change_neither_jitter_nor_noise_nor_step(size):
+    """The scatter at rest is a third of that at speed: without it, the jitter would differ."""
+    rng = np.random.default_rng(5)
+    late = 1e-4 * rng.standard_normal(len(T))
+    slow = np.sin(2 * np.pi * 0.05 * (T + late))  # rests at the ends, for many pieces
+    read = 20.0 * slow + 2.2e-4 * rng.standard_normal(len(T))
+    jitter = sampling_jitter(read, 0.0, H)
+    assert jitter == pytest.approx(1e-4, rel=0.3)
+    assert sampling_jitter(size * read, 0.0, H) == pytest.approx(jitter, rel=1e-6)
+    assert reading_noise(size * read) == pytest.approx(size * reading_noise(read), rel=1e-6)
+    coarse = np.round(read / 0.02) * 0.02
+    assert reading_step(size * coarse) == pytest.approx(size * 0.02, rel=1e-6)
+    # a clock of another unit
+    assert sampling_jitter(read, 0.0, 1e3 * H) == pytest.approx(1e3 * jitter, rel=1e-6)
+
+
+def test_of_readings_that_are_held_one_each_counts():
+    """A reading that comes in each fifth row jitters by a part of its own period."""
+    rng = np.random.default_rng(6)
+    when = 5 * H * np.arange(3000)
+    late = 2e-4 * rng.standard_normal(3000)
+    read = np.sin(2 * np.pi * 0.3 * (when + late)) * (1 + 0.8 * np.sin(0.2 * when))
+    assert update_period(np.repeat(read, 5)) == 5 and update_period(read) == 1
+    jitter = sampling_jitter(read, 0.0, 5 * H)
+    assert jitter == pytest.approx(2e-4, rel=0.3)
+    assert sampling_jitter(np.repeat(read, 5), 0.0, H) == pytest.approx(jitter, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "odd", "period"), [(51, 0, 4), (50, 0, 1), (60, 2, 4), (60, 3, 1)]
+)
+def test_a_period_is_shown_by_fifty_steps_between_changes_of_which_nine_tenths_fit(
+    changes, odd, period
+):
+    rows = 4 * np.arange(1, changes + 1)
+    rows[3 : 3 + 2 * odd : 2] += 1  # each spoils the step before and behind
+    x = np.cumsum(np.isin(np.arange(4 * changes + 8), rows))
+    assert update_period(x.astype(float)) == period
+
+
+@pytest.mark.parametrize(("rows", "tells"), [(8 * 64 - 1, False), (8 * 64, True)])
+def test_eight_pieces_of_64_rows_tell_a_jitter(rows, tells):
+    rng = np.random.default_rng(2)
+    read = np.sin(2 * np.pi * 0.7 * (T + 1e-4 * rng.standard_normal(len(T)))[:rows])
+    assert (sampling_jitter(read, 0.0, H) > 0.0) == tells

@@ -12,8 +12,13 @@ from teleopdesign.measurement.channel import Channel
 from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.record import record_of
 from teleopdesign.measurement.record_clock import RecordClock
-from teleopdesign.measurement.resample import command_phase, filling_error, interpolate_by_rule
-from teleopdesign.measurement.signals_of_log import rule_of
+from teleopdesign.measurement.resample import (
+    command_phase,
+    commands_on_clock,
+    filling_error,
+    interpolate_by_rule,
+)
+from teleopdesign.measurement.signals_of_log import _restore_steps, rule_of
 from teleopdesign.measurement.tables import LogColumns
 
 H = 0.01
@@ -180,3 +185,43 @@ def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay
     assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01
     (note,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
     assert note.endswith(f", {rate:g} Hz")
+
+
+def test_rows_two_of_which_are_five_steps_apart_are_still_filled_by_steps():
+    """Counts 0, 2, 5, 7, 10 ...: a line of whole steps makes errors of 0 and 1, by turns."""
+    counts = np.arange(80) * 5 // 2 * 1.0
+    error = filling_error(counts, clock_of(np.arange(80)), "position", step=1.0)
+    assert error == pytest.approx(np.sqrt(0.5), rel=0.02)
+    # a curve of four readings is 2/3 off each time
+    assert filling_error(counts, clock_of(np.arange(80)), "position", step=0.9) == pytest.approx(
+        2 / 3
+    )
+
+
+@pytest.mark.parametrize("missed", [0, 1, 7])
+def test_commands_that_are_in_no_row_are_counted(missed):
+    """The clock of the command runs from row to row; some of its cells lie between two rows."""
+    at = np.delete(np.arange(400.0), 10 + 40 * np.arange(missed))
+    clock = replace(clock_of(np.arange(len(at))), stamps=H * at, time=H * np.arange(len(at)))
+    clock = replace(
+        clock, places=at.astype(int), time=H * np.arange(400.0), segments=(slice(0, 400),)
+    )
+    commands, share = commands_on_clock(np.sin(at), clock, -0.25)
+    assert share == pytest.approx(missed / 400) and len(commands) == 400
+
+
+@pytest.mark.parametrize("resolution", [None, 0.5])
+@pytest.mark.parametrize("quantity", ["position", "interaction_force"])
+def test_filled_readings_lie_on_steps_where_no_resolution_is_stated(resolution, quantity):
+    """A position in steps of one; a stated resolution is one that the user knows."""
+    values = np.round(20.0 * np.sin(0.1 * np.arange(200)))
+    between = values + 0.3
+    channel = Channel(quantity, "device", "x", "m", resolution, None)
+    out = _restore_steps(between, values, channel, 1.0)
+    if quantity == "position" and resolution is None:
+        assert np.array_equal(out, values)
+    else:
+        assert out is between
+    assert _restore_steps(between, values, channel, 0.0) is between
+    off_grid = np.random.default_rng(0).normal(size=200)
+    assert _restore_steps(between, off_grid, channel, 1.0) is between

@@ -218,3 +218,39 @@ def test_a_lone_sample_or_leap_of_a_later_stretch_is_reported_by_its_row_in_the_
     x[row:] += 100.0 * (np.arange(row, 600) < halves[row >= 300].stop)
     (finding,) = check_jumps(channel(x, segments=halves))
     assert finding.numbers["time"] == pytest.approx((row - 1) * H)
+
+
+@pytest.mark.parametrize(
+    ("lost", "is_counted"),
+    [(0.45, False), (0.55, True), (1.4, True), (-3.0, False), (990.0, True), (1010.0, False)],
+)
+def test_a_leap_along_the_motion_says_how_many_samples_may_be_missing(lost, is_counted):
+    """A cart at 1 m/s, read to a nanometre; between half a sample and a second's worth."""
+    x = H * np.arange(2000.0)
+    x[1000:] += lost * H
+    (finding,) = check_jumps(channel(x))
+    assert finding.numbers["samples"] == pytest.approx(lost, rel=1e-6)
+    assert ("if samples are missing" in finding.sentence) == is_counted
+    assert ("look at the encoder or the log" in finding.sentence) != is_counted
+    assert f"in {lost:.0f} samples" in finding.sentence or not is_counted
+
+
+@pytest.mark.parametrize("short", [4, 15])
+@pytest.mark.parametrize("where", ["before", "after"])
+def test_a_stretch_too_short_to_be_judged_moves_no_finding_of_another(short, where):
+    """A stretch of fewer than sixteen samples says nothing, whatever is in it."""
+    x = np.r_[swing(short), swing()] if where == "before" else np.r_[swing(), swing(short)]
+    begin = short if where == "before" else 0
+    cuts = (
+        (slice(0, short), slice(short, len(x))) if begin else (slice(0, 2000), slice(2000, len(x)))
+    )
+    x[begin + 500] += 0.7
+    x[(0 if begin else 2000) + short // 2] += 9.0
+    (finding,) = check_outliers(channel(x, segments=cuts))
+    assert finding.numbers["row"] == begin + 501 and finding.numbers["count"] == 1
+    assert finding.numbers["size"] == pytest.approx(0.7, abs=0.01)
+    x[begin + 500] -= 0.7
+    x[begin + 900 : begin + 2000] += 3.0
+    (finding,) = check_jumps(channel(x, segments=cuts))
+    assert finding.numbers["count"] == 1 and finding.numbers["size"] == pytest.approx(3.0, abs=0.02)
+    assert f"row {begin + 900}" in finding.sentence

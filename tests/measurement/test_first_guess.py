@@ -135,3 +135,49 @@ def test_of_a_body_that_rests_nothing_is_read_and_nothing_fails():
         assert guess.explained == pytest.approx(0.0, abs=1e-9)
         assert not is_turned(force, still, H)
         assert balance_factor(force, force, still, H) == (0.0, np.inf)
+
+
+@pytest.mark.parametrize(
+    ("rate", "band"), [(50.0, 2.0), (100.0, 2.0), (400.0, 8.0), (1500.0, 30.0), (5000.0, 40.0)]
+)
+def test_motions_are_low_passed_at_a_fiftieth_of_the_rate_between_2_and_40_hz(rate, band):
+    """At the edge of the low-pass, half of the velocity is left; far below all, far above none."""
+    t = np.arange(round((8 if rate < 1000 else 2) * rate)) / rate
+    middle = slice(len(t) // 4, -len(t) // 4)
+    for part, left in [(0.3, 1.0), (1.0, 0.5), (2.5, 0.0)]:
+        w = 2 * np.pi * part * band
+        v, a, _ = motion_columns(np.sin(w * t), 1 / rate)
+        assert v[middle] == pytest.approx(left * w * np.cos(w * t[middle]), abs=0.02 * w)
+        assert a[middle] == pytest.approx(-left * w**2 * np.sin(w * t[middle]), abs=0.02 * w**2)
+
+
+def test_a_body_counts_as_moving_from_a_fiftieth_of_its_largest_speed():
+    v = np.where(T < 10, 1.0, np.where(T < 15, 0.03, 0.01))
+    direction = motion_columns(H * np.cumsum(v), H)[2]
+    for when, way in [((2, 9), 1.0), ((11, 14), 1.0), ((16, 19), 0.0)]:
+        rows = (when[0] < T) & (when[1] > T)
+        assert direction[rows] == pytest.approx(way, abs=0.05)
+
+
+def test_each_value_has_the_error_by_which_it_scatters():
+    """Over records with other noise; each second counts as one reading, so the error is wide."""
+    v, a = rate_of(SWING), rate_of(SWING, 2)
+    clean, values, errors = 0.2 * a + 1.0 * np.sign(v) + 0.5 * v, [], []
+    # slow noise: its parts within a second agree
+    for seed in range(12):
+        steps = np.random.default_rng(seed).standard_normal(len(T) // 200 + 1)
+        guess = explain_force(clean + np.repeat(steps, 200)[: len(T)], SWING, H)
+        values.append((guess.inertia, guess.level, guess.damping))
+        errors.append(guess.errors)
+    ratio = np.std(values, axis=0) / np.mean(errors, axis=0)
+    assert ((0.15 < ratio) & (ratio < 2.5)).all()
+    mean = np.mean(errors, axis=0)
+    # the columns have other sizes: an acceleration is known better than a direction
+    assert mean[0] < 0.5 * mean[2] < mean[1] or len({*np.round(mean, 6)}) == 3
+    # twice the noise, twice each error; a motion twice as large, half of those of a and v
+    noise = np.repeat(np.random.default_rng(3).standard_normal(len(T) // 200 + 1), 200)[: len(T)]
+    one = np.array(explain_force(clean + noise, SWING, H).errors)
+    twice = np.array(explain_force(clean + 2 * noise, SWING, H).errors)
+    wide = np.array(explain_force(clean + noise, 2 * SWING, H).errors)
+    assert twice / one == pytest.approx([2.0] * 3, rel=0.1)
+    assert wide / one == pytest.approx([0.5, 1.0, 0.5], rel=0.01)

@@ -256,3 +256,38 @@ def test_a_motors_constant_is_that_of_a_current(torque, current):
     force = survey.channels["actuator_force"]
     assert (force["unit"], force.get("torque_constant")) == ("N*m", None)
     assert "the motor's constant is not used" in survey.guesses["channels.actuator_force.column"]
+
+
+@pytest.mark.parametrize(
+    ("axis", "column", "unit", "words"),
+    [
+        ("revolute", "t", "kg", "expected one of a time, such as 's'"),
+        ("revolute", "q", "kg", "expected one of a position on a revolute axis, such as"),
+        ("prismatic", "u", "kg", "expected one of a force on a prismatic axis, such as"),
+    ],
+)
+def test_a_unit_that_does_not_suit_its_column_is_answered_with_one_that_does(
+    axis, column, unit, words
+):
+    with pytest.raises(ExperimentError, match=words):
+        look({"t": T, "q": Q, "u": U}, axis=axis, actuator_force="u", units={column: unit})
+
+
+@pytest.mark.parametrize("gear", [1.0, 20.0])
+@pytest.mark.parametrize(
+    ("unit", "per_turn"), [("counts", 4096.0), ("deg", 360.0), ("rad", 2 * np.pi)]
+)
+def test_first_values_are_those_of_the_output_in_any_unit_of_the_motor(unit, per_turn, gear):
+    """The joint has 0.02 kg m^2 and 0.3 N m of friction, whatever its motor counts."""
+    motor = gear * Q * per_turn / (2 * np.pi)
+    choices = {"counts_per_turn": 4096.0} if unit == "counts" else {"units": {"q": unit}}
+    survey = look(
+        {"t": T, "q": motor, "tau_Nm": U / gear},
+        axis="revolute",
+        position="q",
+        actuator_force="tau_Nm",
+        gear_ratio=gear,
+        **choices,
+    )
+    assert survey.first.inertia == pytest.approx(0.02, rel=0.1)
+    assert survey.first.level == pytest.approx(0.3, rel=0.1)

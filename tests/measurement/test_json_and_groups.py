@@ -105,3 +105,34 @@ def test_a_file_whose_ending_says_nothing_is_known_by_its_beginning(tmp_path, en
     (tmp_path / f"raw{ending}").write_bytes(bytes(range(256)))
     with pytest.raises(ExperimentError, match="found a file of kind"):
         open_log(tmp_path / f"raw{ending}", "raw")
+
+
+@pytest.mark.parametrize(("count", "fits"), [(200, True), (201, False)])
+def test_a_list_in_a_record_has_two_hundred_numbers_at_most(tmp_path, count, fits):
+    records = [{"t": 0.01 * k, "q": [float(k + n) for n in range(count)]} for k in range(80)]
+    (tmp_path / "log.json").write_text(json.dumps(records))
+    names = open_log(tmp_path / "log.json", "log.json").names
+    assert len(names) == (1 + count if fits else 1)
+    if fits:
+        assert column(tmp_path / "log.json", "q(200)").tolist() == [199.0 + k for k in range(80)]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_matrix_of_hdf5_is_its_columns_and_itself_whichever_way_it_lies(tmp_path, turned):
+    """As MATLAB writes it, rows and columns are exchanged; a row or a column is one signal."""
+    path = tmp_path / ("log.mat" if turned else "log.h5")
+    both = np.stack([T, Q], axis=1)
+    with h5py.File(path, "w", userblock_size=512) as content:
+        content["both"] = both.T if turned else both
+        content["row"], content["tall"] = Q[None, :], Q[:, None]
+        content["cube"] = np.zeros((3, 4, 5))
+        content["both"].attrs["unit"] = "rad"
+    if turned:
+        as_matlab(path)
+    log = open_log(path, path.name)
+    assert {"both", "both(:,1)", "both(:,2)", "row", "tall", "cube"} == set(log.names)
+    assert log.units == {"both(:,1)": "rad", "both(:,2)": "rad"}
+    read = log.read({"both": "", "both(:,2)": "", "row": "", "tall": ""})
+    assert np.array_equal(read["both"], both)
+    for name in ("both(:,2)", "row", "tall"):
+        assert np.array_equal(np.ravel(read[name]), Q)

@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.tables import open_log
@@ -34,3 +35,16 @@ def test_a_timetable_beside_columns_is_left_out_and_reported(tmp_path):
     assert log.names == ("q",)
     (note,) = log.notes
     assert note.startswith('"T" is a timetable') and note.endswith("it is left out")
+
+
+@pytest.mark.parametrize("kind", ["opaque", "object"])
+@pytest.mark.parametrize(("name", "written"), [("speed", "speed"), ("", "it")])
+def test_an_object_of_an_older_file_is_named(tmp_path, monkeypatch, kind, name, written):
+    savemat(tmp_path / "log.mat", {"q": np.linspace(0, 1, 50)})
+    listed = [("q", (50, 1), "double"), (name, (1, 1), kind)]
+    monkeypatch.setattr("scipy.io.whosmat", lambda path: listed)
+    (note,) = open_log(tmp_path / "log.mat", "log.mat").notes
+    assert note.startswith(f'"{written}" is a timetable') and note.endswith("it is left out")
+    del listed[0]
+    with pytest.raises(ExperimentError, match=f'^log.mat: "{written}" is a timetable'):
+        open_log(tmp_path / "log.mat", "log.mat")

@@ -6,14 +6,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.hum import hum_of
 from teleopdesign.measurement.motion import (
     SHORTEST,
     LinkForces,
+    direction_of,
     motion_of,
     motions,
     without_mains,
 )
+from teleopdesign.measurement.reading import ReadingStep
+from teleopdesign.measurement.record_clock import RecordClock
+from teleopdesign.measurement.time_grid import clock_of
 
 H = 0.002
 T = H * np.arange(6000)
@@ -139,3 +145,56 @@ def test_a_hum_is_taken_off_each_stretch_with_the_phase_that_it_has_there():
     hum = hum_of(hummed[segments[0]], [SWING[segments[0]]], H)
     assert hum.mains == 50.0 and hum.frequency == pytest.approx(50.02, abs=0.01)
     assert hum.rms == pytest.approx(0.2 / 2**0.5, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("changes", "patience", "moving"),
+    [
+        ({10: 5.0, 12: 5.0}, 3, {(10, 12): 1}),  # two changes are a motion
+        ({10: 5.0}, 3, {}),  # one is none
+        ({10: -5.0, 12: -5.0}, 3, {(10, 12): -1}),
+        ({10: 5.0, 13: 5.0}, 3, {(10, 13): 1}),
+        ({10: 5.0, 14: 5.0}, 3, {}),  # rests between them
+        ({10: 5.0, 12: -5.0}, 3, {}),
+        ({10: 5.0, 12: 5.0, 15: -4.0, 16: -4.0}, 3, {(10, 12): 1, (15, 16): -1}),
+        ({10: 0.7, 11: 0.7, 12: 0.7, 13: 0.7}, 3, {(10, 13): 1}),
+        ({10: 0.4, 11: 0.4, 12: 0.4, 13: 0.4, 14: 9.0, 15: 9.0}, 3, {(14, 15): 1}),
+        ({10: 0.7, 11: 0.7}, 3, {}),  # too short a way
+    ],
+)
+@pytest.mark.parametrize("step", [1e-6, 1.0, 1e3])
+def test_a_motion_is_changes_one_way_that_follow_each_other_over_some_steps(
+    changes, patience, moving, step
+):
+    """From the first change to the one before the last."""
+    x = np.zeros(30)
+    for row, by in changes.items():
+        x[row:] += step * by
+    expected = np.zeros(30)
+    for (a, b), way in moving.items():
+        expected[a:b] = way
+    assert direction_of(x, step, step, patience).tolist() == expected.tolist()
+
+
+def test_a_motion_and_a_clock_are_plain_unless_stated_otherwise():
+    """A log on time, of a sensor without lag, each row used; an even clock without a flaw."""
+    motion = made(SWING)
+    assert (motion.command_late, motion.interaction_late, motion.merged) == (0.0, 0.0, 1)
+    assert motion.links is None and motion.carried is None and not motion.further
+    force = LinkForces(np.ones(3), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert force.inertia == 0.0 and force.drawn == ()
+    assert force.carried((), 5.0 * np.ones(3)).tolist() == [1.0, 1.0, 1.0]
+    rows, whole = np.arange(200), (slice(0, 200),)
+    clock = RecordClock(rows, 0.01 * rows, rows, 0.01 * rows, 0.01, whole, whole)
+    assert clock.exact and not clock.counted and clock.jitter == clock.longest_gap == 0.0
+    assert not any(
+        (clock.dropped, clock.sorted, clock.restarts, clock.lost, clock.alone, clock.gaps)
+    )
+    even = clock_of(0.01 * rows, whole, np.zeros(200, dtype=bool), "log")
+    assert even.exact and even.lost == even.gaps == even.dropped == even.sorted == 0
+    step = ReadingStep("a", "b", "c", "d")
+    assert np.isnan(step.size) and not step.interpolates and step.numbers == ()
+    channel = Channel("position", "device", "x", "m", None, None)
+    assert not channel.measured and channel.conversion is None and channel.delay == 0.0
+    plain = Conversion(("x",), (1.0,))
+    assert plain.is_plain and plain.signal({"x": np.array([2.0])}).tolist() == [2.0]

@@ -8,7 +8,7 @@ from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.soundness.encoder_steps import check_steps
 from teleopdesign.measurement.soundness.force_steps import check_force_steps
 from teleopdesign.measurement.soundness.mains_hum import check_hum
-from teleopdesign.measurement.soundness.noise import check_noise
+from teleopdesign.measurement.soundness.noise import check_noise, measured_noise
 from teleopdesign.measurement.soundness.segments import check_segments
 from teleopdesign.measurement.soundness.time_shift import check_velocity
 
@@ -182,3 +182,33 @@ def test_a_velocity_of_another_body_does_not_follow():
     assert finding.concern == "warning"
     (finding,) = check_velocity(channel(np.sin(9 * t)), channel(t < 0.1, "velocity"))
     assert "does not follow" in finding.sentence  # where both are compared it is zero
+
+
+@pytest.mark.parametrize("rows", [16, 499, 501, 20_000, 61_234])
+def test_the_noise_of_a_record_of_any_length_is_that_of_its_usual_pieces(rows):
+    """Also where it is cut into many pieces, a fifth of which are ten times as noisy."""
+    random = np.random.default_rng(0)
+    x = 0.1 * random.normal(size=rows)
+    if rows > 10_000:
+        x[: rows // 5] *= 10.0
+        x += swing(rows, 5.0)
+    assert measured_noise(channel(x)) == pytest.approx(0.1, rel=0.8 if rows < 100 else 0.12)
+
+
+def test_stretches_too_short_to_show_noise_are_left_out():
+    x = np.r_[100.0 * np.arange(15) ** 2, 0.1 * np.random.default_rng(0).normal(size=600)]
+    cut = (slice(0, 15), slice(15, len(x)))
+    assert measured_noise(channel(x, segments=cut)) == pytest.approx(0.1, rel=0.15)
+    assert measured_noise(channel(x[:15])) == 0.0
+    # the remainder of a stretch counts from sixteen rows on
+    x = np.r_[0.1 * np.random.default_rng(1).normal(size=1000), 50.0 * np.arange(15.0) ** 4]
+    assert measured_noise(channel(x)) == pytest.approx(0.1, rel=0.15)
+
+
+@pytest.mark.parametrize(("short", "concern"), [(500, "note"), (501, "warning")])
+def test_a_tenth_of_a_record_in_short_segments_is_a_note_and_more_a_warning(short, concern):
+    """At 1 kHz: half a second is too short; 5 s in all."""
+    record = record_of(5000, (slice(0, 5000 - short), slice(5000 - short, 5000)))
+    (finding,) = check_segments(record)
+    assert finding.concern == concern and finding.numbers["too_short"] == 1
+    assert finding.numbers["left_out"] == pytest.approx(1e-3 * short)

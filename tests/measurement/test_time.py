@@ -4,7 +4,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from measurement.rod_example import rod_columns, rows
 
+from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
+from teleopdesign.measurement.log_clock import _effect_of_even_stamps
+from teleopdesign.measurement.record_clock import RecordClock
+from teleopdesign.measurement.time_grid import clock_of
 
 
 def with_segments(folder, labels, stamps=None):
@@ -77,3 +81,31 @@ def test_stamps_that_are_rounded_give_the_true_rate(rod, rate, digits):
     record = with_stamps(rod, np.arange(count) / rate, digits)
     assert record.sample_time * rate == pytest.approx(1, abs=10.0**-digits)
     assert len(record.time) == count
+
+
+def test_rows_that_a_logger_writes_in_reversed_blocks_are_sorted_and_not_refused():
+    """Two steps of three go back, and the log goes on."""
+    n = 300
+    order = np.arange(n).reshape(-1, 3)[:, ::-1].ravel()
+    clock = clock_of(0.01 * order, (slice(0, n),), np.zeros(n, dtype=bool), "log")
+    assert clock.sorted and clock.restarts == 0 and len(clock.time) == n
+    assert np.array_equal(order[clock.rows], np.arange(n))
+    backwards = 0.01 * np.arange(n)[::-1]
+    with pytest.raises(ExperimentError, match="time that does not increase"):
+        clock_of(backwards, (slice(0, n),), np.zeros(n, dtype=bool), "log")
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-2, 1.0, 1e4])
+def test_what_even_stamps_would_cost_is_a_part_of_the_travel_in_any_unit(size):
+    """Off by 2 ms rms at 1/s: 0.2 % of a travel of one, if the position is a ramp."""
+    n, h = 1001, 1e-3
+    off = 2e-3 * np.tile([1.0, -1.0], n)[:n]
+    time = h * np.arange(n)
+    whole = (slice(0, n),)
+    stamps = time + 0.1 * off
+    clock = RecordClock(np.arange(n), stamps, np.arange(n), time, h, whole, whole)
+    text = _effect_of_even_stamps(clock, [size * stamps])
+    assert text == "read as even, positions would err by 0.02 % of the travel"
+    slower = _effect_of_even_stamps(clock, [size * stamps, size * np.round(stamps)])
+    assert float(slower.split()[7]) >= 0.02, "the position that would err most counts"
+    assert _effect_of_even_stamps(clock, []) == "none"

@@ -8,7 +8,7 @@ from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.soundness.segments import check_segments
 from teleopdesign.measurement.survey import Choices, spans_of, survey_log
-from teleopdesign.measurement.survey.trials import trial_column
+from teleopdesign.measurement.survey.trials import longest_trial, trial_column
 
 H, ROWS = 2e-3, 1500
 ONE = np.arange(ROWS)
@@ -86,3 +86,12 @@ def test_no_gap_is_reported_where_trials_follow_at_once():
     (finding,) = check_segments(made.records[0])
     assert "with no gap between them" in finding.sentence
     assert finding.numbers["longest_gap"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("rows", "alone"), [(499, False), (500, True), (501, True)])
+def test_a_trial_of_five_hundred_rows_tells_enough_by_itself(rows, alone):
+    t = H * np.arange(rows + 100)
+    trial = np.where(np.arange(len(t)) < rows, 1.0, 2.0)
+    columns = {"t_s": t, "trial": trial, "angle_rad": Q[: len(t)], "tau_Nm": U[: len(t)]}
+    columns = longest_trial(look(columns))
+    assert len(columns["angle_rad"].values) == (rows if alone else len(t))

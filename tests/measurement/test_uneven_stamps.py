@@ -115,3 +115,30 @@ def test_a_row_out_of_order_among_stamps_that_rows_share_begins_no_new_clock():
     parts, dropped, _, restarts = rows_in_order(stamps, (slice(0, 600),), np.zeros(600, dtype=bool))
     assert restarts == 0 and dropped == 400
     assert stamps[parts[0]] == pytest.approx(0.01 * np.arange(200))
+
+
+@pytest.mark.parametrize("change", [1, 40, 149])
+def test_rows_with_two_stamps_alone_are_counted_from_the_first_to_the_last(change):
+    """Whole seconds of a log of 1.5 s: no stretch lies between two changes."""
+    stamps = np.where(np.arange(150) < change, 7.0, 8.0)
+    clock, *_ = clock_by(stamps)
+    assert clock.counted and clock.sample_time == pytest.approx(1 / 149)
+    assert clock.time == pytest.approx(7.0 + np.arange(150) / 149)
+
+
+def test_a_row_is_a_repeat_only_of_one_that_its_clock_counted_just_before():
+    """The first row after a clock was set back may say the same; a row too early is a repeat."""
+    h = 0.01
+    stamps = np.r_[h * np.arange(300), h * np.arange(300)]
+    stamps[0] += 1e-3 * h  # uneven by a hair
+    same = np.zeros(600, dtype=bool)
+    same[[0, 300, 450]] = True
+    _, parts, changes = clock_by(stamps, same=same)
+    assert [len(p) for p in parts] == [300, 300] and changes == [0, 0, 1]
+    for early, dropped in [(0.24, 1), (0.26, 0)]:
+        stamps[450] = stamps[449] + early * h
+        _, parts, changes = clock_by(stamps, same=same)
+        assert changes == [dropped, 0, 1] and (450 in parts[1]) == (not dropped)
+    same[450] = False
+    stamps[450] = stamps[449] + 0.1 * h
+    assert clock_by(stamps, same=same)[2] == [0, 0, 1], "another reading, however early"

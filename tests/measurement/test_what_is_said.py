@@ -204,3 +204,20 @@ def test_times_of_a_workbook_are_seconds(cell, seconds):
     assert workbook._column(["a", 1]).dtype == object
     date = workbook._column([datetime.datetime(1970, 1, 1, 0, 0, 2), None])
     assert date[0] == np.datetime64(2, "s") and np.isnat(date[1])
+
+
+@pytest.mark.parametrize(("unit", "size"), [("rad", 1.0), ("deg", np.pi / 180), ("mm", 1e-3)])
+@pytest.mark.parametrize("step", [1e-3, 0.5, 3.0])
+def test_the_step_of_an_encoder_is_stated_in_the_unit_of_its_column(unit, size, step):
+    """Also where it is below one; a smooth column has none."""
+    travel = 400.0 * step
+    read = step * np.round(travel * (Q / np.ptp(Q)) / step)
+    axis = "prismatic" if unit == "mm" else "revolute"
+    force = "u_N" if unit == "mm" else "u_Nm"
+    survey = look({"t_s": T, f"pos_{unit}": read, force: U}, axis=axis, position=f"pos_{unit}")
+    assert survey.channels["position"]["resolution"] == pytest.approx(step, rel=1e-3)
+    assert any(f"moves in steps of {step:.4g} {unit}" in note for note in survey.notes)
+    smooth = look(
+        {"t_s": T, f"pos_{unit}": travel * Q, force: U}, axis=axis, position=f"pos_{unit}"
+    )
+    assert smooth.channels["position"].get("resolution", 0.0) < 0.01 * step * 400

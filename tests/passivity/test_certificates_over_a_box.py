@@ -55,6 +55,11 @@ def is_accepted(certificate):
         ("v*s**2 + s + 1", False),  # from infinity
         ("(v + 2)*s**3 + s**2 + s + 1/2", False),  # v + 2 > 2
         ("-s - v - 3/2", True),
+        # nowhere zero on the axis, and with roots at the right everywhere
+        ("s - v - 3", False),
+        ("s**2 - s*(v + 2) + 1", False),
+        ("s**2 + s*(v + 2) - 1", False),
+        ("s**3 + s**2 + s + 9 + v", False),
         ("v + 2", True),
         ("v", False),
         ("0", False),
@@ -283,3 +288,10 @@ def is_true_at(c, rng):
     rows = [[str(sp.cancel(there(e) / below)) for e in row] for row in c["numerators"]]
     kind = c["kind"].removesuffix(" over a box")
     return is_accepted(sealed({"kind": kind, "title": "", "impedance": rows}))
+
+
+@pytest.mark.parametrize(("dip", "holds"), [("1/100", True), ("-1/10000", False)])
+def test_a_port_that_only_touches_zero_at_an_end_of_the_box_is_accepted(dip, holds):
+    """Re Z is (v + 1) times a parabola that stays a little above zero within the box."""
+    damping = f"(v + 1)*((v - 1/2)**2 + ({dip}))"
+    assert is_accepted(one_port(f"s + {damping}", "1")) is holds

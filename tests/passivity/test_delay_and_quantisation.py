@@ -17,6 +17,7 @@ from teleopdesign.passivity import (
     write_record,
 )
 from teleopdesign.passivity.rate_independent import Dahl, dahl_loss
+from teleopdesign.passivity.theorems.quantised_spring import stiffest_spring
 
 DAHL = {"level": 0.7, "stiffness": 1e4}
 
@@ -165,3 +166,27 @@ def test_no_motion_takes_energy_out_of_the_limiting_spring(steps, start):
 def test_nothing_negative_is_accepted():
     with pytest.raises(ModelError, match="stiffness: expected a number >= 0"):
         spring(-1)
+
+
+@pytest.mark.parametrize(
+    ("damping", "step", "level", "compensator", "expected"),
+    [
+        (1.0, 1e-5, 0.5, 0.0, 2000.0),  # 2 b/T
+        (100.0, 1e-5, 0.5, 0.0, 1e5),  # 2 f_C/Delta
+        (100.0, 1e-5, 0.5, 0.3, 4e4),  # what the compensator leaves of it
+        (100.0, 1e-5, 0.5, 0.6, 0.0),
+        (100.0, 0.0, 0.5, 0.0, 2e5),  # no steps
+        (0.0, 1e-5, 0.5, 0.0, 0.0),
+    ],
+)
+def test_the_stiffest_spring_is_the_least_that_damping_and_friction_pay_for(
+    damping, step, level, compensator, expected
+):
+    stiffest = stiffest_spring(
+        damping=damping,
+        sample_time=1e-3,
+        step=step,
+        coulomb_level=level,
+        compensator_level=compensator,
+    )
+    assert stiffest == pytest.approx(expected)

@@ -111,3 +111,35 @@ def test_between_the_proof_and_the_limit_the_margin_is_the_least_real_part(part)
         assert claim.verdict.margin == pytest.approx(real.min(), abs=1e-6)
     else:
         assert claim.status == "refuted" and real.min() < 0.0
+
+
+@pytest.mark.parametrize(
+    ("delay", "time_constant", "order", "expected"),
+    [
+        (0.0, 0.0, 2, np.inf),
+        (0.01, 0.0, 2, 0.0),
+        (0.0, 0.02, 1, 3.0 * 0.02),
+        (0.01, 0.02, 1, 3.0 * 0.02),
+        (0.0, 0.02, 2, 2 * 3.0 * 0.02),
+    ],
+)
+def test_the_largest_inertia_is_that_of_its_closed_form(delay, time_constant, order, expected):
+    limit = largest_passive_inertia(
+        damping=3.0, delay=delay, time_constant=time_constant, order=order
+    )
+    assert limit == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize(("delay", "time_constant"), [(0.01, 0.02), (0.01, 0.0), (0.0, 0.0)])
+def test_a_device_none_of_whose_inertia_is_cancelled_is_passive(delay, time_constant, order):
+    claim = cancelled_inertia(
+        **DEVICE, cancelled=0, delay=delay, time_constant=time_constant, order=order
+    )
+    assert claim.status == "proved"
+    claim.certificates[0].check()
+
+
+@pytest.mark.parametrize(("cancelled", "status"), [(0.149, "proved"), (0.151, "refuted")])
+def test_without_delay_and_low_pass_all_inertia_may_be_cancelled(cancelled, status):
+    assert cancelled_inertia(**DEVICE, cancelled=cancelled, delay=0).status == status

@@ -8,7 +8,7 @@ from devices import body
 from sympy.polys.matrices import DomainMatrix
 
 from teleopdesign.controllers import controller
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
+from teleopdesign.diagrams import Attached, Control, Diagram, Junction, Moving, teleoperator
 from teleopdesign.passivity.linear.in_full import equations_in_full
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S
@@ -19,13 +19,29 @@ SPRING = controller("spring_damper", {"stiffness": 150.0, "damping": 2.0})
 HALF = controller("gain", {"gain": 0.5})
 
 
-def looped(law, analog=True):
+def looped(law, analog=True, **effects):
     """A damped mass that a controller holds."""
     return Diagram(
         "looped",
         (
-            Moving("M", body(0.2, viscous__damping=1.0), "x", "u", {"f": 1}, "f"),
+            Moving("M", body(0.2, viscous__damping=1.0, **effects), "x", "u", {"f": 1}, "f"),
             Control("P", law, "x", "F", "x", analog=analog),
+        ),
+        (Junction("u", {"F": -1}),),
+        {"f": "force"},
+        measured=("x",),
+    )
+
+
+def carried(law, sign):
+    """A damped mass that a controller holds, with another body on it; sign: of its force."""
+    load = body(0.1, viscous__damping=0.5, spring__stiffness=20.0)
+    return Diagram(
+        "carried",
+        (
+            Moving("M", body(0.4, viscous__damping=1.0), "x", "u", {"f": 1, "g": -sign}, "f"),
+            Attached("Z", load, "x", "g", sign),
+            Control("P", law, "x", "F", "x", analog=True),
         ),
         (Junction("u", {"F": -1}),),
         {"f": "force"},
@@ -42,6 +58,12 @@ DIAGRAMS = {
     "two devices": teleoperator(
         body(0.2, viscous__damping=1.0), body(0.3, viscous__damping=2.0), coupling=LAG.then(SPRING)
     ),
+    "two lags of the drive": looped(
+        SPRING, actuator_lag__time_constant=0.02, actuator_gain__gain=0.8
+    ),
+    "a lag of the drive and a leaking film": looped(LEAD, actuator_lag__time_constant=0.05),
+    "something that is carried": carried(SPRING, 1),
+    "something that pulls the other way": carried(LEAD, -1),
     "a delay of no time": looped(controller("delay", {"time": 0.0}).then(SPRING)),
 }
 

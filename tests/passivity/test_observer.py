@@ -163,3 +163,21 @@ def test_the_error_of_the_energy_is_what_noise_of_each_sample_makes_of_it(seed, 
     observation = observe(time, position, force, held=held, position_noise=0.3, force_noise=0.7)
     assert observation.data["stderr"].values == pytest.approx(np.sqrt(variance), abs=1e-12)
     assert now[0] == 0.0 and observation.data["stderr"].values[0] == 0.0
+
+
+@pytest.mark.parametrize("pushed", [-2.0, 2.0])
+@pytest.mark.parametrize("noise", [0.0, 10.0])
+def test_what_an_observer_states_is_the_energy_its_error_and_whether_it_is_certain(pushed, noise):
+    """A force of 2 N along a metre, or against it, and back over half of that."""
+    time = np.linspace(0.0, 3.0, 301)
+    position = np.interp(time, [0.0, 2.0, 3.0], [0.0, 1.0, 0.5])
+    made = observe(time, position, np.full(301, pushed), force_noise=noise)
+    text = repr(made)
+    least = min(0.0, pushed)
+    assert f"least {least:.4g} J at {2.0 if pushed < 0 else 0.0:.4g} s" in text
+    assert text.startswith(f"Energy into the port: {'1' if pushed > 0 else '-1'}")
+    assert made.certain == (pushed < 0)  # the error of 301 forces averages out
+    word = "energy was released" if made.certain else "no energy was certainly released"
+    assert text.endswith(f": {word}")
+    wide = observe(time, position, np.full(301, pushed), force_noise=20.0 * noise)
+    assert wide.certain == (pushed < 0 and noise == 0.0)

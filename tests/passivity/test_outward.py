@@ -100,3 +100,13 @@ def test_a_quarter_turn_is_enclosed():
     with mpmath.workdps(40):
         quarter = outward._QUARTER
         assert mpmath.mpf(float(quarter.low)) < mpmath.pi / 2 < mpmath.mpf(float(quarter.high))
+
+
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [(-np.inf, np.inf), (0.0, np.inf), (np.nan, np.nan), (-1e300, 1e300), (1e25, 1e25), (0.0, 7.0)],
+)
+def test_of_an_angle_that_is_not_known_to_a_turn_nothing_is_shown(low, high):
+    with np.errstate(all="ignore"):
+        for made in cosine_and_sine(Outward(np.array([low]), np.array([high]))):
+            assert made.low[0] == -1.0 and made.high[0] == 1.0

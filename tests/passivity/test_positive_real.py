@@ -295,3 +295,13 @@ class TestAgainstPythonControl:
         assert control.ispassive(system)
         assert positive_real(system).status == "refuted"
         assert float(damping_excess(system)) == pytest.approx(-1e-6)
+
+
+@pytest.mark.parametrize(("degree", "fits"), [(40, True), (41, False)])
+def test_an_impedance_of_degree_forty_is_the_highest_that_is_decided(degree, fits):
+    z = S / (S**degree + 1)
+    if fits:
+        assert impedance(z).q.degree() == degree
+        return
+    with pytest.raises(ModelError, match="of degree 41 in s, expected at most 40"):
+        impedance(z)

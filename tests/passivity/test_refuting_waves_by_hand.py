@@ -1,6 +1,7 @@
 """Waves and terminations that refute: found where they are known to be, and nowhere else."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -135,3 +136,50 @@ def test_vertices_prove_nothing_where_the_linear_rest_is_not_passive_in_between(
         rubbing(), {"Z_M.viscous.damping": (0.0, 1.0), "C.dahl.level": (0.2, 0.6)}
     )
     assert claim.status != "proved" and claim.margin != claim.margin
+
+
+@pytest.mark.parametrize("second", [sp.Rational(1, 5), 1, 7])
+@pytest.mark.parametrize("factor", [1, -1])
+@pytest.mark.parametrize("frequency", [0.05, 0.16, 2.0])
+def test_the_second_port_is_held_where_the_first_resists_least(second, factor, frequency):
+    """Of all reactances at port 2, by brute force; r1 - (|L| + Re L) / (2 r2) by hand."""
+    w = sp.Rational(str(frequency)) * 6
+    loop = 40 * second * (S / w) ** 2 / (S / w + 1) ** 2 * factor
+    system = two_port_of([[S / w + 1, loop], [1, second + S / 3]])
+    (text,) = (t for t, _ in waves.terminate(system, frequency) if t.startswith("held by "))
+    held = sp.sympify(text.removeprefix("held by ").removesuffix(" N s/m"), locals={"s": S})
+    at = 2j * np.pi * frequency
+    z11, z12, z21, z22 = (complex(e.subs(S, sp.sympify(at))) for e in system.z)
+    reactance = complex(held.subs(S, sp.sympify(at)))
+    assert reactance.real == pytest.approx(0.0, abs=1e-9)
+    least = z11.real - (abs(z12 * z21) + (z12 * z21).real) / (2 * z22.real)
+    here = (z11 - z12 * z21 / (z22 + reactance)).real
+    assert here == pytest.approx(least, abs=1e-6 * (1 + abs(least)))
+    tangents = np.tan(np.linspace(-1.57, 1.57, 20001)) * abs(z22)
+    assert here <= (z11 - z12 * z21 / (z22 + 1j * tangents)).real.min() + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("entries", "is_taken"),
+    [
+        ([[1, 1], [1, 1]], False),
+        ([[1, 1], [1, 1 - sp.Rational(1, 10**30)]], True),
+        ([[1, 3], [-3, 1]], False),
+        ([[0, 1], [-1, 0]], False),
+        ([[0, 1], [1, 5]], True),
+        ([[-sp.Rational(1, 10**30), 0], [0, 5]], True),
+        ([[5, 0], [0, -sp.Rational(1, 10**30)]], True),
+        ([[S, 2 * S], [2 * S, 4 * S]], False),
+        ([[1 / S, 2 / S], [2 / S, 4 / S]], False),
+        ([[1, S], [-S, 1]], True),
+        ([[1 / (S - 1), 0], [0, 1]], False),
+    ],
+)
+def test_a_matrix_takes_energy_out_where_it_is_not_positive_to_the_last_digit(entries, is_taken):
+    """At s = 1 + 3/2 j: a lossless or singular matrix does not, one a hair below does."""
+    at = Fraction(1), Fraction(3, 2)
+    assert waves._takes_energy_out(two_port_of(entries), at) is is_taken
+
+
+def test_a_matrix_takes_nothing_out_at_a_pole():
+    assert not waves._takes_energy_out(two_port_of([[1 / (S - 1), 0], [0, -1]]), (Fraction(1), 0))

@@ -121,3 +121,15 @@ def test_a_jacobian_that_changes_with_the_pose_is_not_linear():
     diagram = teleoperator_of_arms(circle, circle, stiffness=[[100.0]])
     (one,) = linear_claims(diagram, ports(diagram))
     assert one.claim.status == "unknown" and "kinematics X_m1" in str(one.claim)
+
+
+@pytest.mark.parametrize("frequency", [1, 40])
+def test_a_refutation_of_three_ports_states_the_frequency_of_its_wave(frequency):
+    """A damper of 1 N s/m less twice a resonance at that many rad/s."""
+    s = S / frequency
+    dip = 1 - 2 * (s / 5) / (s**2 + s / 5 + 1)
+    claim = passive_together(sp.diag(1, dip, 1))
+    assert claim.status == "refuted"
+    stated = float(str(claim.verdict).partition("at ")[2].split()[0])
+    assert stated == pytest.approx(frequency / (2 * np.pi), rel=0.15)
+    assert stated == pytest.approx(float(claim.record.frequency) / (2 * np.pi), rel=1e-3)

@@ -25,6 +25,7 @@ from teleopdesign.passivity import (
     wave_claim,
     wave_teleoperator,
 )
+from teleopdesign.passivity.diagram_claims import wave_claims
 from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.simulate import simulate
 
@@ -263,3 +264,15 @@ def test_a_slaves_controller_that_is_not_linear_is_another_theorem():
     diagram = wave_variables(side, side, wave_impedance=10.0, coupling=law, delay=0.05)
     with pytest.raises(ModelError, match="P has no linear form"):
         wave_claim(diagram)
+
+
+def test_waves_with_delays_are_decided_by_their_theorem_and_without_by_the_linear_test():
+    arm = body(0.3, **SIDE)
+
+    def of_diagram(**delays):
+        diagram = wave_variables(arm, arm, wave_impedance=10.0, coupling=MATCHED, **delays)
+        return [c for c in wave_claims(diagram) if c.claim.status != "unknown"]
+
+    (one,) = of_diagram(delay=0.05)
+    assert one.topic == "both ports, any motion" and one.claim.status == "proved"
+    assert of_diagram() == []

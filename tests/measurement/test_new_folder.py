@@ -1,0 +1,182 @@
+"""The folder made of logs: which record is fitted, what the model starts from, and what is kept."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement import load_experiment
+from teleopdesign.measurement.first_guess import FirstGuess
+from teleopdesign.measurement.new_folder import experiment_text, make_folder
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.tables import open_log
+
+H = 0.005
+M, LEVEL, DAMPING = 0.4, 0.6, 2.0
+
+
+def write_log(path, size=1.0):
+    """A slider of 0.4 kg with friction of 0.6 N and 2 N s/m, 12 s."""
+    t = H * np.arange(2400)
+    x = size * (0.1 * np.sin(2 * np.pi * 0.6 * t) + 0.05 * np.sin(2 * np.pi * 1.9 * t + 1.0))
+    v = np.gradient(x, t)
+    force = M * np.gradient(v, t) + LEVEL * np.sign(v) + DAMPING * v
+    table = np.column_stack([t, 1e3 * x, force, np.cos(t)])
+    names = "time (s),position (mm),force command (N),temperature (degC)"
+    np.savetxt(path, table, delimiter=",", header=names, comments="", fmt="%.9g")
+    return path
+
+
+@pytest.fixture
+def log(tmp_path):
+    return write_log(tmp_path / "run.csv")
+
+
+def survey_of(path, axis="prismatic"):
+    return survey_log(open_log(path, path.name), path.name, Choices(axis=axis))
+
+
+def make(log, folder, *more, **choices):
+    return make_folder(survey_of(log), [log, *more], folder, title='a "b"', **choices)
+
+
+def written(folder):
+    return tomllib.loads((folder / "experiment.toml").read_text())
+
+
+def test_one_log_is_cut_into_fit_and_check_and_the_model_starts_from_the_fit(log, tmp_path):
+    folder = make(log, tmp_path / "new" / "rod")
+    assert folder == tmp_path / "new" / "rod"
+    assert (folder / "run.csv").read_bytes() == log.read_bytes()
+    content = written(folder)
+    assert content["title"] == 'a "b"'
+    fit, check = content["records"]
+    assert (fit["use"], check["use"]) == ("fit", "check")
+    assert fit["file"] == check["file"] == "run.csv"
+    assert fit["span"][0] == 0.0 and fit["span"][1] == check["span"][0] < check["span"][1]
+    device = content["model"]["device"]
+    assert device["axis"] == "prismatic"
+    inertia = device["inertia"]
+    assert inertia["unit"] == "kg" and not inertia.get("fixed", False)
+    assert inertia["value"] == pytest.approx(M, rel=0.05)
+    assert float(f"{inertia['value']:.3g}") == inertia["value"]  # three digits of a start
+    level = device["effects"]["coulomb"]["level"]
+    assert level["unit"] == "N" and level["value"] == pytest.approx(LEVEL, rel=0.1)
+    damping = device["effects"]["viscous"]["damping"]
+    assert damping["unit"] == "N*s/m" and damping["value"] == pytest.approx(DAMPING, rel=0.1)
+    text = (folder / "experiment.toml").read_text()
+    assert "# forces in N, positions in m" in text and "# a start, from the log" in text
+    assert '#   "temperature (degC)": ' in text
+    experiment = load_experiment(folder)
+    assert [r.use for r in experiment.records] == ["fit", "check"]
+    assert experiment.channels["device.position"].unit == "mm"
+    total = sum(len(r.time) for r in experiment.records)
+    assert 2390 <= total <= 2400
+
+
+def test_spans_that_are_stated_are_the_records(log, tmp_path):
+    folder = make(log, tmp_path / "rod", spans=((2.0, 7.0), (8.0, 11.5)))
+    fit, check = written(folder)["records"]
+    assert fit["span"] == [2.0, 7.0] and check["span"] == [8.0, 11.5]
+    with pytest.raises(ExperimentError, match="expected spans that do not overlap"):
+        make(log, tmp_path / "other", spans=((2.0, 7.0), (6.0, 11.5)))
+    assert not (tmp_path / "other").exists()
+
+
+def test_of_several_logs_the_last_is_the_check_record(log, tmp_path):
+    more = [write_log(tmp_path / f"run{k}.csv", 1.0 + 0.1 * k) for k in (1, 2)]
+    folder = make(log, tmp_path / "rod", *more)
+    assert written(folder)["records"] == [
+        {"file": "run.csv", "use": "fit"},
+        {"file": "run1.csv", "use": "fit"},
+        {"file": "run2.csv", "use": "check"},
+    ]
+    assert sorted(p.name for p in folder.iterdir()) == [
+        *("experiment.toml", "run.csv", "run1.csv", "run2.csv")
+    ]
+    assert written(folder)["model"]["device"]["inertia"]["value"] == pytest.approx(M, rel=0.05)
+
+
+def test_an_inertia_that_is_known_is_kept_and_no_start_is_guessed(log, tmp_path):
+    folder = make(log, tmp_path / "rod", inertia=0.45, effects=("coulomb", "stribeck"))
+    device = written(folder)["model"]["device"]
+    assert device["inertia"] == {"value": 0.45, "unit": "kg", "fixed": True}
+    assert device["effects"] == {"coulomb": {}, "stribeck": {}}
+    assert "model.device.inertia" not in written(folder).get("guessed", {})
+
+
+def test_a_folder_that_holds_an_experiment_is_left_unless_it_may_be_replaced(log, tmp_path):
+    folder = make(log, tmp_path / "rod")
+    before = (folder / "experiment.toml").read_text()
+    with pytest.raises(ExperimentError, match="rod/experiment.toml: is there already"):
+        make(log, folder, inertia=3.0)
+    assert (folder / "experiment.toml").read_text() == before
+    make(log, folder, inertia=3.0, overwrite=True)
+    assert written(folder)["model"]["device"]["inertia"]["value"] == 3.0
+
+
+def test_a_log_in_the_folder_itself_is_left_as_it_is(log, tmp_path):
+    content = log.read_bytes()
+    folder = make(log, tmp_path)
+    assert (folder / "run.csv").read_bytes() == content
+    assert load_experiment(folder).records
+
+
+def test_a_log_of_several_tables_is_copied_as_a_folder(tmp_path):
+    whole = write_log(tmp_path / "whole.csv")
+    lines = [line.split(",") for line in whole.read_text().splitlines()]
+    parts = tmp_path / "parts"
+    parts.mkdir()
+    for name, columns in {"motion.csv": (0, 1), "drive.csv": (0, 2)}.items():
+        (parts / name).write_text("\n".join(",".join(r[c] for c in columns) for r in lines))
+    folder = make(parts, tmp_path / "rod")
+    assert sorted(p.name for p in (folder / "parts").iterdir()) == ["drive.csv", "motion.csv"]
+    assert len(load_experiment(folder).fit_records[0].time) > 1200
+
+
+def test_a_folder_that_cannot_be_written_is_named(log, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(ExperimentError, match="^rod: cannot be written: Not a directory"):
+        make(log, tmp_path / "file" / "rod")
+
+
+def test_signs_that_make_no_inertia_ask_to_be_looked_at(log, tmp_path):
+    survey = survey_of(log)
+    assert "sign" not in survey.channels["actuator_force"]
+    survey.channels["actuator_force"]["sign"] = -1
+    folder = make_folder(survey, [log], tmp_path / "rod", title="t")
+    content = written(folder)
+    assert content["guessed"]["model.device.inertia"].startswith("the motion tells no inertia")
+    assert content["model"]["device"]["inertia"]["value"] == 1.0
+    # neither friction nor damping starts below zero
+    assert content["model"]["device"]["effects"] == {"coulomb": {}, "viscous": {}}
+
+
+def test_a_joint_is_written_in_units_of_turning(tmp_path):
+    survey = survey_of(write_log(tmp_path / "run.csv"))
+    survey.axis = "revolute"
+    guess = FirstGuess(0.012345, 0.23456, 0.0, 0.9, (0.0, 0.0, 0.0))
+    survey.guesses = {"channels.time.unit": "by name", "channels.timer": "no", "other": 'a "b"'}
+    text = experiment_text(
+        survey, [], title="t", inertia=None, first=guess, effects=("viscous", "coulomb", "bias")
+    )
+    content = tomllib.loads(text)
+    assert content["model"]["device"]["inertia"] == {"value": 0.0123, "unit": "kg*m^2"}
+    assert content["model"]["device"]["effects"] == {
+        "viscous": {},
+        "coulomb": {"level": {"value": 0.235, "unit": "N*m"}},
+        "bias": {},
+    }
+    assert "# forces in N*m, positions in rad" in text
+    assert text.count("# guessed: by name") == 1 and "# guessed: no" not in text
+    assert content["guessed"] == survey.guesses
+    damped = FirstGuess(0.0, 0.0, 0.5, 0.9, (0.0, 0.0, 0.0))
+    text = experiment_text(survey, [], title="t", inertia=None, first=damped, effects=("viscous",))
+    device = tomllib.loads(text)["model"]["device"]
+    assert device["effects"]["viscous"]["damping"] == {"value": 0.5, "unit": "N*m*s/rad"}
+    assert device["inertia"]["value"] == 1.0
+    survey.guesses, survey.unused = {}, {}
+    text = experiment_text(survey, [], title="t", inertia=None, first=None, effects=())
+    assert "[guessed]" not in text.split("\n", 2)[2] and "in no channel" not in text
+    assert "inertia" not in tomllib.loads(text)["model"]["device"]
