@@ -66,7 +66,8 @@ def _rungs_to_stay(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]
     model = state.fit.model
     try:
         for rung in reversed(state.rungs):
-            model = model if rung in staying else rung.undo_addition(model)
+            if all(rung is not one for one in staying):
+                model = rung.undo_addition(model)
     except ModelError:
         return state.rungs
     last = estimate(model, search.prepared)
