@@ -86,15 +86,18 @@ def candidates(
                 continue
             if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
-            if body.lacks(effect) or any(
-                n in model.known and not body.has(n) for n in effect.after
-            ):
+            if body.lacks(effect) or comes_too_early(effect, place, model):
                 continue
             if any(not effect.channels() <= set(m.further) for m in motions_here):
                 continue
             if _is_distinguishable(effect, motions_here, separate_zeros):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
+
+
+def comes_too_early(effect: Effect, at: str, model: Model) -> bool:
+    """Whether a place lacks a known effect that this one could imitate (`Effect.after`)."""
+    return any(n in model.known and not model.body(at).has(n) for n in effect.after)
 
 
 def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:

@@ -86,7 +86,7 @@ def conclude(
         near_reversals=error_near_reversals(model, search.whole),
         left_out=search.plan.omissions(),
         undetermined=find_undetermined(rungs, search.whole),
-        set_aside=set_aside,
+        set_aside=_select_left_out(set_aside, rungs),
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
     )
     named = probable(diagnosis, criteria=criteria)
@@ -94,6 +94,12 @@ def conclude(
     if diagnosis.verdict == "effects_missing" and not named:
         return replace(diagnosis, verdict="undecided")
     return replace(diagnosis, named=named)
+
+
+def _select_left_out(set_aside: Sequence[SetAside], rungs: Sequence[Rung]) -> tuple[SetAside, ...]:
+    """The effects that were set aside and did not return later, such as beside another effect."""
+    accepted = {rung.added.key for rung in rungs if rung.added is not None}
+    return tuple(one for one in set_aside if one.candidate.key not in accepted)
 
 
 def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:

@@ -148,8 +148,8 @@ def select_independent(
         if new is None or new.key not in named or model.body(new.at).lacks(new.effect):
             continue
         there.append(new)
-        if rung.instead_of is None:  # else the body has an effect of its kind already
-            model = model.with_effect(new.effect.name, at=new.at)
+        # an effect that it replaced stays: it makes no effect possible that the ladder refused
+        model = model.with_effect(new.effect.name, at=new.at)
     return tuple(there)
 
 

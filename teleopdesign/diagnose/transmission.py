@@ -3,6 +3,9 @@
 This is a pair like others (`pairs`), but a search with one of the two effects does not lead to the
 other: friction does not help a gap that was fitted without friction. So the search starts at
 simulated motions of the tip (`tip_start`).
+
+A soft transmission with friction behind it also imitates the friction of the actuator. So the pair
+is added only beside that friction (`Effect.after`), whether the user stated it or it was accepted.
 """
 
 from __future__ import annotations
@@ -11,39 +14,64 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+from ..errors import ModelError
 from .adequacy import is_adequate
-from .candidates import Candidate
+from .candidates import Candidate, comes_too_early
 from .decision import explained_share, is_better, is_supported, objection
 from .evidence import check_squares
-from .fit import Fit
+from .fit import Fit, estimate
 from .ladder_state import LadderSearch, LadderState
 from .outside_tone import best_tone
 from .rank import make_ranked
 from .ranking import Ranking
 from .rung import Rung
-from .rungs import estimate_without, order_by_falling_error
+from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
 from .search import base_of, estimate_best_start
 from .tip_start import tip_starts
 from .width import OpenWidths
 
 
 def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Add a transmission with friction behind it, or replace all added effects by the two.
+    """Add a transmission with friction behind it, or replace added effects by the two.
 
-    All added effects are replaced where the two explain most of the squares that the rungs leave.
+    The added effects are replaced where the two explain most of the squares that the rungs leave,
+    except those that the two could imitate.
     returns: None where no such pair is supported
     """
     if is_adequate(state.fit, state.floor, criteria=search.criteria) or not search.plan.tip_starts:
         return None
-    beside = [state.rungs] if state.step == 1 else [state.rungs[:1], state.rungs]
-    for rungs in beside:
-        ranking = state.ranking if rungs is state.rungs else state.rungs[1].ranking
+    staying = _rungs_to_stay(search, state)
+    for rungs in (staying, state.rungs) if len(staying) < state.step else (state.rungs,):
+        ranking = state.ranking if rungs is state.rungs else None
+        if len(rungs) == 1 and state.step > 1:
+            ranking = state.rungs[1].ranking
         pair = _best_pair(search, state, rungs[-1].fit, ranking)
         order = pair and order_by_falling_error((*rungs, *pair), search.prepared)
         if not order or frozenset(order[-1].fit.model.effects) in state.visited:
             continue
         return state.with_rungs(order)
     return None
+
+
+def _rungs_to_stay(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
+    """The user's model, and the added effects that friction behind a transmission could imitate.
+
+    All rungs where these effects do not stand without the others.
+    """
+    known = state.fit.model.known.values()
+    imitated = {name for e in known if e.role == "tip_level" for name in e.after}
+    staying = [r for r in state.rungs if r.added is None or r.added.effect.name in imitated]
+    if len(staying) == 1:
+        return state.rungs[:1]
+    model = state.fit.model
+    try:
+        for rung in reversed(state.rungs):
+            if all(rung is not one for one in staying):
+                model = rung.undo_addition(model)
+    except ModelError:
+        return state.rungs
+    last = estimate(model, search.prepared)
+    return reorder_and_refit(staying, last, search.prepared) or state.rungs
 
 
 def _best_pair(
@@ -64,7 +92,10 @@ def _best_pair(
 
 
 def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
-    """Each transmission that a body can take, with each friction that then can act at its tip."""
+    """Each transmission that a body can take, with each friction that then can act at its tip.
+
+    None where the body lacks the friction that the pair could imitate.
+    """
     for place, body in base.model.bodies.items():
         if any(e.role == "structure" for e in body.effects):
             continue
@@ -72,6 +103,8 @@ def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
         for transmission in (e for e in known if e.role == "structure" and e.led is not None):
             whole = base.model.with_effect(transmission, at=place).body(place)
             for friction in (e for e in known if e.role == "tip_level"):
+                if comes_too_early(friction, place, base.model):
+                    continue
                 if not (whole.has(friction.name) or whole.lacks(friction)):
                     yield Candidate(transmission, place), Candidate(friction, place)
 

@@ -4,7 +4,9 @@
 
 Examples are gears, whose bearings and seals hold the side of the load, and instruments behind
 cables. At a reversal the actuator winds the transmission up by 2 F_t before the tip follows. This
-hysteresis has the stiffness K. It looks like `presliding`, and like `backlash` where K is high.
+hysteresis has the stiffness K. It looks like `presliding`, and like `backlash` where K is high. A
+soft transmission with this friction also imitates the Coulomb friction of the actuator, so it is a
+candidate only beside `coulomb`.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -46,6 +48,7 @@ EFFECT = Effect(
     absent={"level": 0.0},
     plausible=plausible,
     needs=frozenset({"transmission_compliance"}),
+    after=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="two masses on a spring with friction on both; Spong, J. Dyn. Sys. Meas. Control 109 "
     "(1987) 310, with Coulomb friction of the link",

@@ -57,7 +57,7 @@ def concluded(monkeypatch):
     What would be learned, read or drawn again of records is left out: there are none.
     """
 
-    def run(rungs, *, on_whole=None, last_floor=None, moment=None):
+    def run(rungs, *, on_whole=None, last_floor=None, moment=None, barred=()):
         table = Table(error)
         stubs = {
             "learnable": lambda *_, **__: None,
@@ -78,7 +78,7 @@ def concluded(monkeypatch):
         search.progress = lambda line: None
         search.generator = lambda: None
         search.plan.omissions = lambda: ()
-        state = table.state(rungs)
+        state = table.state(rungs, barred=barred)
         return conclude(search, state, tuple(rungs)), state
 
     return run
@@ -123,6 +123,14 @@ def test_a_rung_that_hides_the_whole_records_is_set_aside_with_all_that_followed
     assert added(diagnosis) == [SPRING]
     (aside,) = diagnosis.set_aside
     assert aside == SetAside(BIAS, rungs[2].fit.check_error, REFUSALS[why])
+
+
+def test_the_answer_sets_no_effect_of_its_ladder_aside(concluded):
+    """Alone it only weakened errors of the readings, beside another one it explained the force."""
+    aside = tuple(SetAside(one, 0.5, "alone it explains nothing") for one in (SPRING, DRAG))
+    diagnosis, _ = concluded(ladder(Table(error), "bias", "spring"), barred=aside)
+    assert added(diagnosis) == [BIAS, SPRING]
+    assert diagnosis.set_aside == aside[1:]
 
 
 def test_records_that_were_searched_as_a_whole_are_not_evaluated_again(concluded):

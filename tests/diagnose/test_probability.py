@@ -20,6 +20,7 @@ from teleopdesign.diagnose.probability import (
     select_independent,
     shares,
 )
+from teleopdesign.diagnose.rung import restore_replaced
 from teleopdesign.effects import EFFECTS
 
 
@@ -176,6 +177,25 @@ def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(diagnosis
     assert select_independent(whole, {on.key, friction.key}) == (on, friction)
     assert select_independent(whole, {friction.key}) == ()
     assert select_independent(whole, {on.key}) == (on,)
+
+
+def test_an_effect_is_named_beside_one_that_took_the_place_of_the_users(diagnosis):
+    """A damper alone was stated, and a level that bristles need took its place."""
+    level, bristles = (Candidate(EFFECTS[n], "device") for n in ("coulomb", "presliding"))
+    bare = replace(diagnosis.before.model, known=EFFECTS)
+    for name, at in reversed(bare.effects):
+        bare = bare.without_effect(name, at=at)
+    stated = bare.with_effect("viscous", at="device")
+    first = replace(diagnosis.rungs[0], fit=replace(diagnosis.before, model=stated))
+    place = restore_replaced(Candidate(EFFECTS["viscous"], "device"), stated)
+    rungs = (
+        first,
+        replace(diagnosis.rungs[-1], added=level, replaced=place),
+        replace(diagnosis.rungs[-1], added=bristles),
+    )
+    whole = replace(diagnosis, rungs=rungs)
+    assert select_independent(whole, {level.key, bristles.key}) == (level, bristles)
+    assert select_independent(whole, {bristles.key}) == ()
 
 
 def with_box(diagnosis, *, alone, learned):
