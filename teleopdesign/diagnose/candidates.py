@@ -212,7 +212,8 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
             for n, p in parameters.items()
             if p.search.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
         ]
-        grids = [_starts_of(parameters[n], scale) for n in free]
+        turns = model.body(place).axis == "revolute"
+        grids = [_starts_of(parameters[n], scale, turns=turns) for n in free]
         names = [f"{place}.{name}.{n}" for n in free]
         models = [
             m.with_values(dict(zip(names, values, strict=True)))
@@ -222,6 +223,10 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
     return models
 
 
-def _starts_of(parameter: Parameter, scale: dict[str, float]) -> list[float]:
-    starts = [m * scale[parameter.scale] for m in parameter.search.starts]
+def _starts_of(parameter: Parameter, scale: dict[str, float], *, turns: bool) -> list[float]:
+    search = parameter.search
+    starts = [m * scale[parameter.scale] for m in search.starts]
+    if turns:
+        of_a_turn = [2.0 * np.pi / k for k in range(1, search.of_a_turn + 1)]
+        starts += [s for s in of_a_turn if s < min(starts)]
     return list(dict.fromkeys(min(max(s, parameter.lower), parameter.upper) for s in starts))

@@ -104,6 +104,9 @@ def _scale_to_command(
 ) -> list[Array]:
     """Residuals scaled as if all of the interaction force reached the body.
 
+    How much of it does shows only where the body slides: where a body may rest, friction balances
+    the whole force whatever the law takes from it.
+
     motions: of the stretches, as logged;  values: residual of each stretch
     """
     values = list(values)
@@ -111,12 +114,16 @@ def _scale_to_command(
         mine = [i for i, s in enumerate(stretches) if s.motion.body == body]
         if all(command_errors[i].passed is motions[i].interaction for i in mine):
             continue
-        whole = sum(stretches[i].measured for i in mine)
-        passed = 0.0
+        anywhere = not any(motions[i].direction.any() for i in mine)
+        whole = passed = 0.0
         for i in mine:
-            s, kept = stretches[i], command_errors[i].passed
-            force = s.motion.lowpassed(s.motion.at_rows(s.motion.command) + kept)[s.keep]
-            passed += s.weight * float(force @ force)
+            s, m = stretches[i], motions[i]
+            slides = anywhere | (m.direction != 0)
+            command = s.motion.at_rows(s.motion.command)
+            forces = np.stack([command + m.interaction, command + command_errors[i].passed])
+            acting, reaching = s.motion.lowpassed(forces * slides)[:, s.keep]
+            whole += s.weight * float(acting @ acting)
+            passed += s.weight * float(reaching @ reaching)
         factor = max(1.0, float(np.sqrt(whole / max(passed, 1e-12 * whole))))
         for i in mine:
             values[i] = factor * values[i]

@@ -29,6 +29,8 @@ class FitSearch:
     starts: start values, as multiples of the record's scale
     scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
         travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
+    of_a_turn: on a revolute axis, starts at whole fractions of a turn too, down to one over this
+        number, where they are shorter than all `starts`
     within: upper bound in that scale, above which the parameter would have another meaning
     chosen: fixed at the first start, not estimated: other parameters are relative to this one
     essential: must surely exceed zero, because at zero the effect is another one; and other values
@@ -37,6 +39,7 @@ class FitSearch:
 
     starts: tuple[float, ...] = (0.01, 0.1)
     scale: str = ""
+    of_a_turn: int = 0
     within: float = float("inf")
     chosen: bool = False
     essential: bool = False
@@ -74,11 +77,16 @@ class Parameter:
 #: period of a pattern that repeats along the travel. Starts of a search are even in 1/period, at a
 #: distance of three quarters of a cycle over the whole travel: at a distance of a whole cycle, a
 #: period between two starts would be orthogonal to both for a motion that stays at its ends. A
-#: period of two travels or more is not seen to repeat: such a force is a bias, or a spring
+#: period of two travels or more is not seen to repeat: such a force is a bias, or a spring. Over
+#: many turns these starts end at long periods. Slots, poles and teeth repeat a whole number of
+#: times a turn, so such periods are starts too, as short as those over one turn
 PERIOD = Parameter(
     "position",
     "p: travel of one period",
     search=FitSearch(
-        starts=tuple(4.0 / 3.0 / k for k in range(1, 151)), scale="travel", within=2.0
+        starts=tuple(4.0 / 3.0 / k for k in range(1, 151)),
+        scale="travel",
+        of_a_turn=112,
+        within=2.0,
     ),
 )

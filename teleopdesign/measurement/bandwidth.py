@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from .encoder import reading_step
 from .experiment import Experiment
 from .filtering import Array
 from .motion import motions
@@ -69,7 +70,8 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
     """The frequency (Hz) up to which the motion continues above the chosen bandwidth.
 
     None: in some record, less acceleration lies above the bandwidth than below it; the positions do
-        not show a motion there; or the experiment states its bandwidth
+        not show a motion there, or no more than their rounding to steps makes, as where an encoder
+        passes its steps at constant speed; or the experiment states its bandwidth
     """
     if experiment.bandwidth is not None:
         return None
@@ -78,14 +80,29 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
         frequency, density, noise = _spectrum(record, name, even_out=True)
         above = (density > ABOVE * noise) & (frequency <= PROPOSED * record.rate_of(name))
         # only the part above the noise of the readings
-        acceleration = np.where(above, density - noise, 0.0) * frequency**4
-        beyond = frequency > chosen
+        motion = np.where(above, density - noise, 0.0)
+        acceleration, beyond = motion * frequency**4, frequency > chosen
         if acceleration[beyond].sum() <= acceleration[~beyond].sum():
+            return None
+        if _mean_square(motion[beyond], len(frequency)) <= _rounding(experiment, name, record):
             return None
         limits.append(float(frequency[above].max()))
     highest = min(limits)
     hidden = any(hides_motion(experiment, body, highest) for body in experiment.bodies)
     return None if hidden else highest
+
+
+def _mean_square(density: Array, count: int) -> float:
+    """Mean square of the part of a signal at some of the `count` frequencies of `_spectrum`."""
+    samples = 2.0 * (count - 1)
+    return float(density.sum()) * 16.0 / 3.0 / samples**2  # 3/8: mean square of the window
+
+
+def _rounding(experiment: Experiment, name: str, record: Record) -> float:
+    """Mean square of the error of rounding a position to the steps of its encoder."""
+    readings = np.concatenate([record.signals[name][s] for s in record.segments])
+    step = experiment.channels[name].resolution or reading_step(readings)
+    return step**2 / 12.0
 
 
 def _highest_acceleration(experiment: Experiment) -> float:

@@ -5,14 +5,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnose.made_records import write_made
 from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, load_experiment
-from teleopdesign.diagnose.candidates import bodies_with_measured_force, candidates, make_starts
+from teleopdesign.diagnose.candidates import (
+    Candidate,
+    bodies_with_measured_force,
+    candidates,
+    make_starts,
+)
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.diagnose.scales import scales
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
 from teleopdesign.errors import ExperimentError
@@ -199,6 +206,29 @@ def test_no_period_lies_far_from_where_its_search_starts(name, model, prepared):
     cycles = np.sort([travel / p for p in periods])
     assert np.diff(cycles).max() < 0.76
     assert cycles[0] < 0.76 and cycles[-1] > 100
+
+
+def test_the_period_of_teeth_is_known_however_many_turns_a_rotor_makes(tmp_path):
+    """36 teeth over 5 turns are 180 cycles over the travel: more than its parts that are tried."""
+
+    def there_and_back(t):
+        return 10.0 * np.pi * np.sin(2 * np.pi * 0.03 * t) ** 2 + 0.5 * np.sin(2 * np.pi * 0.4 * t)
+
+    def needed(t, x, v):
+        return 0.2 * np.sign(v) + 0.05 * v + 0.1 * np.sin(36 * x + 1.0)
+
+    records = {"fit": [(20.0, there_and_back)], "check": [(15.0, there_and_back)]}
+    believed = "coulomb = {}\nviscous = {}"
+    write_made(
+        tmp_path, records, needed, effects=believed, step=1e-4, noise=0.01, bandwidth=30, rate=200
+    )
+    experiment = load_experiment(tmp_path)
+    prepared = prepare(experiment)
+    base = estimate(Model.from_experiment(experiment), prepared)
+    (one,) = rank_candidates(base, prepared, among=[Candidate(EFFECTS["cogging"], "device")]).ranked
+    assert one.fit.check_error < 0.3 * base.check_error
+    period = one.fit.model.parameters["device.cogging.period"].value
+    assert period == pytest.approx(2 * np.pi / 36, rel=1e-3)
 
 
 def test_a_fixed_parameter_stays(experiment, model, prepared):

@@ -126,6 +126,28 @@ def test_what_keeps_the_hand_from_the_body_explains_nothing(name, tmp_path):
     assert left[0.999][1] > 0.9 * left[0.0][1] and left[0.5][1] > 0.9 * left[0.0][1]
 
 
+def test_friction_that_balances_the_hand_explains_nothing_though_the_body_rests_at_times(tmp_path):
+    """All carried force taken as friction: nothing is left, and at rest friction holds anyway."""
+    experiment = write(tmp_path / "pushed", by_hand=True, pauses=True)
+    prepared = prepare(experiment)
+    base = base_of(experiment, prepared, {})
+    check = prepared.of("check")
+    assert 0.2 < np.mean(np.concatenate([s.motion.direction == 0 for s in check])) < 0.8
+    before = refer_to_command(base.model, check).error
+    for part in (0.5, 0.999):
+        model = base.model.with_effect(
+            EFFECTS["load_dependent_friction"],
+            at="device",
+            values={"coefficient": part, "output_share": 1.0},
+        )
+        friction = ("device.coulomb.level", "device.viscous.damping")
+        model = model.with_values(
+            {n: (1.0 - part) * base.model.parameters[n].value for n in friction}
+        )
+        assert refer_to_command(model, check).error > 0.9 * before
+    assert force_error(model, check) < 0.1 * before, "the plain error could be cheated"
+
+
 # machines that have the effect
 
 

@@ -24,14 +24,17 @@ def smooth_noise(rng, n, cutoff):
     return y / np.std(y)
 
 
-def slide(rng, *, by_hand=False, texture=0.25):
+def slide(rng, *, by_hand=False, pauses=False, texture=0.25):
     """(t, command, position, hand force) of one record.
 
     by_hand: a hand moves the device, and the command next to nothing
+    pauses: the device rests after each slide, held by friction
     texture: rms of the unexplained force (N)
     """
     t = np.arange(0.0, SECONDS, 1 / RATE)
-    speeds = np.repeat(rng.permutation([0.2, -0.2, 0.4, -0.4, 0.8, -0.8]), len(t) // 6)
+    speeds = rng.permutation([0.2, -0.2, 0.4, -0.4, 0.8, -0.8])
+    speeds = np.stack([speeds, 0.0 * speeds], axis=1).ravel() if pauses else speeds
+    speeds = np.repeat(speeds, len(t) // len(speeds))
     kernel = np.hanning(41)
     velocity = np.convolve(np.pad(speeds, 20, mode="edge"), kernel / kernel.sum(), mode="valid")
     velocity = velocity * (1 + 0.03 * smooth_noise(rng, len(t), 2.0))
@@ -42,13 +45,13 @@ def slide(rng, *, by_hand=False, texture=0.25):
     return t, command, STEP * np.round(position / STEP), force - command
 
 
-def write_slide(folder, *, seed=1, by_hand=False):
+def write_slide(folder, *, seed=1, by_hand=False, pauses=False):
     """An experiment of two fit records and a check record."""
     folder.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(seed)
     columns = 4 if by_hand else 3
     for name in ("one", "two", "check"):
-        table = np.column_stack(slide(rng, by_hand=by_hand)[:columns])
+        table = np.column_stack(slide(rng, by_hand=by_hand, pauses=pauses)[:columns])
         head = ",".join(["t", "u", "x", "f_h"][:columns])
         np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=head, comments="")
     hand = 'interaction_force = { column = "f_h", unit = "N", noise = 0.001 }\n' if by_hand else ""

@@ -158,3 +158,26 @@ def test_a_ripple_beyond_the_bandwidth_is_noticed_at_any_mean_speed(speed):
         inertia=0.1,
     )
     assert motion_beyond(experiment, 20.0) == pytest.approx(100.0, abs=0.5)
+
+
+def runs_at_constant_speed(shaken=0.0):
+    """Runs to both sides at six speeds, as for a Stribeck curve; a sine of 60 Hz in steps."""
+    rate, step = 400.0, 1e-3
+    speeds = np.outer([0.023, 0.051, 0.083, 0.53, 2.1, 7.9], [1.0, -1.0]).ravel()
+    v = np.convolve(np.repeat(speeds, 800), np.hanning(80) / np.hanning(80).sum(), "same")
+    t = np.arange(len(v)) / rate
+    x = np.cumsum(v) / rate + step * np.random.default_rng(0).normal(0.0, 0.1, len(t))
+    x += shaken * step * np.sin(2 * np.pi * 60.0 * t)
+    return td.experiment(
+        {"t": t, "x": step * np.round(x / step), "F": np.sign(v)},
+        axis="revolute",
+        time="t",
+        position={"column": "x", "resolution": step},
+        actuator_force="F",
+        inertia=0.1,
+    )
+
+
+def test_steps_passed_at_constant_speed_are_no_motion_beyond_the_bandwidth():
+    assert motion_beyond(runs_at_constant_speed(), 20.0) is None
+    assert motion_beyond(runs_at_constant_speed(shaken=3.0), 20.0) >= 60.0
