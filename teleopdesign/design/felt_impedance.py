@@ -63,7 +63,7 @@ def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) ->
 
     hybrid: a device with C and H (either may be absent), without a hand
     """
-    cases = four_cases(hybrid)
+    cases = four_cases(hybrid, every=True)
     wanted = motion.frequency * np.array(MULTIPLES)
     wanted = wanted[wanted <= max(MOST / sampling.period, motion.frequency)]
     # whole samples a cycle, and readings without steps: every cycle is like the one before

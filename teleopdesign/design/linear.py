@@ -27,7 +27,9 @@ FRICTION = ("friction_level", "friction_factor", "friction_speed", "friction_sha
 
 def linear_cases(hybrid: Diagram, motion: StatedMotion) -> dict[str, Diagram]:
     """The four cases, with friction and a Dahl cancellation as equivalent dampers and springs."""
-    return {case: _linear(diagram, motion) for case, diagram in four_cases(hybrid).items()}
+    return {
+        case: _linear(diagram, motion) for case, diagram in four_cases(hybrid, every=True).items()
+    }
 
 
 def mean_speed(motion: StatedMotion) -> float:

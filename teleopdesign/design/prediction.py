@@ -102,7 +102,7 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
     curves = force_velocity(runs, velocity=speed, after=(CYCLES - 1) / motion.frequency)
     cases = {
         case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
-        for case, diagram in four_cases(hybrid).items()
+        for case, diagram in four_cases(hybrid, every=True).items()
     }
     return Prediction(motion, cases, curves, left_out, simulated, rigid)
 
@@ -115,7 +115,7 @@ def _simulate_cases(
     while True:
         runs: dict[str, Simulation] = {}
         failed: dict[str, str] = {}
-        for case, diagram in four_cases(hybrid).items():
+        for case, diagram in four_cases(hybrid, every=True).items():
             try:
                 runs[case] = _simulate_case(diagram, motion, sampling, step=step)
             except ModelError as error:
@@ -135,7 +135,9 @@ def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tup
     structure = next((e.name for e in body.effects if e.role == "structure"), "")
     if structure:
         try:
-            _simulate_case(four_cases(hybrid)["none"], motion, sampling, step=sampling.period / 10)
+            _simulate_case(
+                four_cases(hybrid, every=True)["none"], motion, sampling, step=sampling.period / 10
+            )
         except ModelError:
             # its inertia counts both sides
             return hybrid.with_block("Z_M", body.without_effect(structure)), structure

@@ -221,7 +221,7 @@ def _claims(
     assumptions: Assumptions,
 ) -> Mapping[str, tuple[Claim, ...]]:
     """The claims on passivity of each case."""
-    by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
+    by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram, every=True)}
     if best.cancellation is not None and friction is not None:
         gain = acting_gain(body, reach, errors=assumptions.errors)
         by_case["MBC"] = cancellation_claims(
@@ -236,7 +236,7 @@ def _claims(
         compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
         by_case["MBC"] += [compliant] if compliant is not None else []
     by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
-    for case, diagram in four_cases(best.prediction.hybrid).items():
+    for case, diagram in four_cases(best.prediction.hybrid, every=True).items():
         by_case[case].append(
             energy_claim(
                 diagram,

@@ -56,6 +56,7 @@ def residual_friction(
     level, _ = law_along(body, body.level(), signals)
     device = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)
     rows = {
-        case: remaining_force(d, np.array(level), speeds) for case, d in four_cases(device).items()
+        case: remaining_force(d, np.array(level), speeds)
+        for case, d in four_cases(device, every=True).items()
     }
     return ResidualFriction(speeds, rows)

@@ -108,10 +108,11 @@ def _check_position_loop(law: Controller | AnyBlock) -> None:
         )
 
 
-def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
+def four_cases(hybrid: Diagram, *, every: bool = False) -> dict[str, Diagram]:
     """The diagram without compensation, with cancellation, with force feedback, and with both.
 
     hybrid: a haptic interface with a cancellation C, a force feedback H, or both
+    every: also the cases of a compensation that the diagram lacks, each of which equals another
     returns: case ("none", "MBC", "FF", "hybrid") -> diagram, as in the figures of the papers;
         without C or H, only the cases that remain
     """
@@ -123,4 +124,4 @@ def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
     }
     present = {block.name for block in hybrid.blocks} & {"C", "H"}
     needed = {"none": set(), "MBC": {"C"}, "FF": {"H"}, "hybrid": {"C", "H"}}
-    return {case: diagram for case, diagram in cases.items() if needed[case] <= present}
+    return {case: diagram for case, diagram in cases.items() if every or needed[case] <= present}
