@@ -51,6 +51,7 @@ def test_spans_that_mean_nothing_are_refused(folder, fit, check, expected):
         logs.spans_of_sliders(fit, check, logs.preview(folder, "swing.csv.gz"))
 
 
+@pytest.mark.slow
 def test_a_command_takes_the_spans_too(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     spans = ["--fit-span", "5", "11", "--check-span", "0", "4"]

@@ -35,6 +35,7 @@ def along(made, **arguments):
     return simulate(diagram, **{"duration": 0.1, "motion": MOTION, "step": 1e-3} | arguments)
 
 
+@pytest.mark.slow
 def test_an_analog_system_is_the_same_through_the_kernel_and_through_python_control():
     """1e-6 of the range: two integrators at tight tolerances."""
     device = body(0.15, viscous__damping=2.0)

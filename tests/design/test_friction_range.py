@@ -69,6 +69,7 @@ def test_friction_that_grows_with_the_load_is_that_without_load():
     assert least(body(1.0, load_dependent_friction={"coefficient": 0.1})) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(
     errors=st.tuples(*[st.floats(0.0, 0.05)] * 3),

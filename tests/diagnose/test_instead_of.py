@@ -268,6 +268,7 @@ def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
     assert {n for n, _ in rung.undo_addition(after).effects} == {"coulomb", "presliding"}
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(axis=st.sampled_from(["prismatic", "revolute"]), data=st.data())
 def test_whatever_gave_way_to_whatever_comes_back(axis, data):

@@ -57,6 +57,7 @@ def test_a_law_that_the_model_lacks_could_be_learned(records, diagnosis, prepare
     assert f"{100 * learned.part:.2g} % follows from the motion" in str(learned)
 
 
+@pytest.mark.slow
 def test_of_what_a_right_model_leaves_next_to_nothing_could_be_learned(diagnosis, prepared):
     learned = learnable(diagnosis.after.model, prepared)
     assert learned.left == pytest.approx(diagnosis.after.check_error, rel=0.1)
@@ -64,6 +65,7 @@ def test_of_what_a_right_model_leaves_next_to_nothing_could_be_learned(diagnosis
     assert learned.error > 0.9 * learned.left
 
 
+@pytest.mark.slow
 def test_a_force_that_does_not_repeat_is_not_learned(diagnosis, prepared):
     rng = np.random.default_rng(0)
 

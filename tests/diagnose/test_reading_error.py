@@ -79,6 +79,7 @@ def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
     assert np.max(np.abs(course.position - motion.position)) < 0.2 * np.ptp(motion.position)
 
 
+@pytest.mark.slow
 def test_a_dead_time_must_lie_on_the_grid(rod):
     fit, prepared = rod
     motion = prepared.of("fit")[0].motion
@@ -92,6 +93,7 @@ def test_a_dead_time_must_lie_on_the_grid(rod):
     assert reading_error(estimate(late, prepared), prepared, np.random.default_rng(1)) is not None
 
 
+@pytest.mark.slow
 def test_a_coarse_encoder_makes_friction_look_higher_and_damping_lower(rod):
     fit, prepared = rod
     error = reading_error(fit, prepared, np.random.default_rng(1))
@@ -145,6 +147,7 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
     assert np.any(misses > 2.0 * chance)
 
 
+@pytest.mark.slow
 def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
     fit, prepared = rod
     wide = with_reading_error(fit, prepared, np.random.default_rng(1), adequate=never)

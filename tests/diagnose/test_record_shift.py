@@ -365,6 +365,7 @@ def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
     assert named == [e["effect"] for e in truth_of(folder)["effects"]]
 
 
+@pytest.mark.slow
 def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
     findings = check_experiment(shifted(adequate, 1.0))
     (shift,) = [f for f in findings if f.topic == "time shift"]

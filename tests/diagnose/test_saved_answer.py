@@ -355,6 +355,7 @@ def test_describe_takes_a_diagnosis_up_from_its_answer(path, stribeck_case, tmp_
     assert capsys.readouterr().out.startswith("Your model, re-estimated:\n")
 
 
+@pytest.mark.slow
 def test_passivity_takes_the_model_with_or_without_its_folder(path, stribeck_case, capsys):
     assert main(["passivity", str(path)]) == 0
     alone = capsys.readouterr().out

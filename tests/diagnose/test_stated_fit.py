@@ -40,6 +40,7 @@ def test_effects_without_values_explain_what_they_do_where_they_are_added_one_by
     assert set(fit.model.effects) == set(added.effects)
 
 
+@pytest.mark.slow
 def test_values_and_what_is_held_stay_as_they_are_stated(lacking):
     prepared, model = lacking
     stated = model.with_effect("presliding").with_effect("stribeck")

@@ -65,6 +65,7 @@ def with_first(search, state, name):
     return look(search, (state.rungs[0], Rung(ranked.candidate, ranked.fit, state.ranking)), state)
 
 
+@pytest.mark.slow
 def test_all_three_take_the_place_of_one_that_did_most_alone(ladder):
     search, state = ladder
     stand_in = with_first(search, state, "quadratic_drag")

@@ -120,6 +120,7 @@ def test_no_motion_gets_energy_out_of_a_wall(name, seed):
     assert work.min() > -1e-3 * work.max()
 
 
+@pytest.mark.slow
 def test_rubber_loses_the_same_energy_in_slow_loading():
     """Pressed between 2 and 6 mm, 1 and 0.25 Hz: the loop of Dahl's friction inside it."""
     lost = []

@@ -128,6 +128,7 @@ def test_what_grows_inside_is_counted_once():
     assert growth_within(replace(apart, blocks=tuple(blocks))) is not None
 
 
+@pytest.mark.slow
 def test_a_transfer_function_is_that_of_the_whole_loop():
     k = stabilising(-2.0)
     point = 4.0 + 9.0j

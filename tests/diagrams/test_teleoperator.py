@@ -90,6 +90,7 @@ def test_the_simulated_transmitted_impedance_is_the_derived_one(frequency, cycle
     assert abs(phasor - derived) < 1e-3 * abs(derived)
 
 
+@pytest.mark.slow
 def test_python_control_and_the_kernel_agree_on_a_compensated_teleoperator():
     import control
 

@@ -55,6 +55,7 @@ def test_a_coupling_is_named_beside_what_it_is_mistaken_for(coupled):
     assert [c.effect.name for c in diagnosis.missing] == ["coupling"]
 
 
+@pytest.mark.slow
 def test_a_law_on_a_channel_that_a_record_has_not_is_no_candidate(tmp_path):
     folder = write_recorded(tmp_path / "bare", BELIEVED, level=0.2, damping=0.5)
     experiment = load_experiment(folder)

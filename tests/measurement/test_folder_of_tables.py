@@ -29,6 +29,7 @@ def run(tmp_path):
     return tmp_path / "run"
 
 
+@pytest.mark.slow
 def test_a_drive_and_a_sensor_with_separate_clocks_are_one_log(run, tmp_path, capsys):
     assert main(["new", str(run), "--yes", "--output", str(tmp_path / "arm")]) == 0
     assert "2 tables, each with its own clock" in capsys.readouterr().out

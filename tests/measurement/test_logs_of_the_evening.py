@@ -42,6 +42,7 @@ def serial_dump(at, garbled=()):
     return ["x\xfe2,4", "3,-7", *BOOT, *table[:at], *garbled, *BOOT, *table[at:]]
 
 
+@pytest.mark.slow
 @given(at=st.integers(3, ROWS), seed=st.integers(0, 99))
 def test_messages_of_a_logger_among_the_rows_are_left_out_and_counted(tmp_path_factory, at, seed):
     garbled = [[], ["12"], ["1200,3"], ["ready"]][seed % 4]

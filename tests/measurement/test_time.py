@@ -57,6 +57,7 @@ def with_stamps(folder, stamps, digits=9):
     return load_experiment(folder).records[0]
 
 
+@pytest.mark.slow
 @given(
     rate=st.floats(70.0, 2000.0),
     start=st.floats(-100.0, 1e6),

@@ -54,6 +54,7 @@ def test_a_repeated_name_is_left_out_with_its_reason():
     assert survey_log(log, "log", Choices()).unused == {"x2": "2 columns have this name"}
 
 
+@pytest.mark.slow
 def test_the_table_the_file_and_the_picture_say_what_is_not_used(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     table = {**COLUMNS, **{n: v for n, (v, _) in OTHERS.items()}}

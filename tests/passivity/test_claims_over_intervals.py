@@ -162,6 +162,7 @@ def rubbing(level, stiffness):
     return td.haptic_interface(device, hand=HAND, cancellation=law)
 
 
+@pytest.mark.slow
 def test_vertices_decide_how_much_friction_may_be_cancelled():
     inertia = {"Z_M.inertia": (0.1, 0.3)}
     claim = claim_over_intervals(rubbing(0.3, 1e4), {"C.dahl.level": (0.2, 0.4), **inertia})

@@ -41,6 +41,7 @@ def test_beside_any_environment_only_the_motors_friction_counts(level, status):
     assert claim.status == status
 
 
+@pytest.mark.slow
 def test_free_motion_is_evidence_or_refutation_never_proof(tmp_path):
     """1.5 N of compensation on 1 N at the motor: soft is fine, stiff gives out energy."""
     soft, stiff = free(1.5, 3e3), free(1.5, 5e4)

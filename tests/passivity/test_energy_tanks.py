@@ -143,6 +143,7 @@ def test_the_bound_is_proved_and_its_certificate_checked():
     assert claim.certificates[0].check()
 
 
+@pytest.mark.slow
 def test_a_travel_above_the_largest_overdraws_a_tank():
     """The hypothesis is needed: a force that is held over a longer way gives more."""
     made = energy_tanks(

@@ -149,6 +149,7 @@ def test_a_square_free_polynomial_has_each_root_once(given_roots):
     assert greatest_common_divisor(plain, derivative(plain)) == [1]
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(pairs, st.sampled_from([1, 3, 10**6, 10**-6]))
 def test_a_positive_root_is_one_by_construction(given_pairs, scale):
@@ -158,6 +159,7 @@ def test_a_positive_root_is_one_by_construction(given_pairs, scale):
     assert has_positive_root(p) == any(a > 0 and not b for a, b in unlike) if len(p) > 1 else True
 
 
+@pytest.mark.slow
 @given(rows.filter(lambda p: len(p) > 1), rows.filter(bool), rows.filter(bool))
 def test_what_is_surely_coprime_shares_no_factor(common, p, q):
     assert not are_surely_coprime(multiply(common, p), multiply(common, q))

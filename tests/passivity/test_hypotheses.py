@@ -189,6 +189,7 @@ def test_claims_on_a_revolute_axis_have_its_units(name):
                     assert not re.search(r"\d N(?! m\b)|N s/m|\d m/s|\d kg(?! m)|\d m\b", text)
 
 
+@pytest.mark.slow
 def test_proved_in_continuous_time_says_so_in_its_heading():
     """Not where a computer is in the theorem, nor where it holds for both."""
     for question in QUESTIONS:

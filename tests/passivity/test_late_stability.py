@@ -61,6 +61,7 @@ def test_a_gain_within_an_interval_counts_at_its_worst(share, status):
         assert claim.worst["P.spring_damper.stiffness"] == 25.0
 
 
+@pytest.mark.slow
 def test_a_fixed_dead_time_beside_an_interval_of_a_gain():
     time = limit(25.0)
     for share, status in ((0.99, "proved"), (1.03, "refuted")):
@@ -81,6 +82,7 @@ def test_what_is_stable_with_a_dead_time_alone_is_no_proof():
     assert claim.status == "evidence" and claim.margin > 0.4, claim
 
 
+@pytest.mark.slow
 def test_a_zero_inside_is_never_called_free_of_zeros():
     rng = np.random.default_rng(3)
     for _ in range(12):

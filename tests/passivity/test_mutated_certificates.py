@@ -64,6 +64,7 @@ def survey_mutations(genuine, number, seed):
     return accepted
 
 
+@pytest.mark.slow
 def test_what_is_accepted_of_mutated_certificates_survives_an_attack(genuine):
     assert survey_mutations(genuine, 40, 1) < 40
 

@@ -63,6 +63,7 @@ def claims_of(path):
     return {c["topic"]: c for c in json.loads(path.read_text())["claims"]}
 
 
+@pytest.mark.slow
 def test_a_compensator_within_all_intervals_is_proved(answer, tmp_path, capsys):
     out = tmp_path / "claims.json"
     assert main(["passivity", str(answer), "--dahl", "0.47", "1.8e4", "--json", str(out)]) == 0
@@ -188,6 +189,7 @@ def test_damping_covers_what_the_lowest_level_does_not():
     assert by_topic["search by simulation"].holds
 
 
+@pytest.mark.slow
 def test_in_a_computer_the_pair_is_held_against_what_readings_do_not_show(answer, tmp_path):
     out = tmp_path / "claims.json"
     law = ["--dahl", "0.4", "1.5e4", "--period", "0.001"]

@@ -30,6 +30,7 @@ def test_hurwitz_is_that_of_the_roots(pairs, sign):
     assert is_hurwitz(p) == all(a > 0 for a, _ in pairs)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.lists(st.tuples(small, st.integers(1, 3)), min_size=1, max_size=4), st.booleans())
 def test_sign_changes_are_detected_where_roots_are_odd(roots, negative):

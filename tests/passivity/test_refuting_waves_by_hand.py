@@ -128,6 +128,7 @@ def test_vertices_prove_nothing_of_friction_whose_other_values_are_not_in_the_co
     assert claim.status == "unknown" or claim.at_worst.holds
 
 
+@pytest.mark.slow
 def test_vertices_prove_nothing_where_the_linear_rest_is_not_passive_in_between():
     """A controller beside friction whose damping may drive at one end is refuted or unknown."""
     box = {"Z_M.inertia": (0.1, 0.3), "C.dahl.level": (0.2, 0.4)}

@@ -98,6 +98,7 @@ def test_what_fails_by_more_than_rounding_is_still_refuted():
     assert positive_real(1 / (s**2 + 1) + 2).status == "refuted"
 
 
+@pytest.mark.slow
 def test_a_wave_whose_energy_is_lost_in_the_rounding_of_its_replay_refutes_nothing():
     """A mass and a decaying pole of order 4: Re Z is 1e-25 of abs(Z) where it is negative."""
     s = sp.Symbol("s")

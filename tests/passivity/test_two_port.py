@@ -138,6 +138,7 @@ def test_margins_over_frequency_change_sign_where_the_criterion_says():
     assert margins.graph().x_label == "frequency (Hz)"
 
 
+@pytest.mark.slow
 def test_the_region_of_stable_couplings_is_that_of_the_formula():
     """Stiffness and delay: proved or refuted at every point, as P T <= sqrt(b_m b_s) says."""
     stiffness, delay = np.array([300.0, 700.0, 1500.0]), np.array([0.5e-3, 1e-3, 2e-3])

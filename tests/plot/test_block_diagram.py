@@ -162,6 +162,7 @@ def test_every_term_of_a_sum_has_its_sign_or_weight():
     assert sorted(s.replace("\u2212", "-") for s in signs) == sorted("+-++++---")
 
 
+@pytest.mark.slow
 def test_formulas_stand_in_their_boxes_if_they_are_short():
     laws = [t.plain for t in of(draw_diagram(SHOWN["two arms"]), Text) if t.role == "law"]
     assert "0.3 cos(q_m1)" in laws and "+ 0.2 cos(q_m1 + q_m2)" in laws

@@ -90,6 +90,7 @@ def check_levels_within(body, seed):
 
 
 # 3 here and 8 in the slow run: each asks a new law
+@pytest.mark.slow
 @settings(max_examples=3)
 @given(body=bodies(), seed=st.integers(0, 2**31))
 def test_no_level_within_reach_and_errors_leaves_the_interval(body, seed):

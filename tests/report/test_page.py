@@ -118,6 +118,7 @@ def test_the_data_hold_the_answer(html, diagnosis):
     assert html.data["report"]["views"][0]["steps"][0]["check_error"] == pytest.approx(0.0707, 1e-2)
 
 
+@pytest.mark.slow
 def test_the_same_diagnosis_gives_the_same_bytes(diagnosis, written, tmp_path):
     write_report(diagnosis, tmp_path / "again.html")
     assert (tmp_path / "again.html").read_text(encoding="utf-8") == written

@@ -102,6 +102,7 @@ def test_a_file_that_holds_the_study_is_not_computed_again(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["s.nc"]
 
 
+@pytest.mark.slow
 def test_another_study_never_takes_the_place_of_one(tmp_path):
     out = tmp_path / "s.nc"
     td.study(models.product, AXES, measures=models.value, out=out)

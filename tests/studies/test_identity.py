@@ -19,6 +19,7 @@ def rod(tmp_path):
     return Path(shutil.copytree(td.example("rod"), tmp_path / "rod"))
 
 
+@pytest.mark.slow
 def test_a_record_that_has_changed_makes_another_study(rod, tmp_path):
     out = tmp_path / "study.nc"
 

@@ -94,6 +94,7 @@ def test_a_value_beyond_the_interval_ends_at_its_end():
     assert fitted.values["Z_M.inertia"] == pytest.approx(0.2, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_start_is_a_parameter_too():
     data = measured(initial={"L": 2e-3, "L_velocity": 0.05})
     starts = {"initial.L": (-0.01, 0.01), "initial.L_velocity": (-0.5, 0.5)}

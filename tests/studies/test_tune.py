@@ -95,6 +95,7 @@ def load(diagram):
     return diagram.values["H.gain.gain"] * diagram.values["Z_M.inertia"]
 
 
+@pytest.mark.slow
 def test_a_measure_over_intervals_is_bounded_at_its_worst_value():
     heavy = td.limit(load, most=0.3, over={"Z_M.inertia": (0.1, 0.2)})
     most = {"H.gain.gain": (0.05, 4.0)}

@@ -56,6 +56,7 @@ def test_forward_euler_loses_the_bound_at_one_and_diverges_at_two():
     assert last[1] / last[0] == pytest.approx(-1.1)
 
 
+@pytest.mark.slow
 def test_cycles_through_a_cable_give_out_energy_where_the_plain_limit_says():
     """Just above P55 a cycle is found; at the floor f_1 none is, and the storage is finite."""
     friction = [

@@ -249,6 +249,7 @@ def test_a_terminal_that_knows_ascii_alone_is_given_ascii(terminal, tmp_path):
     assert "\\xb5" in done.stderr or "\\udcc2" in done.stderr
 
 
+@pytest.mark.slow
 @posix
 def test_a_full_standard_output_is_one_line():
     with open("/dev/full", "w") as full:
@@ -257,6 +258,7 @@ def test_a_full_standard_output_is_one_line():
     assert done.stderr.startswith("teleopdesign: No space left") and done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 @posix
 def test_a_closed_standard_output_is_no_error():
     code = f"exec {sys.executable} -m teleopdesign.cli effects >&-"

@@ -38,12 +38,8 @@ PLANTED = {
 }
 
 
-QUICK = ("force over position",)
-
-
-@pytest.mark.parametrize(
-    "name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in PLANTED]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_dependence_is_reported_with_variable_range_and_size(rows, floor_squares, name):
     missing, words, size = PLANTED[name]
     here = planted(rows, missing)

@@ -42,6 +42,7 @@ def test_a_curve_lies_within_its_band_of_means_of_other_rows(failure):
     assert np.mean((at > low - 0.1 * np.ptp(y)) & (at < high + 0.1 * np.ptp(y))) > 0.9
 
 
+@pytest.mark.slow
 def test_a_model_that_leaves_only_noise_is_reported_to_be_fine(rod, adequate):
     (finding,) = where_it_fails(adequate, rod)
     assert finding.concern == "fine"
