@@ -135,9 +135,7 @@ def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tup
     structure = next((e.name for e in body.effects if e.role == "structure"), "")
     if structure:
         try:
-            _simulate_case(
-                four_cases(hybrid, every=True)["none"], motion, sampling, step=sampling.period / 10
-            )
+            _simulate_case(four_cases(hybrid)["none"], motion, sampling, step=sampling.period / 10)
         except ModelError:
             # its inertia counts both sides
             return hybrid.with_block("Z_M", body.without_effect(structure)), structure

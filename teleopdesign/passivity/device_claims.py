@@ -78,10 +78,8 @@ def compensation_claims(
     tries: number of these motions
     returns: claims by theorems, then one claim by the search
     """
-    rng, question = (
-        np.random.default_rng(rng),
-        Question(device, compensator.stage, computer=computer),
-    )
+    rng = np.random.default_rng(rng)
+    question = Question(device, compensator.stage, computer=computer)
     return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
 
 
