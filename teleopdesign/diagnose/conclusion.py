@@ -75,7 +75,7 @@ def conclude(
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,
-        verdict=verdict(rungs, floor, moment, criteria=criteria),
+        verdict=verdict(rungs, floor, moment, trees=trees, criteria=criteria),
         rungs=rungs,
         last=state.ranking,
         estimated=estimated,

@@ -140,8 +140,8 @@ class Diagnosis(ByValue):
     @property
     def unlikely(self) -> bool:
         """Whether the verdict is undecided only because no effect is probable enough."""
-        decided = verdict(self.rungs, self.floor, self.moment) == "effects_missing"
-        return self.verdict == "undecided" and decided
+        of_rungs = verdict(self.rungs, self.floor, self.moment, trees=self.learnable)
+        return self.verdict == "undecided" and of_rungs == "effects_missing"
 
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:

@@ -21,10 +21,14 @@ import numpy as np
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import helps_but_is_barred, list_displaced_parameters
+from .decision import (
+    explained_share,
+    helps_but_is_barred,
+    list_displaced_parameters,
+    open_to_others,
+)
 from .diagnosis import Diagnosis
 from .evidence import chance
-from .fit import Fit
 from .ranking import Ranked, Ranking
 from .rung import Rung
 
@@ -100,6 +104,8 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
         (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
     ]
     steps.append((None, diagnosis.last))
+    last, floor = diagnosis.after, diagnosis.floor_of_belief
+    open_part = open_to_others(diagnosis.learnable, last)
     evidence = []
     for rung, ranking in steps:
         share = shares(ranking, rung)
@@ -108,7 +114,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
             accepted = rung is not None and rung.added is not None and rung.added.key == key
             barred = diagnosis.reason_set_aside(key)
             if not accepted and not barred:
-                barred = helps_but_is_barred(ranking.base, ranked, diagnosis.floor_of_belief)
+                barred = helps_but_is_barred(ranking.base, ranked, floor)
             evidence.append(
                 CandidateEvidence(
                     ranked=ranked,
@@ -116,10 +122,12 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
                     explained=_explained_share(diagnosis, ranking, ranked),
-                    left=floors_left(diagnosis.after, diagnosis.floor_of_belief),
+                    left=floors_left(last, floor),
                     barred=barred,
-                    outweighs=_outweighs(diagnosis, ranking.base, ranked.fit),
-                    from_noise=is_adequate(ranking.base, diagnosis.floor_of_belief),
+                    outweighs=explained_share(
+                        ranking.base, ranked.fit, floor, last=last, open_part=open_part
+                    ),
+                    from_noise=is_adequate(ranking.base, floor),
                 )
             )
     return evidence
@@ -192,40 +200,6 @@ def list_rarer(added: Candidate, ranking: Ranking) -> list[Candidate]:
     """Candidates at the same place whose files call the added effect the commoner one."""
     others = (r.candidate for r in ranking.ranked if r.candidate.at == added.at)
     return [c for c in others if c.effect.commoner == added.effect.name]
-
-
-def open_to_others(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> float:
-    """Part of the remaining squares that another effect could explain, 0 to 1.
-
-    Another effect would be a function of the motion. If a black box that predicts the force from
-    the motion alone leaves no more than the model, it would detect any force as large as the
-    residual; if it leaves twice the squares, it would not. A residual that it would detect but
-    cannot learn does not repeat, except for a part (`Criteria.missed`) that it may miss.
-    returns: 1 without a black box
-    """
-    box, after = diagnosis.learnable, diagnosis.after.check_error
-    if box is None or not (after > 0.0 and box.left > 0.0):
-        return 1.0
-    sees = float(np.clip(2.0 - (box.alone / after) ** 2, 0.0, 1.0))
-    learned = float(np.clip(1.0 - (box.error / box.left) ** 2, criteria.missed, 1.0))
-    return 1.0 - sees * (1.0 - learned)
-
-
-def _outweighs(diagnosis: Diagnosis, base: Fit, fit: Fit) -> float:
-    """Squares that a candidate removes on its step, over their sum with the squares left open."""
-    last, floor, part = diagnosis.after, diagnosis.floor_of_belief, open_to_others(diagnosis)
-    errors = (f.check_error for f in (base, fit, last))
-    at_command = (f.at_command.error for f in (base, fit, last))
-    return min(
-        _share_of_gain(*errors, floor=floor.value, part=part),
-        _share_of_gain(*at_command, floor=floor.value_at_command, part=part),
-    )
-
-
-def _share_of_gain(before: float, after: float, last: float, *, floor: float, part: float) -> float:
-    gain = before**2 - after**2
-    left = part * max(last**2 - floor**2, 0.0)  # NaN at the command (blind everywhere): no belief
-    return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 
 
 def _explained_share(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:

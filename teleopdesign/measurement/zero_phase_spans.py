@@ -15,13 +15,16 @@ from numpy.typing import NDArray
 
 from ..machine_code import compile_and_keep
 from .filtering import Array
-from .zero_phase import copy_rows, go_on, sections, settle
+from .zero_phase import copy_rows, go_on, sections, settle, zero_phase
 
 #: spans with at most so many rows between them are joined: a gap costs as much as filtering so many
 #: rows
 NEAR = 16
 #: decay of the influence of a row on the filter's output that counts as complete: below rounding
 NOTHING = 1e-18
+#: share of the largest influence of a row on the output; rows with less influence count as apart,
+#: which changes a gain by some thousandths
+APART = 1e-3
 #: if windows cover more than this share of a record, the whole record is filtered: each window
 #: costs a call
 MOST_SHARE = 0.7
@@ -61,6 +64,48 @@ def reach(cutoff: float, sample_time: float) -> int:
     sos, _ = sections(cutoff, sample_time)
     slowest = max(float(np.abs(np.roots(section[3:])).max()) for section in sos)
     return int(np.ceil(np.log(NOTHING) / np.log(slowest)))
+
+
+@lru_cache(maxsize=16)
+def response(cutoff: float, sample_time: float) -> Array:
+    """Magnitude of a row's influence on the output 0, 1, 2 ... rows away, as far as `APART`."""
+    far = reach(cutoff, sample_time)
+    impulse = np.zeros(2 * far + 1)
+    impulse[far] = 1.0
+    influence = np.abs(zero_phase(impulse, cutoff, sample_time)[far:])
+    return influence[: 1 + int(np.flatnonzero(influence > APART * influence[0])[-1])]
+
+
+@compile_and_keep
+def gains(rows: NDArray[np.intp], n: int, response: Array) -> Array:
+    """Bound of the filter's gain for changes at these rows alone, one for each row.
+
+    rows: in order, of n samples;  response: see `response`
+    Rows that are apart from others form groups; a group has the gain of its row with the largest
+    sum of influences (Gershgorin), at most 1. Rows near an end of the record have gain 1.
+    """
+    count, far = len(rows), len(response)
+    bounds = np.ones(count)
+    begin = 0
+    while begin < count:
+        end = begin + 1
+        while end < count and rows[end] - rows[end - 1] < far:
+            end += 1
+        largest = 1.0 if rows[begin] < far or rows[end - 1] >= n - far else 0.0
+        first = begin
+        for i in range(begin, end):
+            if largest >= 1.0:
+                break
+            while rows[i] - rows[first] >= far:
+                first += 1
+            total, j = 0.0, first
+            while j < end and rows[j] - rows[i] < far:
+                total += response[abs(rows[j] - rows[i])]
+                j += 1
+            largest = max(largest, total)
+        bounds[begin:end] = min(largest, 1.0)
+        begin = end
+    return bounds
 
 
 def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[int, int]]:

@@ -4,8 +4,9 @@ Within its bounds, friction has the value that leaves the smallest residual with
 Accelerated projected steps (Beck, Teboulle, SIAM J. Imaging Sciences 2, 2009) compute it from the
 low-passed difference to the needed force. Clipping the needed force itself would turn its noise
 above the bandwidth into a bias below it. A few plain steps do not converge near the edge of the
-band: next to a reversal a right model then leaves two to four times its noise. Values and tangents
-are computed together.
+band: next to a reversal a right model then leaves two to four times its noise. The low-pass passes
+only a part of what few open rows change, so that their steps are longer by the same factor.
+Values and tangents are computed together.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ from ..measurement.zero_phase_spans import (
     connect_spans,
     crossings,
     filter_spans,
+    gains,
     reach,
+    response,
     spans_of,
     windows,
 )
@@ -62,6 +65,7 @@ def _balance(
     left: Array,
     rows: NDArray[np.intp],
     there: Array,
+    lengths: Array,
     spans: NDArray[np.intp],
     m: int,
     filters: tuple[Array, Array, Array, Array],
@@ -71,6 +75,7 @@ def _balance(
     left: needed less friction at all samples, changed in place
     rows: indices of these rows
     there: (3, rows, columns), needed force at these rows, least and largest friction
+    lengths: (rows,) of the steps, over the low-passed difference
     spans: of `spans_of` these rows;  m: samples by which records are continued
     filters: as `filter_spans` takes them
     """
@@ -95,14 +100,15 @@ def _balance(
             carried = (momentum - 1.0) / later
             momentum = later
         for i, k in enumerate(rows):
-            value = ahead[i, 0] + smooth[i, 0] + extended[m + k, 0]
+            length = lengths[i]
+            value = ahead[i, 0] + length * (smooth[i, 0] + extended[m + k, 0])
             # where the value is clipped, its tangents are the bound's
             clipped = 2 if value >= there[2, i, 0] else 1 if value <= there[1, i, 0] else 0
             bound = there[clipped]
             for j in range(0, whole, 4):
                 smoothed = _sum(_four(smooth, i, j), _four(extended, m + k, j))
                 before = _four(ahead, i, j)
-                now = _four(bound, i, j) if clipped else _sum(before, smoothed)
+                now = _four(bound, i, j) if clipped else _sum(before, smoothed, length)
                 change = _sum(now, _four(friction, i, j), -1.0)
                 next_ahead = _sum(now, change, carried)
                 _set_four(smooth, i, j, smoothed)
@@ -111,7 +117,7 @@ def _balance(
                 _set_four(friction, i, j, now)
             for j in range(whole, r):
                 smooth[i, j] += extended[m + k, j]
-                one = bound[i, j] if clipped else ahead[i, j] + smooth[i, j]
+                one = bound[i, j] if clipped else ahead[i, j] + length * smooth[i, j]
                 one_ahead = one + carried * (one - friction[i, j])
                 left[k, j] = ahead[i, j] - one_ahead
                 ahead[i, j] = one_ahead
@@ -178,4 +184,5 @@ def _friction_at_open_rows(
     bandwidth, sample_time = of_filter
     spans = spans_of(rows, len(left), m, bandwidth * sample_time)
     filters = (*sections(*of_filter), *connect_spans(spans, *crossings(*of_filter)))
-    return _balance(left, rows, there, spans, m, filters)[:, : 1 + len(needed.tangent)].T
+    lengths = 1.0 / gains(rows, len(left), response(*of_filter))
+    return _balance(left, rows, there, lengths, spans, m, filters)[:, : 1 + len(needed.tangent)].T

@@ -3,6 +3,7 @@
 Fits are stand-ins that hold the numbers which a decision reads: no record is fitted here.
 """
 
+from dataclasses import replace
 from math import inf
 from types import SimpleNamespace
 
@@ -28,6 +29,7 @@ from teleopdesign.diagnose.decision import (
     verdict,
     worth_pursuing,
 )
+from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.order import (
     is_simpler,
     rank_key,
@@ -240,6 +242,18 @@ def test_the_verdict_asks_for_half_of_the_squares_above_the_floor():
     assert verdict([rung(0.5), rung(0.2, one, (one,))], floor()) == "undecided", "all look alike"
     two = [rung(0.5), rung(0.3, one, (one,)), rung(0.2, one)]
     assert verdict(two, floor()) == "effects_missing"
+
+
+def test_of_what_is_left_only_what_another_effect_could_explain_counts_for_the_verdict():
+    one = Candidate(EFFECTS["stribeck"], "device")
+    rungs = [rung(0.5), rung(0.4, one)]  # 0.09 of the squares explained, 0.15 left above the floor
+    assert verdict(rungs, floor()) == "undecided"
+    trees = Learnable(left=0.4, error=0.4, alone=0.4)  # they learn nothing: half of 0.15 counts
+    assert verdict(rungs, floor(), trees=trees) == "effects_missing"
+    learned = replace(trees, error=0.4 * 0.3**0.5)  # 0.7 of what is left: 0.105 counts
+    assert verdict(rungs, floor(), trees=learned) == "undecided"
+    of_force = replace(trees, alone=0.8)  # trees that see nothing so small say nothing
+    assert verdict(rungs, floor(), trees=of_force) == "undecided"
 
 
 def test_of_no_error_at_all_nothing_is_less():

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.decision import open_to_others
 from teleopdesign.diagnose.evidence import whole_score
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.learnable import Learnable
@@ -16,7 +17,6 @@ from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
-    open_to_others,
     select_independent,
     shares,
 )
@@ -223,8 +223,8 @@ def test_what_a_black_box_sees_and_cannot_learn_is_open_to_no_other_effect(
     diagnosis, alone, learned, part
 ):
     assessment = with_box(diagnosis, alone=alone, learned=learned)
-    assert open_to_others(assessment) == pytest.approx(part, abs=1e-9)
-    assert open_to_others(replace(assessment, learnable=None)) == 1.0
+    assert open_to_others(assessment.learnable, assessment.after) == pytest.approx(part, abs=1e-9)
+    assert open_to_others(None, assessment.after) == 1.0
 
 
 def test_an_effect_is_believed_more_the_less_of_what_is_left_follows_the_motion(diagnosis):

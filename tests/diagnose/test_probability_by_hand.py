@@ -8,12 +8,12 @@ import pytest
 from diagnose.stand_ins import fit, floor, ranked
 from diagnose.stub_models import Names, candidate
 
+from teleopdesign.diagnose.decision import open_to_others
 from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside
 from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
-    open_to_others,
     probable,
     shares,
 )
@@ -107,10 +107,10 @@ def test_what_a_black_box_cannot_learn_stands_against_no_effect():
 def test_a_box_beside_a_model_that_leaves_nothing_says_nothing():
     nothing = diagnosis([(entry("spring", 0.0), [], [])])
     box = Learnable(left=0.1, error=0.1, alone=0.1)
-    assert open_to_others(replace(nothing, learnable=box)) == 1.0
+    assert open_to_others(box, nothing.after) == 1.0
     there = diagnosis([(entry("spring", 0.3), [], [])])
-    assert open_to_others(replace(there, learnable=replace(box, left=0.0))) == 1.0
-    assert open_to_others(replace(there, learnable=box)) == pytest.approx(0.5)
+    assert open_to_others(replace(box, left=0.0), there.after) == 1.0
+    assert open_to_others(box, there.after) == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("size", [0.01, 0.3, 4.0])
@@ -131,7 +131,7 @@ def test_what_is_open_by_squares_alone_and_squares_learned(size, alone, learned,
     box = Learnable(
         left=2.0 * size, error=2.0 * size * (1 - learned) ** 0.5, alone=size * alone**0.5
     )
-    assert open_to_others(replace(there, learnable=box)) == pytest.approx(part)
+    assert open_to_others(box, there.after) == pytest.approx(part)
 
 
 def test_candidates_that_explain_as_well_are_reported_as_equally_good():

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import lsq_linear
+from scipy.signal import sosfilt
 
-from teleopdesign.measurement.zero_phase import zero_phase
+from teleopdesign.measurement.zero_phase import sections, zero_phase
+from teleopdesign.measurement.zero_phase_spans import gains, response
 from teleopdesign.realise.balance import STEPS, balance_within_bounds
 from teleopdesign.realise.traced import Traced, constant
 
@@ -14,6 +17,9 @@ def step_by_step(needed, low, high):
     """The same accelerated projected steps with every sample filtered in each: slow, and plain."""
     rows = [a.rows() for a in (needed, low, high)]
     is_open = (rows[1] != rows[2]).any(axis=0)
+    length = np.ones(len(is_open))
+    of_filter = response(BANDWIDTH, SAMPLE_TIME)
+    length[is_open] = 1.0 / gains(np.flatnonzero(is_open), len(is_open), of_filter)
     ahead, momentum = np.where(is_open, rows[0], rows[1]), 1.0
     friction = ahead
     for turn in range(STEPS + 1):
@@ -21,7 +27,7 @@ def step_by_step(needed, low, high):
         trial = ahead
         if turn > 0:
             left = np.where(is_open, rows[0] - ahead, rows[0] - rows[1])
-            trial = ahead + zero_phase(left, BANDWIDTH, SAMPLE_TIME)
+            trial = ahead + length * zero_phase(left, BANDWIDTH, SAMPLE_TIME)
             later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
             carried, momentum = (momentum - 1.0) / later, later
         now = np.where(
@@ -73,6 +79,47 @@ def test_windows_about_few_open_rows_give_what_the_whole_record_does(places):
     signals = (needed, low.times(down), high.times(up))
     friction = balance_within_bounds(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
     assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
+
+
+@pytest.mark.parametrize("rows_of_a_turn", [1, 2])
+@pytest.mark.parametrize("bandwidth", [5.0, 20.0])
+def test_static_friction_at_few_rows_is_the_best_within_its_bounds(rows_of_a_turn, bandwidth):
+    """A low-pass at 5 Hz passes 2 % of one row's change at 500 Hz: plain steps hardly move."""
+    rng = np.random.default_rng(11)
+    is_open = np.zeros(2_400, dtype=bool)
+    for turn in range(300, 2_200, 300):
+        is_open[turn : turn + rows_of_a_turn] = True
+    low = np.where(is_open, -1.0, np.where(np.arange(2_400) // 300 % 2, 1.0, -1.0))
+    high = np.where(is_open, 1.0, low)
+    noise = zero_phase(rng.normal(size=2_400), 2.0 * bandwidth, SAMPLE_TIME)
+    needed = np.clip(low + 0.1 * noise / noise.std(), -1.05, 1.05)
+    signals = [constant(value, 0) for value in (needed, low, high)]
+    friction = balance_within_bounds(*signals, bandwidth=bandwidth, sample_time=SAMPLE_TIME).value
+
+    at = np.flatnonzero(is_open)
+    one_way = sections(bandwidth, SAMPLE_TIME)[0]
+    columns = sosfilt(one_way, np.eye(2_400)[:, at], axis=0)
+    others = sosfilt(one_way, np.where(is_open, 0.0, needed - low))
+    best = lsq_linear(-columns, -others - columns @ needed[at], bounds=(-1.0, 1.0), tol=1e-14)
+    exact = low.copy()
+    exact[at] = best.x
+    of_filter = (bandwidth, SAMPLE_TIME)
+    difference, left = (zero_phase(x, *of_filter) for x in (friction - exact, needed - exact))
+    # plain steps leave 0.02 to 0.07
+    assert np.linalg.norm(difference) < 0.015 * np.linalg.norm(left)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_bound_of_a_gain_is_above_the_gain(seed):
+    n, rng = 1_200, np.random.default_rng(seed)
+    at = np.flatnonzero(np.repeat(rng.random(n // 8) < 0.1, 8) & (rng.random(n) < 0.6))
+    at = np.append(at[(at > 100) & (at < n - 100)], n - 50)  # near an end: gain 1
+    of_filter = (20.0, SAMPLE_TIME)
+    bounds = gains(at, n, response(*of_filter))
+    part = zero_phase(np.eye(n)[at], *of_filter, at=at) / np.sqrt(np.outer(bounds, bounds))
+    # rows that are apart still share a thousandth
+    assert np.linalg.eigvalsh(0.5 * (part + part.T)).max() < 1.003
+    assert bounds.max() == 1.0 and bounds.min() < 0.5
 
 
 def test_tangents_that_are_nothing_need_no_memory_and_change_nothing():
