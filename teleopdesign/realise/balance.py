@@ -63,9 +63,8 @@ def _sum(one: _Four, other: _Four, factor: float = 1.0) -> _Four:
 @compile_and_keep
 def _balance(
     left: Array,
-    rows: NDArray[np.intp],
+    open_rows: tuple[NDArray[np.intp], Array],
     there: Array,
-    lengths: Array,
     spans: NDArray[np.intp],
     m: int,
     filters: tuple[Array, Array, Array, Array],
@@ -73,15 +72,14 @@ def _balance(
     """Friction at the rows where its bounds differ; columns: the value, then its tangents.
 
     left: needed less friction at all samples, changed in place
-    rows: indices of these rows
+    open_rows: indices of these rows, and the length of the steps there over the low-passed residual
     there: (3, rows, columns), needed force at these rows, least and largest friction
-    lengths: (rows,) of the steps, over the low-passed difference
     spans: of `spans_of` these rows;  m: samples by which records are continued
     filters: as `filter_spans` takes them
     """
     n, r = left.shape
     whole = r - r % 4
-    sos, steady, _, _ = filters
+    (rows, lengths), (sos, steady, _, _) = open_rows, filters
     needed = there[0]
     extended = np.zeros((n + 2 * m, r))
     friction: Array = np.zeros_like(needed)
@@ -90,9 +88,7 @@ def _balance(
     for turn in range(STEPS + 1):
         if turn == 1:
             filter_both_ways(left, extended, sos, steady)
-            for k in range(n):  # from now on: only the change from one step to the next
-                for j in range(r):
-                    left[k, j] = 0.0
+            left[:] = 0.0  # from now on: only the change from one step to the next
         elif turn > 1:
             filter_spans(left, extended, spans, filters)
         if turn > 0:
@@ -185,4 +181,4 @@ def _friction_at_open_rows(
     spans = spans_of(rows, len(left), m, bandwidth * sample_time)
     filters = (*sections(*of_filter), *connect_spans(spans, *crossings(*of_filter)))
     lengths = 1.0 / gains(rows, len(left), response(*of_filter))
-    return _balance(left, rows, there, lengths, spans, m, filters)[:, : 1 + len(needed.tangent)].T
+    return _balance(left, (rows, lengths), there, spans, m, filters)[:, : 1 + len(needed.tangent)].T
