@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .encoder import reading_step
 from .experiment import Experiment
@@ -22,6 +23,10 @@ CHOSEN, PROPOSED = 0.1, 0.3
 #: a position shows a motion if its spectral density is above this multiple of that of reading
 #: noise: 10 dB
 ABOVE = 10.0
+#: frequencies at which a position shows a motion are lines if they are fewer than this share of the
+#: third of an octave below: an encoder makes such lines as it passes its steps at constant speed.
+#: Lower: its lines pass for motion; higher: a motion of a few tones counts only above the rounding
+DENSE, THIRD_OCTAVE = 0.5, 2.0 ** (1.0 / 3.0)
 #: the frequency below which this share of the squared velocity lies is that of the motion, and the
 #: bandwidth is at least `FULLY` times that frequency: the low-pass then passes 0.996 of the motion
 SHARE, FULLY = 0.9, 2.0
@@ -30,10 +35,11 @@ SHARE, FULLY = 0.9, 2.0
 def default_bandwidth(experiment: Experiment) -> float:
     """Default bandwidth in Hz: the positions still show acceleration and motion up to it.
 
-    The highest frequency below a tenth of the sample rate at which the spectrum of the acceleration
-    is 10 dB above white reading noise: the lowest one of all records, unless another record moves
-    faster than that. The steps of an encoder are not white noise: while they hide most of the
-    motion, the bandwidth is halved.
+    The highest frequency below a tenth of the sample rate at which the spectrum of the position is
+    10 dB above white reading noise: the lowest one of all records, unless another record moves
+    faster than that. The steps of an encoder are not white noise. Lines with no more power than the
+    error of rounding to these steps are no motion; and while the steps hide most of the motion, the
+    bandwidth is halved.
     """
     chosen = _highest_acceleration(experiment)
     while any(hides_motion(experiment, body, chosen) for body in experiment.bodies):
@@ -84,7 +90,8 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
         acceleration, beyond = motion * frequency**4, frequency > chosen
         if acceleration[beyond].sum() <= acceleration[~beyond].sum():
             return None
-        if _mean_square(motion[beyond], len(frequency)) <= _rounding(experiment, name, record):
+        power = _mean_square(motion[beyond], len(frequency)).sum()
+        if power <= _rounding(experiment, name, record):
             return None
         limits.append(float(frequency[above].max()))
     highest = min(limits)
@@ -92,10 +99,10 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
     return None if hidden else highest
 
 
-def _mean_square(density: Array, count: int) -> float:
-    """Mean square of the part of a signal at some of the `count` frequencies of `_spectrum`."""
+def _mean_square(density: Array, count: int) -> Array:
+    """Mean square of the part of a signal at each of the `count` frequencies of `_spectrum`."""
     samples = 2.0 * (count - 1)
-    return float(density.sum()) * 16.0 / 3.0 / samples**2  # 3/8: mean square of the window
+    return density * 16.0 / 3.0 / samples**2  # 3/8: mean square of the window
 
 
 def _rounding(experiment: Experiment, name: str, record: Record) -> float:
@@ -111,9 +118,21 @@ def _highest_acceleration(experiment: Experiment) -> float:
         rate = record.rate_of(name)
         frequency, density, noise = _spectrum(record, name)
         above = (density > ABOVE * noise) & (frequency <= CHOSEN * rate)
+        power = np.where(above, _mean_square(density - noise, len(frequency)), 0.0)
+        power_from_here = np.cumsum(power[::-1])[::-1]
+        is_dense = _share_below(above, frequency) >= DENSE
+        above &= is_dense | (power_from_here > _rounding(experiment, name, record))
         limits.append(frequency[above].max() if above.any() else 0.02 * rate)
         needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
     return float(max(min(limits), *needed))
+
+
+def _share_below(above: NDArray[np.bool_], frequency: Array) -> Array:
+    """Share of the frequencies with a motion in the third of an octave up to each frequency."""
+    count, last = np.append(0, np.cumsum(above)), np.arange(len(frequency)) + 1
+    first = np.searchsorted(frequency, frequency / THIRD_OCTAVE)
+    share: Array = (count[last] - count[first]) / (last - first)
+    return share
 
 
 def _frequency_of_motion(record: Record, name: str) -> float:
