@@ -223,9 +223,10 @@ def _(get_bench, mo, names):
 
 
 @app.cell
-def _(get_bench, mo, pages):
+def _(get_bench, mo, pages, views):
     bench = get_bench()
     mo.stop(bench is None)
+    views.begin_anew()
     bodies = tuple(bench.model.bodies)
     body = mo.ui.dropdown(options=bodies, value=bodies[0], label="Body")
     uses = [u for u in ("check", "fit") if bench.search.whole.of(u)]
@@ -288,7 +289,8 @@ def _(bench, body, rung, use, views):
 
 
 @app.cell
-def _(bench, mo, pages):
+def _(bench, mo, pages, views):
+    views.begin_anew()
     several = list(pages.rung_options(bench).items())
     one_model = mo.ui.dropdown(options=dict(several), value=several[0][0], label="One model")
     other_model = mo.ui.dropdown(options=dict(several), value=several[-1][0], label="Another")
@@ -302,7 +304,8 @@ def _(bench, body, one_model, other_model, use, views):
 
 
 @app.cell
-def _(bench, mo):
+def _(bench, mo, views):
+    views.begin_anew()
     free = [n for n, v in bench.model.parameters.items() if not v.fixed and v.value]
     which = mo.ui.dropdown(options=free, value=free[0] if free else None, label="Parameter")
     return (which,)

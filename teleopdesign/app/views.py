@@ -7,6 +7,7 @@ does.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import cycle
 from typing import Any
 
 import marimo as mo
@@ -18,6 +19,9 @@ from .workbench import Workbench
 #: what marimo shows: an element of the page
 PageElement = Any
 Spans = Sequence[tuple[float, float]]
+#: how many numbers to leave out before the next fields of a cell, which are fewer than eight. Names
+#: that come back after sixteen turns are long forgotten
+_FREE_NUMBERS = cycle(range(0, 128, 8))
 
 
 def place_side_by_side(*elements: PageElement) -> PageElement:
@@ -102,6 +106,17 @@ def log_parts(
         label="Make the experiment", on_click=lambda _: make(understood, spans), kind="success"
     )
     return [*parts, understood.plot(spans), button]
+
+
+def begin_anew() -> None:
+    """Let the fields that a cell makes next show their first choice, whatever stood there before.
+
+    marimo names a field by its cell and its number in it, and the browser may keep the choice that
+    it has for a name. So the fields of another ladder get numbers that those before did not have:
+    buttons that nobody sees take these.
+    """
+    for _ in range(next(_FREE_NUMBERS)):
+        mo.ui.button()
 
 
 def residual_view(

@@ -178,12 +178,7 @@ class Body:
         for name, number_or_value in values.items():
             if name not in self.parameters:
                 raise _missing_parameter_error(name, self.parameters)
-            value = _value(number_or_value, name)
-            new[name] = (
-                value
-                if value is number_or_value
-                else replace(self.parameters[name], value=value.value)
-            )
+            new[name] = _value(number_or_value, name, self.parameters[name])
         return replace(self, parameters={**self.parameters, **new})
 
     def symbols(self) -> dict[str, sp.Symbol]:
@@ -242,10 +237,12 @@ class Body:
         return {name: self.parameters[name].value for name, _ in self.declared()}
 
 
-def _value(number_or_value: object, name: object) -> Value:
+def _value(number_or_value: object, name: object, before: Value | None = None) -> Value:
+    """A parameter's value; a plain number has the rest of the value before."""
     if isinstance(number_or_value, Value):
         return number_or_value
-    return Value(number(number_or_value, f"body: {name}"))
+    value = number(number_or_value, f"body: {name}")
+    return Value(value) if before is None else Value(value, before.fixed, before.stderr)
 
 
 def _missing_parameter_error(name: object, known: Iterable[str]) -> ModelError:

@@ -71,7 +71,7 @@ def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
         values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
     if all(v is None or isinstance(v, int | float | np.number) for v in values):
         return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
-    if len(values) and hasattr(values[0], "isoformat"):
+    if any(hasattr(v, "isoformat") for v in values):
         try:
             return _seconds(values.astype("datetime64[ns]"))
         except (TypeError, ValueError):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -197,6 +197,11 @@ class NumericLaw:
     call: Callable[..., Any]
     joins: bool = False
 
+    @cached_property
+    def _among_parameters(self) -> frozenset[Any]:
+        """The parameters, to look up: on short records a comparison of each symbol takes longer."""
+        return frozenset(self.parameters)
+
     def __call__(self, along: Along) -> Traced:
         signals, values, columns = along.signals, along.values, along.columns
         arrays = [signals[s].value for s in self.signals]
@@ -207,7 +212,8 @@ class NumericLaw:
         places = {column: j for j, column in enumerate(columns)}
         symbols = [getattr(column, "symbol", column) for column in columns]  # a probe: its strength
         moved = [s for s in self.signals if not signals[s].is_constant]
-        if not moved and not any(s in self.parameters for s in symbols):
+        mine = [j for j, s in enumerate(symbols) if s in self._among_parameters]
+        if not moved and not mine:
             return constant(value, len(columns))
         by_signal = dict(zip(self.signals, out[1 : 1 + len(arrays)], strict=True))
         tangent = np.zeros((len(columns), n))
@@ -218,9 +224,8 @@ class NumericLaw:
             if p in places:
                 tangent[places[p]] += d
         for j, column in enumerate(columns):
-            if isinstance(column, Probe) and column.symbol in self.parameters:
+            if isinstance(column, Probe) and column.symbol in self._among_parameters:
                 tangent[j] += self._slope(column, arrays, values)
-        mine = (j for j, s in enumerate(symbols) if s in self.parameters)
         return Traced(value, tangent, joined_rows(*(signals[s] for s in moved), more=mine))
 
     def _numbers(self, values: Mapping[sp.Symbol, float], n: int) -> list[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,6 +32,11 @@ REASON = "failure"
 LARGEST = 1.6e9
 
 
+def without_reason(names: Iterable[str]) -> list[str]:
+    """The names that a misspelt measure or parameter may stand for: "value" is near "failure"."""
+    return [n for n in names if n != REASON]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Study(ByName, ByValue):
     """Measures over the points of a study.
@@ -54,7 +59,7 @@ class Study(ByName, ByValue):
             known = self._names()
             raise ModelError(
                 f'study: no measure or parameter "{name}", has {", ".join(known)}'
-                f"{did_you_mean(name, known)}"
+                f"{did_you_mean(name, without_reason(known))}"
             )
         return self.data[name]
 

@@ -24,7 +24,7 @@ from .outcomes import PointOutcome
 from .points import Points, points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
-from .result import Study, check_netcdf, label_outcomes, read_study
+from .result import Study, check_netcdf, label_outcomes, read_study, without_reason
 from .side_by_side import units_of
 from .versions import versions
 
@@ -208,14 +208,15 @@ def _write_words(result: Study, words: _Words) -> None:
 
     raises ModelError: a label or unit of an unknown measure or parameter
     """
-    names = [*map(str, result.data.variables), *json.loads(result.data.attrs["fixed"])]
+    variables = without_reason(map(str, result.data.variables))
+    names = [*variables, *json.loads(result.data.attrs["fixed"])]
     for name in {**words.units, **words.labels}:
         if name not in names and result.measures:
             raise ModelError(
                 f'study: units, labels: no measure or parameter "{name}", has {", ".join(names)}'
                 f"{did_you_mean(name, names)}"
             )
-    for name in map(str, result.data.variables):
+    for name in variables:
         if name in words.units:
             result.data[name].attrs["units"] = words.units[name]
         if name in words.labels:

@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 
 #: relative distance of an instant from a sample that counts as none
 _ROUNDING = 1e-9
+#: most samples of the computer between two rows: logs of a loop have a row for each sample or for
+#: some tens of them. Times in ms that are read as s make a thousand of one
+_RAREST = 300
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +161,8 @@ def fit_simulation(
     returns: standard errors are valid for measurement errors that are correlated over at most 0.25
         s (a 30th of a shorter record), and for a model that is right except for the parameters:
         they do not contain errors of the model
-    raises ModelError: no such parameter, signal or column, no interval, no simulation anywhere
+    raises ModelError: no such parameter, signal or column, no interval, no simulation anywhere,
+        rows so far apart that their time is hardly in s
     """
     measured = measured_signals(data)
     settings = {"initial": initial, "computer": computer, "step": step}
@@ -186,9 +190,21 @@ def _case(
     moved = {n: measured.motion(x) if isinstance(x, str) else x for n, x in motion.items()}
     case = case_of(diagram, inputs=driven, motion=moved, **settings)
     period = (SAMPLED if isinstance(case.computer, str) else case.computer).period
+    _check_rows_are_dense(measured, period)
     # never beyond the last instant: what drives the simulation is not known there
     samples = max(np.floor(measured.time[-1] / period * (1 + _ROUNDING)), 1.0)
     return replace(case, duration=float(samples * period))
+
+
+def _check_rows_are_dense(measured: MeasuredSignals, period: float) -> None:
+    """Refuse rows that are far apart for a computer of that period, s: minutes of simulation."""
+    apart = float(np.median(np.diff(measured.time)))
+    if apart > _RAREST * period:
+        raise ModelError(
+            f"fit_simulation: time: rows are {apart:g} s apart, {apart / period:.3g} samples of a "
+            f"computer with a period of {period:g} s, expected at most {_RAREST}: time is in s, "
+            "not in ms; if it is right, state a slower computer"
+        )
 
 
 def _namesakes(case: SimulatedCase, measured: MeasuredSignals) -> dict[str, str]:

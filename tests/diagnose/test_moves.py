@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from diagnose.made_records import jittered
+from diagnose.shared_fits import each_ranking_once, fit_beside
 from diagnose.simulated_cases import write_simulated
 
 from teleopdesign import Model, load_experiment
@@ -21,10 +22,15 @@ from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
 from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
-from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 
 KNOWN = ("spring", "hardening_spring", "bias", "quadratic_drag", "viscous", "coulomb")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def shared():
+    with each_ranking_once():
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -45,8 +51,7 @@ def with_effects(search, state, *names):
     """The state with these effects added one after the other, whatever the records say of them."""
     for name in names:
         candidate = Candidate(EFFECTS[name], "device")
-        model = state.fit.model.with_effect(candidate.effect, at=candidate.at)
-        fit = estimate_from_starts(model, search.prepared, state.fit)
+        fit = fit_beside(search.prepared, state.fit, candidate)
         ranking = Ranking(
             state.fit, (make_ranked(state.fit, candidate, fit, prepared=search.prepared),)
         )

@@ -30,8 +30,11 @@ FROM_ACTING = {"load_dependent_friction": EFFECTS["load_dependent_friction"]}
 
 @pytest.fixture(scope="module")
 def slid(tmp_path_factory):
+    """(prepared records, the fit of the model without any cheat, its noise floor)"""
     experiment = write(tmp_path_factory.mktemp("slid") / "slide")
-    return experiment, prepare(experiment)
+    prepared = prepare(experiment)
+    base = base_of(experiment, prepared, CHEATS)
+    return prepared, base, noise_floor(base.model, prepared, np.random.default_rng(0))
 
 
 def base_of(experiment, prepared, known):
@@ -74,11 +77,9 @@ def test_every_actuation_of_the_catalogue_is_swept():
 @pytest.mark.parametrize("name", SWEEPS)
 def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(name, slid):
     """Over the whole range of an effect that the machine has not: no better, or refused."""
-    experiment, prepared = slid
+    prepared, base, floor = slid
     effect = {**EFFECTS, **CHEATS}[name]
-    base = base_of(experiment, prepared, CHEATS)
     first, values, others = SWEEPS[name]
-    floor = noise_floor(base.model, prepared, np.random.default_rng(0))
     plain = []
     for value in values:
         error = lowest(base, effect, {first: value, **others}, prepared)
@@ -93,11 +94,9 @@ def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(nam
 
 @pytest.mark.slow
 def test_no_effect_is_accepted_for_less_force(slid):
-    experiment, prepared = slid
+    prepared, base, floor = slid
     # a period is sought on 150 starts, and hides nothing
     quick = {n: e for n, e in EFFECTS.items() if "period" not in e.parameters}
-    base = base_of(experiment, prepared, CHEATS)
-    floor = noise_floor(base.model, prepared, np.random.default_rng(0))
     among = [Candidate(e, "device") for e in {**quick, **CHEATS}.values()]
     ranking = rank_candidates(base, prepared, among=among)
     assert len(ranking.ranked) > 20

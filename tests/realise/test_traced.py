@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
-from teleopdesign.realise.traced import Traced, constant, filter_traced
+from teleopdesign.effects import SIGNALS
+from teleopdesign.realise.traced import Along, Traced, constant, filter_traced
 
 N, P = 12, 4
 RNG = np.random.default_rng(7)
@@ -64,3 +66,19 @@ def test_rows_and_spans_are_those_of_the_samples(one):
     assert np.array_equal(one.rows(slice(2, 5)), one.rows()[:, 2:5])
     assert np.array_equal(one.between(slice(2, 5)).rows(), one.rows()[:, 2:5])
     assert one.is_constant == (not one.tangent.any())
+
+
+def test_a_law_looks_its_parameters_up_and_compares_no_symbols(monkeypatch):
+    """Of many columns it has one: on a record of a hundred rows comparisons cost more than it."""
+    level, *others = sp.symbols("level other_1:9")
+    speed = constant(np.array([0.1, -0.2]), 9)
+    along = Along({SIGNALS["velocity"]: speed}, {level: 3.0}, (*others, level), 1e-3)
+    law = level * SIGNALS["velocity"]
+    along.evaluate(law)  # derived once
+    compared = []
+    equal = sp.Symbol.__eq__
+    monkeypatch.setattr(sp.Symbol, "__eq__", lambda a, b: compared.append(a) or equal(a, b))
+    force = along.evaluate(law)
+    assert not compared
+    assert np.array_equal(force.value, 3.0 * speed.value)
+    assert np.array_equal(force.tangent, np.vstack([np.zeros((8, 2)), speed.value]))

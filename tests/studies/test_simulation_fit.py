@@ -135,6 +135,7 @@ def test_a_record_is_data_too():
     [
         ({"data": {"L": np.zeros(20)}}, 'mapping with "time"'),
         ({"data": {"time": np.arange(20.0)[::-1], "L": np.zeros(20)}}, "increase"),
+        ({"data": {"time": np.arange(20.0), "L": np.arange(20.0)}}, "rows are 1 s apart.*in ms"),
         ({"data": {"time": np.arange(20) / 1e3, "L": np.zeros(19)}}, "shape"),
         ({"data": {"time": np.arange(20) / 1e3, "L": np.zeros(20)}}, "constant"),
         ({"data": {"time": np.arange(20) / 1e3, "M": np.arange(20.0)}}, "say by `signals`"),

@@ -201,6 +201,16 @@ def test_an_unknown_parameter_or_measure_is_answered_with_the_nearest(axes, meas
         td.study(models.interface(), axes, measures=measures, **models.SIMULATED)
 
 
+@pytest.mark.parametrize("words", [{"units": {"value": "N"}}, {"labels": {"value": "v"}}])
+def test_a_misspelt_name_is_not_taken_for_the_reason_of_a_failure(words):
+    """ "value" is near "failure", which is no measure and has no unit."""
+    area = {"axes": {"x": [1.0], "y": [2.0]}, "measures": {"area": models.value}}
+    with pytest.raises(ModelError, match='"value", has area, x, y$'):
+        td.study(models.product, **area, **words)
+    with pytest.raises(ModelError, match='"value", has area, failure, x, y$'):
+        td.study(models.product, **area)["value"]
+
+
 def test_options_of_measures_are_held_against_those_that_there_are():
     with pytest.raises(ModelError, match='no option "signl".*did you mean "signal"'):
         td.measure("rms", signl="E")
