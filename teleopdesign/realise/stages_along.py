@@ -100,7 +100,7 @@ def _stage(effect: Effect, along: Along, parts: int) -> ActuationStage:
         symbol = sp.Symbol(f"delayed_{i}", real=True)
         law = law.subs(call, symbol)
         late[symbol] = _shift(along, call.args[1])
-        delays[symbol] = max(float(call.args[1].subs(along.values)), 0.0)
+        delays[symbol] = max(_value_at(call.args[1], along.values), 0.0)
     along = along.with_signals(late)
     if effect.states:
         along = along.with_signals(stage_scan(effect, along))
@@ -115,7 +115,7 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     prefer delays of whole holds.
     """
     signal, step = along.signals[_COMMAND], along.step
-    whole, part = divmod(max(float(delay.subs(along.values)), 0.0) / step, 1.0)
+    whole, part = divmod(max(_value_at(delay, along.values), 0.0) / step, 1.0)
     weights, slopes = _cubic(part)
 
     def mix(y: Array, factors: Sequence[float]) -> Array:
@@ -127,8 +127,15 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     slope = mix(signal.value, slopes) / step
     by_delay = [i for i, c in enumerate(along.columns) if isinstance(c, sp.Symbol) and delay.has(c)]
     for i in by_delay:
-        tangent[i] += slope * float(sp.diff(delay, along.columns[i]).subs(along.values))
+        tangent[i] += slope * _value_at(sp.diff(delay, along.columns[i]), along.values)
     return Traced(shifted.value, tangent, joined_rows(shifted, more=by_delay))
+
+
+def _value_at(law: sp.Expr, values: Mapping[sp.Symbol, float]) -> float:
+    """Value of a law; that of one parameter or of a number without sympy's slow substitution."""
+    if law in values:
+        return values[law]
+    return float(law if law.is_Number else law.subs(values))
 
 
 def _cubic(p: float) -> tuple[list[float], list[float]]:
@@ -153,5 +160,10 @@ def _cubic(p: float) -> tuple[list[float], list[float]]:
 
 def _delay_samples(y: Array, steps: int) -> Array:
     """Signals (..., n) delayed by `steps` samples (-1: one early); the ends keep their value."""
-    last = y.shape[-1] - 1
-    return y[..., np.clip(np.arange(last + 1) - steps, 0, last)]
+    n = y.shape[-1]
+    first, kept = min(max(steps, 0), n), max(min(n - abs(steps), n), 0)
+    delayed_signals = np.empty(y.shape)
+    delayed_signals[..., :first] = y[..., :1]
+    delayed_signals[..., first : first + kept] = y[..., max(-steps, 0) : max(-steps, 0) + kept]
+    delayed_signals[..., first + kept :] = y[..., -1:]
+    return delayed_signals
