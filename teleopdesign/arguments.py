@@ -17,7 +17,7 @@ import types
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, wraps
 from importlib import import_module
-from itertools import repeat
+from itertools import chain, repeat
 from typing import Any, TypeVar
 
 from .errors import ExperimentError, ModelError
@@ -76,9 +76,10 @@ def check_types(target: Target) -> Target:
     @wraps(function)
     def call(*arguments: Any, **named: Any) -> Any:
         in_order, more, checks = declared()
-        listed = (*in_order, *repeat(more, max(len(arguments) - len(in_order), 0)))
-        for key, value in (*zip(listed, arguments, strict=False), *named.items()):
-            if key in checks and (wrong := checks[key](value)) is not None:
+        listed = in_order if len(arguments) <= len(in_order) else chain(in_order, repeat(more))
+        for key, value in chain(zip(listed, arguments, strict=False), named.items()):
+            check = checks.get(key)
+            if check is not None and (wrong := check(value)) is not None:
                 raise _error(target.__module__, name, key, wrong)
         return function(*arguments, **named)
 

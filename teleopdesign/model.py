@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from .arguments import check_types, describe_value, instance
 from .blocks import CONTACT, Body, Value
@@ -129,17 +130,14 @@ class Model:
         raises ModelError: no parameter of that name, or a value outside the parameter's bounds
         """
         instance(values, Mapping, "with_values", expected='such as {"device.inertia": 0.15}')
-        known = self.parameters
-        for name in values:
-            if name not in known:
+        of_body: dict[str, dict[str, float | Value]] = {}
+        for name, value in values.items():
+            if name not in self._named:
                 self._refuse_parameter(name)
-        model = self
-        for place, body in self.bodies.items():
-            located = {self.locate(name): v for name, v in values.items()}
-            of_body = {name: v for (at, name), v in located.items() if at == place}
-            if of_body:
-                model = model._with_body(place, body.with_values(of_body))
-        return model
+            place, local_name = self.locate(name)
+            of_body.setdefault(place, {})[local_name] = value
+        changed = {at: self.bodies[at].with_values(mine) for at, mine in of_body.items()}
+        return Model({**self.bodies, **changed}, self.known, self.record_shift, self.links)
 
     def log_late(self, log: str) -> float:
         """Seconds by which a log is late: of a command "device", or "device.interaction_force"."""
@@ -158,9 +156,13 @@ class Model:
     @property
     def parameters(self) -> dict[str, Value]:
         """Every parameter by its full name, "device.coulomb.level" -> Value (SI)."""
+        return dict(self._named)
+
+    @cached_property
+    def _named(self) -> Mapping[str, Value]:
+        """The parameters, put together once: a fit asks thousands of times."""
         named = {}
         for place, body in self.bodies.items():
-            # by effect, not by parameter: a fit asks thousands of times
             places = {e.name: self._place_of(place, f"{e.name}.any") for e in body.effects}
             for name, _ in body.declared():
                 at = places.get(name.partition(".")[0], f"{place}.")
@@ -198,11 +200,11 @@ class Model:
         """Distance of a parameter from the value at which its effect is absent, or from 0."""
         place, local_name = self.locate(name)
         effect, _, parameter = local_name.partition(".")
-        value = abs(self.parameters[name].value)
+        value = abs(self._named[name].value)
         if not parameter:
             return value
         absent = self.body(place).effect(effect).absent.get(parameter, 0.0)
-        return abs(self.parameters[name].value - absent) if abs(absent) < float("inf") else value
+        return abs(self._named[name].value - absent) if abs(absent) < float("inf") else value
 
     def canonical(self) -> Model:
         """The same model with the parameter values to report (see `Effect.canonical`)."""

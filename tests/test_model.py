@@ -1,5 +1,6 @@
 """A model: bodies with effects at places, read from an experiment, changed by making a new one."""
 
+import pickle
 from dataclasses import replace
 
 import pytest
@@ -46,10 +47,19 @@ def test_a_model_never_changes(model):
     other = model.with_values({"device.coulomb.level": 0.7})
     assert other.parameters["device.coulomb.level"].value == 0.7
     assert model.parameters["device.coulomb.level"].value == 0.5
+    model.parameters["device.coulomb.level"] = Value(1.0)  # a copy
+    assert model.parameters["device.coulomb.level"].value == 0.5
     with pytest.raises(TypeError):
         model.body("device").parameters["coulomb.level"] = Value(1.0)
     with pytest.raises(AttributeError):
         model.bodies = {}
+
+
+def test_parameters_are_put_together_once(model):
+    before = model.parameters
+    assert model._named is model._named and model.parameters == before
+    again = pickle.loads(pickle.dumps(model))
+    assert again == model and again.parameters == before
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ ONE_ONLY = {
     "contact_shape": "shapes of the contact force",
 }
 INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
+_FREE = Value(0.0)
 
 
 @dataclass(frozen=True, repr=False)
@@ -61,13 +62,13 @@ class Body:
         instance(self.parameters, Mapping, "Body: parameters", expected='such as {"inertia": 0.15}')
         object.__setattr__(self, "effects", _effects(self.effects))
         _check_effects(self.effects, self.axis)
-        expected = [name for name, _ in self.declared()]
+        declared = _list_declared(self.effects)
         for name in self.parameters:
-            if name not in expected:
-                raise _missing_parameter_error(name, expected)
-        optional = {name: Value(0.0) for name, p in self.declared() if p.optional}
+            if name not in declared:
+                raise _missing_parameter_error(name, declared)
+        optional = {name: _FREE for name, p in declared.items() if p.optional}
         parameters = {**optional, **{n: _value(v, n) for n, v in self.parameters.items()}}
-        for name, parameter in self.declared():
+        for name, parameter in declared.items():
             if name not in parameters:
                 raise ModelError(f'body: parameter "{name}" has no value')
             value = parameters[name].value
@@ -82,12 +83,11 @@ class Body:
 
     def declared(self) -> list[tuple[str, Parameter]]:
         """Every parameter of the body: its name in answers, and its declaration."""
-        of_effects = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
-        return [("inertia", INERTIA), *of_effects]
+        return list(_list_declared(self.effects).items())
 
     def parameter(self, name: str) -> Parameter:
         """Declaration of a parameter; raises ModelError: there is none of this name."""
-        declared = dict(self.declared())
+        declared = _list_declared(self.effects)
         if name not in declared:
             raise _missing_parameter_error(name, declared)
         return declared[name]
@@ -179,7 +179,7 @@ class Body:
             if name not in self.parameters:
                 raise _missing_parameter_error(name, self.parameters)
             new[name] = _value(number_or_value, name, self.parameters[name])
-        return replace(self, parameters={**self.parameters, **new})
+        return Body(self.axis, {**self.parameters, **new}, self.effects)
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
@@ -237,18 +237,24 @@ class Body:
         return {name: self.parameters[name].value for name, _ in self.declared()}
 
 
-def _value(number_or_value: object, name: object, before: Value | None = None) -> Value:
-    """A parameter's value; a plain number has the rest of the value before."""
+def _value(number_or_value: object, name: object, known: Value = _FREE) -> Value:
+    """A parameter's value; a plain number has the rest of the known value."""
     if isinstance(number_or_value, Value):
         return number_or_value
-    value = number(number_or_value, f"body: {name}")
-    return Value(value) if before is None else Value(value, before.fixed, before.stderr)
+    return Value(number(number_or_value, f"body: {name}"), known.fixed, known.stderr)
 
 
 def _missing_parameter_error(name: object, known: Iterable[str]) -> ModelError:
     near = did_you_mean(name, known) if isinstance(name, str) else ""
     shown = quote(name) if isinstance(name, str) else repr(name)
     return ModelError(f"body: no parameter {shown}, has {', '.join(known)}{near}")
+
+
+@lru_cache(maxsize=4096)
+def _list_declared(effects: tuple[Effect, ...]) -> Mapping[str, Parameter]:
+    """Parameters of a body with these effects, by their names in answers."""
+    of_effects = {f"{e.name}.{n}": p for e in effects for n, p in e.parameters.items()}
+    return {"inertia": INERTIA, **of_effects}
 
 
 @lru_cache(maxsize=4096)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from ...finding import Graph, Series
 from ...quantity import unit_of
@@ -120,7 +120,7 @@ def local_scale(e: Array, floor: float) -> Array:
         size = min(size, len(e))
         count = len(e) // size
         blocks = np.abs(e[: count * size]).reshape(count, size)
-        each = np.quantile(blocks, part, axis=1) / norm.ppf(0.5 + 0.5 * part)
+        each = np.quantile(blocks, part, axis=1) / ndtri(0.5 + 0.5 * part)
         each = maximum_filter1d(each, 3, mode="nearest")
         rest = np.full(len(e) % size, each[-1])
         scale = np.maximum(scale, np.concatenate([np.repeat(each, size), rest]))
@@ -129,4 +129,4 @@ def local_scale(e: Array, floor: float) -> Array:
 
 def largest_by_chance(count: int) -> float:
     """Largest of `count` normal values by chance, in standard deviations, at `FALSE_ALARM`."""
-    return float(norm.isf(0.5 * FALSE_ALARM / max(count, 1)))
+    return float(-ndtri(0.5 * FALSE_ALARM / max(count, 1)))
