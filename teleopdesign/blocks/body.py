@@ -66,8 +66,8 @@ class Body:
         for name in self.parameters:
             if name not in declared:
                 raise _missing_parameter_error(name, declared)
-        optional = {name: _FREE for name, p in declared.items() if p.optional}
-        parameters = {**optional, **{n: _value(v, n) for n, v in self.parameters.items()}}
+        parameters = {name: _FREE for name, p in declared.items() if p.optional}
+        parameters |= {n: _value(v, n) for n, v in self.parameters.items()}
         for name, parameter in declared.items():
             if name not in parameters:
                 raise ModelError(f'body: parameter "{name}" has no value')
@@ -238,7 +238,6 @@ class Body:
 
 
 def _value(number_or_value: object, name: object, known: Value = _FREE) -> Value:
-    """A parameter's value; a plain number has the rest of the known value."""
     if isinstance(number_or_value, Value):
         return number_or_value
     return Value(number(number_or_value, f"body: {name}"), known.fixed, known.stderr)
@@ -253,8 +252,8 @@ def _missing_parameter_error(name: object, known: Iterable[str]) -> ModelError:
 @lru_cache(maxsize=4096)
 def _list_declared(effects: tuple[Effect, ...]) -> Mapping[str, Parameter]:
     """Parameters of a body with these effects, by their names in answers."""
-    of_effects = {f"{e.name}.{n}": p for e in effects for n, p in e.parameters.items()}
-    return {"inertia": INERTIA, **of_effects}
+    named = {f"{e.name}.{n}": p for e in effects for n, p in e.parameters.items()}
+    return {"inertia": INERTIA, **named}
 
 
 @lru_cache(maxsize=4096)

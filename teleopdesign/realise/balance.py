@@ -11,6 +11,9 @@ Values and tangents are computed together.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -121,15 +124,19 @@ def _balance(
     return friction
 
 
-def side_by_side(signal: Traced, at: slice | NDArray[np.intp] = slice(None)) -> Array:
-    """Value and tangents of a signal at some samples, as columns (samples, lanes)."""
-    count = 1 + len(signal.tangent)
-    value = signal.value[at]
-    beside = np.zeros((len(value), lanes(count)))
-    beside[:, 0] = value
-    if not signal.is_constant:
-        beside[:, 1:count] = signal.tangent[:, at].T
+def side_by_side(signal: Traced) -> Array:
+    """Value and tangents of a signal, as columns (samples, lanes)."""
+    beside = np.zeros((len(signal.value), lanes(1 + len(signal.tangent))))
+    _fill_columns(beside, signal, slice(None))
     return beside
+
+
+def _fill_columns(columns: Array, signal: Traced, at: slice | NDArray[np.intp]) -> None:
+    """Write value and tangents of a signal at some samples into columns of zeros."""
+    columns[:, 0] = signal.value[at]
+    if not signal.is_constant:
+        for j in signal.moving_rows:
+            columns[:, 1 + j] = signal.tangent[j][at]
 
 
 def balance_within_bounds(
@@ -143,42 +150,59 @@ def balance_within_bounds(
     both = None if low.moving is None or high.moving is None else {*low.moving, *high.moving}
     for j in range(len(low.tangent)) if both is None else both:
         is_open |= low.tangent[j] != high.tangent[j]
-    rows, n = np.flatnonzero(is_open), len(is_open)
-    if not len(rows):
+    if not is_open.any():
         return low
-    m = margin(n, sample_time)
     friction = low.rows()
-    for first, last in windows(rows, n, m, reach(bandwidth, sample_time)):
-        here, mine = slice(first, last), rows[(rows >= first) & (rows < last)] - first
-        friction[:, first + mine] = _friction_at_open_rows(
-            needed.between(here),
-            low.between(here),
-            high.between(here),
-            mine,
-            # a window between others has no effect of its ends at the open rows
-            m if first == 0 or last == n else 1,
-            (bandwidth, sample_time),
+    for window in _list_windows(is_open.tobytes(), bandwidth, sample_time):
+        here = window.here
+        friction[:, here.start + window.rows] = _friction_at_open_rows(
+            needed.between(here), low.between(here), high.between(here), window
         )
     return Traced(friction[0], friction[1:], joined_rows(needed, low, high))
 
 
-def _friction_at_open_rows(
-    needed: Traced,
-    low: Traced,
-    high: Traced,
-    rows: NDArray[np.intp],
-    m: int,
-    of_filter: tuple[float, float],
-) -> Array:
-    """Friction and its tangents (1 + p, rows) where its bounds differ.
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """A part of a record beyond which its open rows have no influence.
 
-    m: samples by which the signals are continued;  of_filter: bandwidth (Hz) and sample time (s)
+    rows: indices of its open rows within it;  lengths: of their steps
+    m: samples by which it is continued
+    spans: of `spans_of` these rows;  filters: as `filter_spans` takes them
     """
+
+    here: slice
+    rows: NDArray[np.intp]
+    lengths: Array
+    m: int
+    spans: NDArray[np.intp]
+    filters: tuple[Array, Array, Array, Array]
+
+
+# most models of a search have their open rows where the readings show no motion: the same ones
+@lru_cache(maxsize=16)
+def _list_windows(is_open: bytes, bandwidth: float, sample_time: float) -> tuple[_Window, ...]:
+    """Windows of a record of n samples, whose open rows are marked by n bytes."""
+    rows, n = np.flatnonzero(np.frombuffer(is_open, dtype=bool)), len(is_open)
+    m = margin(n, sample_time)
+    of_filter = bandwidth, sample_time
+    listed = []
+    for first, last in windows(rows, n, m, reach(*of_filter)):
+        mine = rows[(rows >= first) & (rows < last)] - first
+        # a window between others has no effect of its ends at the open rows
+        ends = min(m if first == 0 or last == n else 1, last - first - 1)
+        spans = spans_of(mine, last - first, ends, bandwidth * sample_time)
+        filters = (*sections(*of_filter), *connect_spans(spans, *crossings(*of_filter)))
+        lengths = 1.0 / gains(mine, last - first, response(*of_filter))
+        listed.append(_Window(slice(first, last), mine, lengths, ends, spans, filters))
+    return tuple(listed)
+
+
+def _friction_at_open_rows(needed: Traced, low: Traced, high: Traced, window: _Window) -> Array:
+    """Friction and its tangents (1 + p, rows) where its bounds differ."""
+    rows, count = window.rows, 1 + len(needed.tangent)
     left = side_by_side(needed - low)
-    there = np.stack([side_by_side(a, rows) for a in (needed, low, high)])
-    m = min(m, len(left) - 1)
-    bandwidth, sample_time = of_filter
-    spans = spans_of(rows, len(left), m, bandwidth * sample_time)
-    filters = (*sections(*of_filter), *connect_spans(spans, *crossings(*of_filter)))
-    lengths = 1.0 / gains(rows, len(left), response(*of_filter))
-    return _balance(left, (rows, lengths), there, spans, m, filters)[:, : 1 + len(needed.tangent)].T
+    there = np.zeros((3, len(rows), lanes(count)))
+    for columns, signal in zip(there, (needed, low, high), strict=True):
+        _fill_columns(columns, signal, rows)
+    friction = _balance(left, (rows, window.lengths), there, window.spans, window.m, window.filters)
+    return friction[:, :count].T

@@ -7,7 +7,7 @@ from scipy.signal import sosfilt
 
 from teleopdesign.measurement.zero_phase import sections, zero_phase
 from teleopdesign.measurement.zero_phase_spans import gains, response
-from teleopdesign.realise.balance import STEPS, balance_within_bounds
+from teleopdesign.realise.balance import STEPS, _list_windows, balance_within_bounds
 from teleopdesign.realise.traced import Traced, constant
 
 SAMPLE_TIME, BANDWIDTH = 2e-3, 60.0
@@ -129,6 +129,16 @@ def test_tangents_that_are_nothing_need_no_memory_and_change_nothing():
     of = {"bandwidth": BANDWIDTH, "sample_time": SAMPLE_TIME}
     one, other = balance_within_bounds(*signals, **of), balance_within_bounds(*without, **of)
     assert (one.value == other.value).all() and not other.tangent.any()
+
+
+def test_windows_of_the_same_open_rows_are_listed_once():
+    of = {"bandwidth": BANDWIDTH, "sample_time": SAMPLE_TIME}
+    needed, low, high = bounded(7, 0.3)
+    first = balance_within_bounds(needed, low, high, **of)
+    known = _list_windows.cache_info().misses
+    again = balance_within_bounds(needed, low, high, **of)
+    assert _list_windows.cache_info().misses == known
+    assert (again.rows() == first.rows()).all()
 
 
 def test_where_every_sample_tells_its_motion_friction_is_its_bound():
