@@ -112,6 +112,13 @@ def test_forces_of_two_scales_are_reported_where_no_name_says_which_side(joint):
     assert "--unit" in note and "--gear-ratio" in note
 
 
+@pytest.mark.parametrize(("factor", "is_noted"), [(1.1, False), (0.85, False), (1.5, True)])
+def test_a_calibration_may_err_by_a_quarter_and_no_more(joint, factor, is_noted):
+    columns = {"t": joint["t"], "angle (rad)": joint["q"], "torque (Nm)": joint["u"] / factor}
+    survey = look(columns | {"hand (Nm)": joint["hand"]})
+    assert any("only with a factor of" in n for n in survey.notes) == is_noted
+
+
 @pytest.mark.parametrize(
     ("line", "ratio"),
     [

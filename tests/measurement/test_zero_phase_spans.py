@@ -63,3 +63,11 @@ def test_spans_near_each_other_are_one():
     apart = spans_of(np.array([700, 700 + NEAR + 2]), 2_000, 600, 0.1)
     near = spans_of(np.array([700, 700 + NEAR + 1]), 2_000, 600, 0.1)
     assert len(apart) == len(near) + 1
+
+
+def test_rows_just_inside_the_mirror_images_of_both_ends_change_no_row_of_these():
+    """300 samples, continued by 40: rows 1 to 40 and 259 to 298 stand in an image once more."""
+    n, m = 300, 40
+    for row in (m + 1, n - 2 - m):
+        expected = [[0, 1], [m + row, m + row + 1], [n + 2 * m - 1, n + 2 * m]]
+        assert spans_of(np.array([row]), n, m, 0.02).tolist() == expected

@@ -132,10 +132,12 @@ def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int
     if header is not None and (header.sec or header.nanosec):
         stamp = int(header.sec) * 1_000_000_000 + int(header.nanosec) - begin
         numbers[STAMP] = stamp * 1e-9
+    room = MOST_FIELDS - len(rows.keys() - {STAMP, _WRITTEN})
     for name, value in numbers.items():
-        is_time = name in (STAMP, _WRITTEN)
-        if name not in rows and len(rows) > MOST_FIELDS and not is_time:
-            continue
+        if name not in rows and name not in (STAMP, _WRITTEN):
+            if room < 1:
+                continue
+            room -= 1
         column = rows.setdefault(name, [])
         column += [np.nan] * (count - len(column))
         column.append(value)
