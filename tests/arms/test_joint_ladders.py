@@ -59,9 +59,11 @@ def test_an_effect_that_only_weakens_the_noise_of_the_sensors_is_set_aside(monke
     assert refused(monkeypatch, (1.3 * noise, 1.4 * noise), (noise, noise)) == NO_HELP
 
 
-def test_an_effect_must_gain_more_than_the_noise_that_it_takes_away(monkeypatch):
-    """A tip that was no tip: 1.21 to 1.16 noise floors, with a floor of 0.84 of that before."""
+def test_where_readings_explain_what_is_left_an_effect_must_leave_surely_fewer_floors(monkeypatch):
+    """Tips that are none left 1.16 of 1.21 and 1.23 of 1.37 noise floors, and were named."""
     assert refused(monkeypatch, (1.21, 0.97), (1.0, 0.84)) == NO_MORE_THAN_NOISE
+    assert refused(monkeypatch, (1.37, 0.97), (1.0, 0.79)) == NO_MORE_THAN_NOISE
+    assert refused(monkeypatch, (2.45, 1.13), (1.0, 0.9)) == ""
 
 
 def test_records_without_sensor_noise_refuse_nothing(monkeypatch):

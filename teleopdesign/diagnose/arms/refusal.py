@@ -15,6 +15,7 @@ from ..decision import is_better
 from ..diagnosis import SetAside
 from ..ladder_state import look
 from ..noise_floor import noise_floor
+from ..stand_in import is_of_readings
 from .diagnosis import ArmRung
 from .fit import ArmFit, estimate_arm
 from .joint import Joint
@@ -69,9 +70,8 @@ def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
     """Why an effect is removed once all joints are estimated together; "": it stays.
 
     An effect may transmit less of the sensor noise: the hidden tip of a structure follows the
-    measured force and a part of its noise. Such an effect must lower the error more than the noise:
-    it must leave fewer noise floors, and beyond the squares of the readings that it takes away with
-    them, it must gain as much as any effect.
+    measured force and a part of its noise. Such an effect must lower the error more than the noise,
+    and where the readings alone explain the error before, it must leave surely fewer noise floors.
     """
     if after.check_error > before.check_error:
         return NO_HELP
@@ -84,8 +84,9 @@ def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
     if there >= kept * sensors:
         return ""
     left, leaves = (fit.check_errors[name] ** 2 for fit in (before, after))
-    gain = (left - leaves) - (sensors - there)
-    explains = leaves * sensors <= kept * there * left and gain > criteria.of_floor * sensors
+    of_readings = sensors > 0.0 and is_of_readings((left / sensors) ** 0.5, criteria)
+    most = criteria.weakened**2 if of_readings else kept
+    explains = leaves * sensors <= most * there * left
     return "" if explains else NO_MORE_THAN_NOISE
 
 
