@@ -124,8 +124,9 @@ class LadderState:
 
     @property
     def weakening(self) -> frozenset[tuple[str, str]]:
-        """Barred effects, with their places, that only weaken errors of the readings."""
-        return frozenset(one.candidate.key for one in self.barred if one.of_readings)
+        """Effects, with their places, that were removed because they only weaken reading errors."""
+        removed = (*self.set_aside, *self.barred)
+        return frozenset(one.candidate.key for one in removed if one.of_readings)
 
     def with_floor_limited(self, criteria: Criteria) -> LadderState:
         """The state with the noise floor that its candidates allow, without `weakening`."""

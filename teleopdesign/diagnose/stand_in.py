@@ -86,7 +86,7 @@ def stands_in_for_readings(
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    if _is_of_readings(left, criteria) and after.drawn < criteria.weakened * before.drawn:
+    if is_of_readings(left, criteria) and after.drawn < criteria.weakened * before.drawn:
         explains = leaves <= criteria.weakened * left
     else:
         explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left
@@ -100,7 +100,7 @@ def stands_in_for_readings(
     return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
 
 
-def _is_of_readings(floors: float, criteria: Criteria) -> bool:
+def is_of_readings(floors: float, criteria: Criteria) -> bool:
     """Whether the readings alone explain an error of so many noise floors.
 
     A floor is known to a fifth. Where even less is left, the values of the model make more of the

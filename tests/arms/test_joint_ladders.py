@@ -54,18 +54,27 @@ def test_an_effect_that_only_weakens_the_noise_of_the_sensors_is_set_aside(monke
     )
     # what explains far more than it weakens stays, and what weakens nothing
     assert refused(monkeypatch, (9.0 * noise, 1.0 * noise), (noise, 0.8 * noise)) == ""
+    assert refused(monkeypatch, (1.6 * noise, 0.9 * noise), (noise, 0.85 * noise)) == ""
     assert refused(monkeypatch, (1.3 * noise, 1.2 * noise), (noise, noise)) == ""
     assert refused(monkeypatch, (1.3 * noise, 1.4 * noise), (noise, noise)) == NO_HELP
+
+
+def test_where_readings_explain_what_is_left_an_effect_must_leave_surely_fewer_floors(monkeypatch):
+    """Tips that are none left 1.16 of 1.21 and 1.23 of 1.37 noise floors, and were named."""
+    assert refused(monkeypatch, (1.21, 0.97), (1.0, 0.84)) == NO_MORE_THAN_NOISE
+    assert refused(monkeypatch, (1.37, 0.97), (1.0, 0.79)) == NO_MORE_THAN_NOISE
+    assert refused(monkeypatch, (2.45, 1.13), (1.0, 0.9)) == ""
 
 
 def test_records_without_sensor_noise_refuse_nothing(monkeypatch):
     assert refused(monkeypatch, (0.02, 0.01), (0.0, 0.0)) == ""
 
 
-def climbed(monkeypatch, ladders, refused):
+def climbed(monkeypatch, ladders, refused, why="no"):
     """The ladder of an arm whose joint climbs these ladders in turn; what was estimated.
 
     ladders: names of the effects of each climb;  refused: effects that the whole arm refuses
+    returns: names of the rungs and of what was set aside, what was estimated, the joint
     """
     estimated, climbs = [], iter(ladders)
 
@@ -91,7 +100,7 @@ def climbed(monkeypatch, ladders, refused):
     monkeypatch.setattr(refusal, "look", lambda search, rungs, state: state)
     monkeypatch.setattr(refusal, "is_better", lambda *_, **__: True)
     monkeypatch.setattr(
-        refusal, "refusal", lambda joint, before, after: "no" if after.name in refused else ""
+        refusal, "refusal", lambda joint, before, after: why if after.name in refused else ""
     )
     first = ArmRung(None, arm_fit_of("user's"))
     nothing = dict(floors=Floors(None, None), first=None, ranking=None, tone=None, supported=())
@@ -99,12 +108,12 @@ def climbed(monkeypatch, ladders, refused):
     joint = Joint("joint1", SimpleNamespace(criteria=CRITERIA), state)
     joint, rungs = ladder._climb_joint(joint, (first,), None, lambda _: None)
     aside = [one.candidate.effect.name for one in joint.state.set_aside]
-    return [r.added.effect.name for r in rungs[1:]], aside, estimated
+    return [r.added.effect.name for r in rungs[1:]], aside, estimated, joint
 
 
 def test_a_joint_climbs_again_without_what_the_whole_arm_refuses(monkeypatch):
     first = ("stribeck", "transmission_compliance", "spring")
-    rungs, aside, estimated = climbed(
+    rungs, aside, estimated, _ = climbed(
         monkeypatch, [first, ("stribeck", "spring")], {"transmission_compliance"}
     )
     assert rungs == ["stribeck", "spring"]
@@ -114,7 +123,7 @@ def test_a_joint_climbs_again_without_what_the_whole_arm_refuses(monkeypatch):
 
 
 def test_what_a_second_climb_changes_is_estimated_with_all_joints_again(monkeypatch):
-    rungs, aside, estimated = climbed(
+    rungs, aside, estimated, _ = climbed(
         monkeypatch, [("stribeck", "presliding"), ("spring", "cogging")], {"presliding"}
     )
     assert (rungs, aside) == (["spring", "cogging"], ["presliding"])
@@ -122,9 +131,18 @@ def test_what_a_second_climb_changes_is_estimated_with_all_joints_again(monkeypa
 
 
 def test_a_joint_that_comes_back_to_what_was_refused_ends_without_it(monkeypatch):
-    rungs, aside, _ = climbed(monkeypatch, [("stribeck", "spring")] * 2, {"spring"})
+    rungs, aside, *_ = climbed(monkeypatch, [("stribeck", "spring")] * 2, {"spring"})
     assert rungs == ["stribeck"]
     assert set(aside) == {"spring"}
+
+
+def test_what_only_weakens_noise_does_not_limit_the_noise_floor(monkeypatch):
+    """A right model would leave more floors than noise does, if the floor were that of the tip."""
+    ladders, tip = [("transmission_compliance",), ()], {"transmission_compliance"}
+    *_, joint = climbed(monkeypatch, ladders, tip, NO_MORE_THAN_NOISE)
+    assert joint.state.weakening == {("transmission_compliance", "joint1")}
+    *_, joint = climbed(monkeypatch, ladders, tip, NO_HELP)
+    assert not joint.state.weakening
 
 
 def test_joints_of_larger_arms_seek_pairs_and_exchanges_too():

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from ...blocks import Value
 from ...model import Model
 from ..fit import Fit, estimate, fit_squares
 from ..ladder_state import LadderSearch, LadderState, look
 from ..prepare import Prepared
 from ..rung import Rung
-from .fit import knowledge, misfits, with_others
+from .fit import ArmFit, estimate_arm, knowledge, misfits, with_others
 from .other_motion import most_coupled, with_other_motion
 from .prepared import PreparedArm
 
@@ -56,6 +57,30 @@ def begin_joint(
 def others_of(joints: Mapping[str, Joint]) -> dict[str, str]:
     """Joint -> the joint whose motion is its channel `other_position`, where one was chosen."""
     return {name: one.other for name, one in joints.items() if one.other is not None}
+
+
+def with_shifts_of(joints: Mapping[str, Joint], fit: ArmFit, prepared: PreparedArm) -> ArmFit:
+    """The arm's fit, with those shifts of records at zero that the searches hold at zero.
+
+    A shift that raises the check error of its joint is held at zero in the search at this joint.
+    The fit of all joints estimates it again unless it is held there, too.
+    returns: the fit itself where the same shifts are held, or where no less is left
+    """
+    models = {j: one.model for j, one in fit.fits.items()}
+    changed = dict[str, Model]()
+    for j, model in models.items():
+        shifts = joints[j].state.fit.model.record_shift
+        if _list_held(shifts) != _list_held(model.record_shift):
+            changed[j] = model.with_record_shift(shifts)
+    if not changed:
+        return fit
+    again = estimate_arm({**models, **changed}, prepared)
+    return again if again.check_error < fit.check_error else fit
+
+
+def _list_held(shifts: Mapping[str, Value]) -> list[str]:
+    """The logs whose shift is held."""
+    return sorted(log for log, late in shifts.items() if late.fixed)
 
 
 def with_known(

@@ -24,7 +24,7 @@ from ..search_plan import PLAN, SearchPlan
 from .bodies import as_bodies, with_final_bodies
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, link_errors
-from .joint import Joint, begin_joint, others_of, with_known
+from .joint import Joint, begin_joint, others_of, with_known, with_shifts_of
 from .other_motion import with_other_motions
 from .other_way import undetermined_coupling
 from .prepared import PreparedArm, isolate_joint, prepare_arm
@@ -76,8 +76,10 @@ def find_missing_in_arm(
             progress=lambda text, j=j: report(f"{j}: {text}"),  # type: ignore[misc]
         )
         joints[j] = begin_joint(j, search, first.prepared[j], first.fits[j].model, prepared)
-    rungs = _climb(joints, first, prepared, report)
+    rungs = _climb(joints, with_shifts_of(joints, first, prepared), prepared, report)
     prepared = with_other_motions(prepared, others_of(joints))
+    last = with_shifts_of(joints, rungs[-1].fit, prepared)
+    rungs = (*rungs[:-1], replace(rungs[-1], fit=last))
     diagnosis = _conclude(experiment, prepared, joints, rungs)
     limited = {j: with_candidates_named(among, d) for j, d in diagnosis.joints.items()}
     motors = {j: stated.parameters[f"{j}.inertia"].value for j in limited}

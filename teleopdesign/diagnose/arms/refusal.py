@@ -15,6 +15,7 @@ from ..decision import is_better
 from ..diagnosis import SetAside
 from ..ladder_state import look
 from ..noise_floor import noise_floor
+from ..stand_in import is_of_readings
 from .diagnosis import ArmRung
 from .fit import ArmFit, estimate_arm
 from .joint import Joint
@@ -69,20 +70,24 @@ def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
     """Why an effect is removed once all joints are estimated together; "": it stays.
 
     An effect may transmit less of the sensor noise: the hidden tip of a structure follows the
-    measured force and a part of its noise. Such an effect must lower the error more than the noise.
+    measured force and a part of its noise. Such an effect must lower the error more than the noise,
+    and where the readings alone explain the error before, it must leave surely fewer noise floors.
     """
     if after.check_error > before.check_error:
         return NO_HELP
-    records, name = joint.search.prepared, joint.name
+    records, name, criteria = joint.search.prepared, joint.name, joint.search.criteria
     sensors, there = (
-        noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn
+        noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn ** 2
         for fit in (before, after)
     )
-    kept = 1.0 - joint.search.criteria.relevant
-    if there**2 >= kept * sensors**2:
+    kept = 1.0 - criteria.relevant
+    if there >= kept * sensors:
         return ""
-    left = (after.check_errors[name] / before.check_errors[name]) ** 2
-    return "" if left <= kept * (there / sensors) ** 2 else NO_MORE_THAN_NOISE
+    left, leaves = (fit.check_errors[name] ** 2 for fit in (before, after))
+    of_readings = sensors > 0.0 and is_of_readings((left / sensors) ** 0.5, criteria)
+    most = criteria.weakened**2 if of_readings else kept
+    explains = leaves * sensors <= most * there * left
+    return "" if explains else NO_MORE_THAN_NOISE
 
 
 def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -> Joint:
@@ -92,7 +97,12 @@ def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -
     """
     state = joint.state
     aside = [
-        SetAside(r.added, r.fit.check_errors[joint.name], why)
+        SetAside(
+            r.added,
+            r.fit.check_errors[joint.name],
+            why,
+            of_readings=why == NO_MORE_THAN_NOISE,
+        )
         for r in refused
         if r.added is not None
     ]
