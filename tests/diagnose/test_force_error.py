@@ -107,8 +107,8 @@ def test_the_true_parameters_leave_the_error_that_the_simulation_says(
         "stribeck", values={n: v["value"] for n, v in hidden["parameters"].items()}
     ).with_values(values)
     error = force_error(known, prepared.of("check"))
-    # the reference knows where a motion reverses. Where an encoder cannot tell, static friction takes
-    # up a part of the noise; elsewhere the measured motion leaves a little more
+    # the reference knows where a motion reverses. Where an encoder cannot tell, static friction
+    # takes up a part of the noise; elsewhere the measured motion leaves a little more
     assert 0.8 * truth["check_error_true"] < error < 1.5 * truth["check_error_true"]
     base = estimate(model, prepared)
     assert base.check_error == pytest.approx(truth["check_error_base"], rel=0.1)
