@@ -107,9 +107,9 @@ def test_two_commands_lead_from_a_raw_log_to_the_report_and_answer_of_the_clean_
     for here, there in zip(parameters(answer), parameters(truth), strict=True):
         (name, value), (also, other) = here, there
         assert name == also
-        # within the 95 % interval that the raw log's answer states, and within the clean record's
-        within = 1.96 * min(value["stderr"], other["stderr"])
-        assert abs(value["value"] - other["value"]) < within, name
+        # within the 95 % interval that the raw log's answer states: a log of half the rows, as that
+        # of the robot, knows less than the clean record
+        assert abs(value["value"] - other["value"]) < 1.96 * value["stderr"], name
 
 
 def parameters(answer):
