@@ -15,8 +15,9 @@ class Criteria:
     #: noise floors up to which what is left counts as noise. Right models reach 1.0 to 1.5 on
     #: simulated records. Lower: a right model is called incomplete; higher: a weak effect hides
     adequate: float = 1.8
-    #: part of the squares above the noise floor that what is named must explain. Half: less is
-    #: rather something else. Lower: stand-ins are named; higher: one effect of two is not
+    #: part of the squares above the noise floor that what is named must explain, of those that an
+    #: effect could explain. Half: less is rather something else. Lower: stand-ins are named;
+    #: higher: one effect of two is not
     mostly: float = 0.5
     #: standard deviations of its chance part from which a gain counts (one in 30 000 by a normal
     #: law; residuals are not quite normal). Lower: chance gains; higher: short records say nothing

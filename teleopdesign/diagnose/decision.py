@@ -40,12 +40,13 @@ def explained_share(
     """
     fits = (before, after, last or after)
     return min(
-        _removed_share([f.check_error for f in fits], floor.value, open_part),
-        _removed_share([f.at_command.error for f in fits], floor.value_at_command, open_part),
+        removed_share([f.check_error for f in fits], floor.value, open_part),
+        removed_share([f.at_command.error for f in fits], floor.value_at_command, open_part),
     )
 
 
-def _removed_share(errors: Sequence[float], floor: float, open_part: float) -> float:
+def removed_share(errors: Sequence[float], floor: float, open_part: float = 1.0) -> float:
+    """`explained_share` of one kind of error: before, after, and of the last fit."""
     before, after, last = errors
     gain = before**2 - after**2
     left = open_part * max(last**2 - floor**2, 0.0)  # NaN where all is blind: nothing is explained

@@ -26,6 +26,7 @@ from .decision import (
     helps_but_is_barred,
     list_displaced_parameters,
     open_to_others,
+    removed_share,
 )
 from .diagnosis import Diagnosis
 from .evidence import chance
@@ -113,6 +114,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
             key = ranked.candidate.key
             accepted = rung is not None and rung.added is not None and rung.added.key == key
             barred = diagnosis.reason_set_aside(key)
+            before, after = ranking.base.check_error, ranked.fit.check_error
             if not accepted and not barred:
                 barred = helps_but_is_barred(ranking.base, ranked, floor)
             evidence.append(
@@ -121,7 +123,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                     accepted=accepted,
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
-                    explained=_explained_share(diagnosis, ranking, ranked),
+                    explained=removed_share((before, after, after), floor.value),
                     left=floors_left(last, floor),
                     barred=barred,
                     outweighs=explained_share(
@@ -200,9 +202,3 @@ def list_rarer(added: Candidate, ranking: Ranking) -> list[Candidate]:
     """Candidates at the same place whose files call the added effect the commoner one."""
     others = (r.candidate for r in ranking.ranked if r.candidate.at == added.at)
     return [c for c in others if c.effect.commoner == added.effect.name]
-
-
-def _explained_share(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:
-    before, after = ranking.base.check_error, ranked.fit.check_error
-    excess = before**2 - min(diagnosis.floor_of_belief.value, after) ** 2
-    return min(max((before**2 - after**2) / excess, 0.0), 1.0) if excess > 0 else 0.0
