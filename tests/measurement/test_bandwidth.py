@@ -53,34 +53,6 @@ def test_a_coarser_reading_is_compared_below_a_lower_frequency():
     assert share_in_motion(recorded(40.0), "device", coarse) > 0.5
 
 
-def at_constant_speeds(step, tone=0.0):
-    """A motor that turns at six speeds for 1.5 s each, both ways; tone: of 50 Hz, in rad."""
-    rate, generator = 1000.0, np.random.default_rng(3)
-    speeds = generator.permutation(np.linspace(0.15, 3.0, 6) * [1, -1, 1, -1, 1, -1])
-    wanted = np.repeat(speeds, 1500)
-    window = np.hanning(120)
-    velocity = np.convolve(np.pad(wanted, 60, mode="edge"), window / window.sum(), "same")[60:-60]
-    t = np.arange(len(wanted)) / rate
-    x = np.cumsum(velocity) / rate + tone * np.sin(2 * np.pi * 50.0 * t)
-    return td.experiment(
-        {"t": t, "x": step * np.round(x / step), "F": np.sign(velocity)},
-        axis="revolute",
-        time="t",
-        position={"column": "x", "resolution": step},
-        actuator_force="F",
-        inertia=1e-3,
-    )
-
-
-def test_lines_that_an_encoder_makes_at_constant_speed_do_not_widen_the_band():
-    """The changes of speed end near 15 Hz; lines of steps that pass reach half of the rate."""
-    step = 2 * np.pi / 8192
-    for part in (1.0, 0.1):
-        assert default_bandwidth(at_constant_speeds(part * step)) < 30.0
-    # a tone with more power than rounding to the steps is a motion
-    assert 45.0 < default_bandwidth(at_constant_speeds(step, tone=2.0 * step)) < 55.0
-
-
 def joined(*frequencies):
     """Records of 20 s, each a sine of one frequency (Hz), 0.2 rad, with noise of a step, 1 mrad."""
     t = np.arange(8000) / 400.0
@@ -189,14 +161,14 @@ def test_a_ripple_beyond_the_bandwidth_is_noticed_at_any_mean_speed(speed):
     assert motion_beyond(experiment, 20.0) == pytest.approx(100.0, abs=0.5)
 
 
-def runs_at_constant_speed(shaken=0.0):
-    """Runs to both sides at six speeds, as for a Stribeck curve; a sine of 60 Hz in steps."""
+def runs_at_constant_speed(shaken=0.0, tone=60.0):
+    """Runs to both sides at six speeds, as for a Stribeck curve; a sine in steps, tone in Hz."""
     rate, step = 400.0, 1e-3
     speeds = np.outer([0.023, 0.051, 0.083, 0.53, 2.1, 7.9], [1.0, -1.0]).ravel()
     v = np.convolve(np.repeat(speeds, 800), np.hanning(80) / np.hanning(80).sum(), "same")
     t = np.arange(len(v)) / rate
     x = np.cumsum(v) / rate + step * np.random.default_rng(0).normal(0.0, 0.1, len(t))
-    x += shaken * step * np.sin(2 * np.pi * 60.0 * t)
+    x += shaken * step * np.sin(2 * np.pi * tone * t)
     return td.experiment(
         {"t": t, "x": step * np.round(x / step), "F": np.sign(v)},
         axis="revolute",
@@ -205,6 +177,13 @@ def runs_at_constant_speed(shaken=0.0):
         actuator_force="F",
         inertia=0.1,
     )
+
+
+def test_lines_that_an_encoder_makes_at_constant_speed_do_not_widen_the_band():
+    """The changes of speed end near 10 Hz; lines of steps that pass reach half of the rate."""
+    assert default_bandwidth(runs_at_constant_speed()) < 12.0
+    # a tone with more power than rounding to the steps is a motion
+    assert 29.0 < default_bandwidth(runs_at_constant_speed(shaken=3.0, tone=30.0)) < 31.0
 
 
 def test_steps_passed_at_constant_speed_are_no_motion_beyond_the_bandwidth():
