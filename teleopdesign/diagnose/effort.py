@@ -19,7 +19,8 @@ class Efforts:
 
     #: a few real steps: enough to see which of many starts lead down
     first_steps: Effort = Effort(1e-3, 4)
-    #: blocks that are held out in turn: each fit begins next to its optimum
+    #: blocks that are held out in turn: the step to the optimum without a block mostly is linear;
+    #: where it is not, each fit begins next to its optimum
     held_out: Effort = Effort(1e-3, 5)
     #: candidates before they are ranked: closer than they differ
     rough: Effort = Effort(1e-4, 12)
@@ -32,6 +33,9 @@ class Efforts:
     fine: Effort = Effort(1e-7, 60)
     #: residuals and derivatives alone: the values stay where they are
     stay: Effort = Effort(1.0, 1)
+    #: part of the gain promised by a linear step that the step must reach, or the residual counts
+    #: as curved there: the next step is then damped as much, or a search goes on from it
+    linear: float = 0.75
     #: squares of what a body's residual changes by, over the squares themselves and over the
     #: tolerance, up to
     #: which the residual follows its tangents: what they miss is of higher order. More: faster, and

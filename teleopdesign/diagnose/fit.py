@@ -19,8 +19,8 @@ from .error_at_command import AtCommand, refer_to_command
 from .least_squares import sum_of_squares
 from .prepare import Prepared, Stretch, folds
 from .record_offsets import AlongRecords, follow_records
-from .residual import both_residuals, relative_residuals
-from .solve import BLOCK, Solution, solve
+from .residual import both_residuals
+from .solve import BLOCK, Solution, model_without, solve
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         check_error = error_of(check, absolute)
         command_error = command_error_of(fitted, check, along)
     else:
-        check, parts, check_error, command_error = _fit_held_out(fitted, free, prepared)
+        check, parts, check_error, command_error = _fit_held_out(solution, prepared)
     return Fit(
         model=fitted,
         free=free,
@@ -206,21 +206,25 @@ def _join_command_errors(stretches: Sequence[Stretch], error: AtCommand) -> Comm
 
 
 def _fit_held_out(
-    fitted: Model, free: tuple[str, ...], prepared: Prepared
+    solution: Solution, prepared: Prepared
 ) -> tuple[tuple[Stretch, ...], list[Array], float, CommandError]:
     """Residuals and errors of blocks of the fit records, each from a fit without that block."""
     held: list[Stretch] = []
     parts: list[Array] = []
     command_errors: list[AtCommand] = []
     squares = at_commands = 0.0
-    for known, held_out in folds(prepared.of("fit")):
-        solution = solve(fitted, free, prepared, known, EFFORTS.held_out)
-        model = solution.model
+    stretches, free = prepared.of("fit"), free_parameters(solution.model)
+    for known, held_out in folds(stretches):
+        pairs = zip(stretches, known, strict=True)
+        rows = np.concatenate([np.isin(s.keep, k.keep, assume_unique=True) for s, k in pairs])
+        model = model_without(solution, free, prepared, known, rows, EFFORTS.held_out)
+        along = follow_records(model, held_out)
+        absolute, relative = both_residuals(model, held_out, along)
         held += held_out
-        parts += [v for v, _ in relative_residuals(model, held_out)]
-        command_errors.append(refer_to_command(model, held_out))
+        parts += relative
+        command_errors.append(refer_to_command(model, held_out, along))
         measured = sum(s.measured for s in held_out)
-        squares += force_error(model, held_out) ** 2 * measured
+        squares += error_of(held_out, absolute) ** 2 * measured
         at_commands += command_errors[-1].error ** 2 * measured
     whole = sum(s.measured for s in held)
     together = AtCommand(

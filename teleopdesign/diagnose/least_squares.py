@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ..measurement.filtering import Array
+from .effort import EFFORTS
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def minimise(
     residual, jacobian = function(x)
     squares, damping, quiet, failed = sum_of_squares(residual), 1e-3, 0, False
     for _ in range(evaluations - 1):
-        step = _step(jacobian, residual, lower - x, upper - x, damping)
+        step = gauss_newton_step(jacobian, residual, lower - x, upper - x, damping)
         if not np.isfinite(step).all():
             break
         trial = np.clip(x + step, lower, upper)
@@ -70,7 +71,9 @@ def minimise(
             continue
         new = sum_of_squares(new_residual)
         good = (squares - new) / expected
-        damping = damping / 10.0 if good > 0.75 else damping * 3.0 if good < 0.25 else damping
+        damping = (
+            damping / 10.0 if good > EFFORTS.linear else damping * 3.0 if good < 0.25 else damping
+        )
         quiet = quiet + 1 if squares - new < tolerance * squares else 0
         x, residual, jacobian, squares = trial, new_residual, new_jacobian, new
         if quiet >= 2:
@@ -85,7 +88,9 @@ def sum_of_squares(residual: Array) -> float:
     return squares if math.isfinite(squares) else math.inf
 
 
-def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:
+def gauss_newton_step(
+    jacobian: Array, residual: Array, below: Array, above: Array, damping: float = 1e-3
+) -> Array:
     """Damped Gauss-Newton step within the bounds, scaled by the columns of the Jacobian.
 
     below, above: bounds of the step (p,);  returns: (p,), NaN where the Jacobian is not finite

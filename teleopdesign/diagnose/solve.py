@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ..measurement.filtering import Array
 from ..model import Model
 from .bodies_apart import BodyByBody
-from .effort import Effort
-from .least_squares import minimise
+from .effort import EFFORTS, Effort
+from .least_squares import gauss_newton_step, minimise, sum_of_squares
 from .prepare import Prepared, Stretch
 from .record_shift import CLOCK, RecordShifts, record_shifts
 from .residual import residuals
@@ -133,14 +133,8 @@ def solve(
     effort: Effort,
 ) -> Solution:
     """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
-    space = _search_space(model, free, prepared)
-    p, lasts = len(free), sum(s.weight * len(s.keep) * s.row for s in stretches)
-    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
-    lower = np.append(space.lower, np.full(len(shifts.logs), -CLOCK.early))
-    upper = np.append(space.upper, shifts.latest)
-    start = np.append(space.start, shifts.start(model))
-    bodies = BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance)
-    left = _Residuals(model, free, space, shifts, bodies)
+    left, start, lower, upper = _problem(model, free, prepared, stretches, effort)
+    space, shifts, p = left.space, left.shifts, len(free)
     if len(start):
         minimum = minimise(
             left.with_prior,
@@ -170,6 +164,61 @@ def solve(
         by_shift=jacobian[:, p:],
         shift_at_bound=at_bound[p:],
     )
+
+
+def _problem(
+    model: Model,
+    free: tuple[str, ...],
+    prepared: Prepared,
+    stretches: Sequence[Stretch],
+    effort: Effort,
+) -> tuple[_Residuals, Array, Array, Array]:
+    """Residuals of a search on these stretches, its start and its bounds, (p + k,) each."""
+    space = _search_space(model, free, prepared)
+    lasts = sum(s.weight * len(s.keep) * s.row for s in stretches)
+    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
+    lower = np.append(space.lower, np.full(len(shifts.logs), -CLOCK.early))
+    upper = np.append(space.upper, shifts.latest)
+    start = np.append(space.start, shifts.start(model))
+    bodies = BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance)
+    return _Residuals(model, free, space, shifts, bodies), start, lower, upper
+
+
+def model_without(
+    solution: Solution,
+    free: tuple[str, ...],
+    prepared: Prepared,
+    known: Sequence[Stretch],
+    rows: NDArray[np.bool_],
+    effort: Effort,
+) -> Model:
+    """The model of a solution, estimated on some of its rows alone.
+
+    One step by the derivatives of the solution leads there, if the residual is as linear as the
+    effort resolves; if not, the search goes on.
+
+    known: the stretches with these rows;  rows: which of the solution's rows these are
+    """
+    left, start, lower, upper = _problem(solution.model, free, prepared, known, effort)
+    if any(s.shared is not None for s in known) or not len(start):
+        return solve(solution.model, free, prepared, known, effort).model
+    p, shifts = len(free), left.shifts
+    r, j = solution.residual[rows], np.hstack([solution.jacobian, solution.by_shift])[rows]
+    j[:, p:][:, shifts.held] = 0.0
+    known_shift, slope = shifts.prior(start[p:], r, j)
+    r, j = np.append(r, known_shift), np.vstack([j, slope])
+    x = np.clip(start, lower, upper)
+    step = gauss_newton_step(j, r, lower - x, upper - x)
+    if not np.isfinite(step).all():
+        return solution.model
+    there = np.clip(x + step, lower, upper)
+    before, promised = sum_of_squares(r), sum_of_squares(r + j @ (there - x))
+    reached = sum_of_squares(left.residual_with_prior(there))
+    near = left.model_at(there) if reached < before else solution.model
+    linear = before - reached >= EFFORTS.linear * (before - promised)
+    if linear or reached <= (1.0 + effort.tolerance) * promised:
+        return near
+    return solve(near, free, prepared, known, effort).model
 
 
 def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:

@@ -37,6 +37,8 @@ ALIKE = 0.9
 #: occurs twice. With less travel, any slow force of the position fits; a higher limit would exclude
 #: long true periods
 REPEATS = 1.5
+#: steps of the readings in the shortest period that they can show: two, as for any sampled signal
+READ = 2.0
 #: a function of the place whose deviation from a straight line is below this part of its variation
 #: is hardly distinguished from a line: models of real machines leave about as much. A higher limit
 #: would also doubt functions that bend
@@ -160,14 +162,20 @@ def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str 
 
 
 def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
-    """A sentence where a period does not repeat within the travel; None where it does.
+    """A sentence where no period is seen to repeat within the travel; None where it is.
 
     p: parameters with `period` (m or rad);  for an effect's `plausible`
     """
+    period = facts.text(abs(p.period), "position")
+    if abs(p.period) < READ * facts.step:
+        return (
+            f"a period of {period} is shorter than steps of {facts.text(facts.step, 'position')} "
+            "can show: the effect imitates errors of the readings"
+        )
     if facts.travel >= REPEATS * abs(p.period):
         return None
     return (
-        f"a period of {facts.text(abs(p.period), 'position')} does not repeat within the travel of "
+        f"a period of {period} does not repeat within the travel of "
         f"{facts.text(facts.travel, 'position')}: the effect imitates something else that varies "
         "slowly along the travel, such as gravity, a spring or friction that varies"
     )

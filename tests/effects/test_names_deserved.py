@@ -135,6 +135,15 @@ def test_one_deflection_within_the_travel_is_enough():
     assert repeats_within_travel(SimpleNamespace(period=1.0), facts()) is None
 
 
+@pytest.mark.parametrize("name", ["cogging", "cogging_harmonic", "torque_ripple"])
+def test_a_period_must_be_two_steps_long_and_repeat_within_the_travel(name):
+    """Steps of 0.01 rad over a travel of 2 rad."""
+    assert "errors of the readings" in objection_to(name, "plausible", {"period": 0.02 * LESS})
+    assert objection_to(name, "plausible", {"period": 0.02 * MORE}) is None
+    assert objection_to(name, "plausible", {"period": 2.0 / 1.5 * LESS}) is None
+    assert "does not repeat" in objection_to(name, "plausible", {"period": 2.0 / 1.5 * MORE})
+
+
 def test_the_slowest_speed_is_that_of_a_hundredth_of_the_samples():
     speeds = np.r_[np.linspace(-1.0, -0.101, 900), np.linspace(0.1, 1.0, 901)]
     assert facts(speeds=speeds).slowest == pytest.approx(0.109, abs=1e-3)
