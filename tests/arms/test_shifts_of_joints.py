@@ -1,4 +1,4 @@
-"""A shift of a joint's log that the search at the joint holds at zero is zero in the arm's fit."""
+"""Shifts of the logs of an arm's joints: one logger writes all joints in one row."""
 
 from __future__ import annotations
 
@@ -11,7 +11,14 @@ from arms.arm_simulator import random_arm, write_experiment
 import teleopdesign as td
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.arms import joint as at_joint
+from teleopdesign.diagnose.arms.fit import estimate_arm
+from teleopdesign.diagnose.arms.prepared import prepare_arm
+from teleopdesign.diagnose.error import force_error
+from teleopdesign.effects import EFFECTS
+from teleopdesign.model import Model
 
+#: s between rows
+ROW = 0.01
 ESTIMATED, HELD = Value(-0.0046, fixed=False, stderr=6e-4), Value(0.0, fixed=True, stderr=1e-3)
 
 
@@ -61,6 +68,27 @@ def test_the_arm_takes_the_shift_of_the_search_where_less_is_left(monkeypatch, s
 @pytest.mark.parametrize("shift", [HELD, ESTIMATED])
 def test_nothing_is_estimated_again_where_search_and_arm_agree(monkeypatch, shift):
     assert chosen(monkeypatch, searched=shift, fitted=shift, left=0.004) == (shift, [])
+
+
+@pytest.mark.slow
+def test_the_links_are_those_of_the_shift_that_is_held(tmp_path):
+    """They were those of an estimated shift, and the held one left far more than it must."""
+    generator = np.random.default_rng(5)
+    experiment = td.load_experiment(
+        write_experiment(tmp_path, random_arm(generator, 1), generator, seconds=1.5)
+    )
+    known = {n: EFFECTS[n] for n in ("coulomb", "viscous")}
+    stated = Model.from_experiment(experiment, known)
+    held = stated.with_record_shift({"joint1": Value(-0.8 * ROW, fixed=True)})
+    prepared = prepare_arm(experiment)
+    arm = estimate_arm({"joint1": held.with_links(prepared.initial)}, prepared)
+    model, records = arm.fits["joint1"].model, prepared.joints["joint1"].of("fit")
+    assert model.log_late("joint1") == pytest.approx(-0.8 * ROW)
+    least = force_error(model, records)
+    for k in range(len(arm.links)):
+        for part in (-0.02, 0.02):
+            links = [x * (1 + part * (i == k)) for i, x in enumerate(arm.links)]
+            assert force_error(model.with_links(tuple(links)), records) > 0.999 * least
 
 
 @pytest.mark.slow

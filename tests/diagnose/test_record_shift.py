@@ -260,6 +260,17 @@ def test_a_shift_that_was_held_is_estimated_again_where_it_pays(adequate):
     assert rows_late(again, experiment)[0] == pytest.approx(1.0, abs=0.1)
 
 
+def test_a_held_shift_stays_where_it_is(adequate):
+    """The prior would move it to zero."""
+    free = fitted(adequate)
+    (place,) = free.model.bodies
+    row = adequate.records[0].sample_time
+    held = free.model.with_record_shift({place: td.Value(-0.4 * row, fixed=True)})
+    again = estimate(held, prepare(adequate))
+    assert rows_late(again, adequate)[0] == pytest.approx(-0.4, rel=1e-9)
+    assert rows_late(again, adequate)[1] > 0.0
+
+
 def logged_late(experiment, rows):
     """The experiment whose log holds commands back by whole rows."""
     for _ in range(rows):
