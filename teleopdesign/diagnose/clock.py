@@ -1,11 +1,13 @@
 """Delay of a log against its position: when it is accepted, and when it is a physical dead time.
 
 With a model that lacks much, a shift may imitate a part of the missing force, as a wrong effect
-would. So, like an effect, a shift must not raise the error on the check records.
+would. So, like an effect, a shift must not raise the error on the check records. Otherwise it is
+held at zero, or at the shift of the arm's other joints, whichever leaves less: one logger writes
+all joints in one row, so their shifts are one, unless the check records refute it.
 
 A shift at its bound stands for a part of a dead time that is longer than a logger's. If a dead time
 instead of the shift surely leaves less on the check records, the whole delay is physical, and the
-shift is set to zero, so that candidates can explain it. Otherwise the error with a shift at its
+shift is held as above, so that candidates can explain it. Otherwise the error with a shift at its
 bound may be too small for a search, and a late actuator would seem adequate.
 
 The filter of a force sensor delays the hand's force against the command, and an `actuator_lag` can
@@ -56,22 +58,30 @@ def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
 
 
 def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
-    """The fit with each body's shift estimated or zero, whichever has the lower check error.
+    """The fit with each body's shift estimated or held, whichever has the lowest check error.
 
-    A shift at its bound is set to zero too where it stands for a dead time.
+    A shift is held at zero, or at that of the other joints. At its bound it is held too where it
+    stands for a dead time.
 
     fit: with shifts of either kind
     returns: the fit itself where no change leaves less
     """
+    known = [Value(0.0, fixed=True)]
+    if prepared.late_beside is not None:
+        known.append(Value(prepared.late_beside, fixed=True))
     for place, late in fit.model.record_shift.items():
-        again = _with_shift(fit, place, Value(0.0, fixed=not late.fixed), prepared)
-        if again.check_error < fit.check_error:
-            fit = again
+        here = (late.value, True) if late.fixed else (0.0, False)
+        for other in (Value(0.0), *known):
+            if (other.value, other.fixed) == here:
+                continue
+            again = _with_shift(fit, place, other, prepared)
+            if again.check_error < fit.check_error:
+                fit = again
     for shift in shifts_of(fit.model, prepared.stretches):
         if shift.at not in fit.model.bodies:  # a shift of the hand's force: there is no actuator
             continue
         if shift.at_bound and shift.late < 0.0 and _stands_for_a_delay(fit, shift.at, prepared):
-            fit = _with_shift(fit, shift.at, Value(0.0, fixed=True), prepared)
+            fit = _with_shift(fit, shift.at, known[-1], prepared)
     return fit
 
 

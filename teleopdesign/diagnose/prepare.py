@@ -72,11 +72,15 @@ class Stretch(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Prepared(ByValue):
-    """An experiment prepared for comparison at one bandwidth (Hz)."""
+    """An experiment prepared for comparison at one bandwidth (Hz).
+
+    late_beside: s by which the logs of the arm's other joints are late; None: not known
+    """
 
     experiment: Experiment
     bandwidth: float
     stretches: tuple[Stretch, ...]
+    late_beside: float | None = None
 
     def of(self, use: str) -> tuple[Stretch, ...]:
         """The stretches of one use."""

@@ -5,8 +5,9 @@ to one row, either way, belongs to the record. It is no physics, but if it is ig
 a physical effect: a delay, a lag, the lead of a compliant transmission. So it is estimated with
 every model, one shift for each body, common to all its records.
 
-A shift that raises the error on the check records is fixed at zero (`clock.py`): with a model that
-lacks much it may describe a part of a missing effect.
+A shift that raises the error on the check records is held (`clock.py`): with a model that lacks
+much it may describe a part of a missing effect. It is held at zero, or at the shift of the arm's
+other joints: one logger writes all of them.
 
 Records may hardly determine the shift: a delay has the same effect, and with a spring and damper of
 the controller viscous friction has. Then prior knowledge decides: most loggers are right, and none
@@ -65,6 +66,8 @@ class LoggerClock:
     #: what such a log cannot tell is called missing; higher: a log as fast as its controller
     #: passes for one
     amid: float = 0.2
+    #: part of its bound from which a shift counts as at the bound: far nearer than a standard error
+    near: float = 0.999
     #: rows and standard errors from which a command that acts late is said to be like a delay
     reported_rows: float = 0.1
     reported_errors: float = 2.0
@@ -83,7 +86,7 @@ class RecordShifts:
     row: (k,) s between samples;  count: independent observations, n above
     spread: (k,) samples, standard deviation of the prior;  latest: (k,) samples, upper bound
     measured: (k,) whether the force was measured, not commanded
-    held: (k,) whether the shift is fixed at zero; standard errors still include its uncertainty
+    held: (k,) whether the shift is not estimated; standard errors still include its uncertainty
     """
 
     logs: tuple[str, ...]
@@ -108,11 +111,14 @@ class RecordShifts:
         return frozenset(log.partition(".")[0] for log in self.logs)
 
     def start(self, model: Model) -> Array:
-        """The model's shifts, in samples (k,); zero where a shift is held."""
+        """The model's shifts, in samples (k,)."""
         shifts = (model.record_shift.get(log) for log in self.logs)
         late = np.array([0.0 if shift is None else shift.value for shift in shifts])
-        late = np.where(self.held, 0.0, late)
         return np.clip(late / self.row, -CLOCK.early, self.latest)
+
+    def at_bound(self, samples: Array) -> NDArray[np.bool_]:
+        """Whether each of these shifts (k,), in samples, is at a bound of its range."""
+        return np.abs(samples) >= CLOCK.near * np.where(samples > 0.0, self.latest, CLOCK.early)
 
     def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
         """The model with these shifts and their standard errors, both (k,) in samples."""
@@ -171,8 +177,8 @@ def record_shifts(
     """The shifts to estimate on these stretches.
 
     count: independent observations in the stretches
-    model: its fixed shifts are held at zero; a hand's force has a shift only where the model has
-        one; None: no shifts are held, and hands' forces have none
+    model: its fixed shifts are held; a hand's force has a shift only where the model has one; None:
+        no shifts are held, and hands' forces have none
     """
     row: dict[str, float] = {}
     sensed: dict[str, bool] = {}
@@ -211,6 +217,7 @@ class RecordShift:
     may_delay: whether the model has a dead time there
     latest: s by which the log may be late
     measured: whether the force was measured, not commanded
+    held: whether it is the shift of the arm's other joints
     """
 
     at: str
@@ -220,12 +227,13 @@ class RecordShift:
     may_delay: bool
     latest: float
     measured: bool
+    held: bool = False
 
     @property
     def at_bound(self) -> bool:
         """Whether the shift is as large as a logger's may be."""
         most = self.latest if self.late > 0.0 else CLOCK.early * self.row
-        return abs(self.late) >= 0.999 * most
+        return abs(self.late) >= CLOCK.near * most
 
     @property
     def is_like_a_delay(self) -> bool:
@@ -243,6 +251,8 @@ class RecordShift:
         what = "force of the hand" if hand else "command"
         text = f"clock of the records: {what} at {body} {size} rows {word}"
         text += f" ({1e3 * self.late:.3g} ms)"
+        if self.held:
+            text += ", as at the other joints"
         if self.at_bound and self.late < 0.0:
             return f"{text}, at its bound: a longer shift counts as physics"
         if self.late > CLOCK.early * self.row:
@@ -258,20 +268,22 @@ class RecordShift:
 def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
     """The shifts of records that a fitted model has, except those held at zero."""
     shifts = record_shifts(stretches, 1, model)
+    late = model.record_shift
     return tuple(
         RecordShift(
             at=log,
-            late=model.record_shift[log].value,
-            stderr=model.record_shift[log].stderr,
+            late=late[log].value,
+            stderr=late[log].stderr,
             row=float(row),
             may_delay=log in model.bodies and bool(dead_times(model.body(log))),
             latest=float(row * latest),
             measured=bool(measured),
+            held=late[log].fixed,
         )
         for log, row, latest, measured in zip(
             shifts.logs, shifts.row, shifts.latest, shifts.measured, strict=True
         )
-        if log in model.record_shift and not model.record_shift[log].fixed
+        if log in late and not (late[log].fixed and late[log].value == 0.0)
     )
 
 

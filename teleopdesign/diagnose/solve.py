@@ -115,9 +115,10 @@ class _Residuals:
         """The same, with the k rows of the prior of the shifts; none changes by a held shift."""
         p, shifts = len(self.free), self.shifts
         r, j = self.both(x)
-        j[:, p:][:, shifts.held] = 0.0
         known, slope = shifts.prior(x[p:], r, j)
-        return np.append(r, known), np.vstack([j, slope])
+        both = np.vstack([j, slope])
+        both[:, p:][:, shifts.held] = 0.0
+        return np.append(r, known), both
 
     def residual_with_prior(self, x: Array) -> Array:
         """The residual of `with_prior` alone."""

@@ -202,8 +202,8 @@ def write_experiment(
 ):
     """A folder with URDF, experiment.toml and two records; hidden: (name, joint number, strength).
 
-    late: rows by which every command is logged late, in twentieths of one; seconds: with it, whole
-    periods of the paths (10 s), so that the record begins with what ends it
+    late: rows by which commands are logged late, in twentieths of one, of all joints or of each;
+    seconds: with it, whole periods of the paths (10 s): the record begins with what ends it
     The user's model has the true kinematics, zero inertial values, Coulomb and viscous friction.
     truth.json says what is hidden, and rms of its force over that of its joint on the last record.
     """
@@ -230,7 +230,8 @@ def write_experiment(
             )
             motor[j] += force
             size = float(np.sqrt(np.mean(force**2) / np.mean(motor[j] ** 2)))
-        motor = np.roll(motor, round(late * PARTS), axis=1)
+        shifts = np.round(np.broadcast_to(late, k) * PARTS).astype(int)
+        motor = np.array([np.roll(m, x) for m, x in zip(motor, shifts, strict=True)])
         command = motor.reshape(k, n, PARTS).mean(axis=2)
         noise = 0.01 * np.std(command, axis=1)
         command += noise[:, None] * generator.normal(size=(k, n))

@@ -260,6 +260,44 @@ def test_a_shift_that_was_held_is_estimated_again_where_it_pays(adequate):
     assert rows_late(again, experiment)[0] == pytest.approx(1.0, abs=0.1)
 
 
+def beside(experiment, rows):
+    """Its records, beside joints whose logs are late by so many rows."""
+    return replace(prepare(experiment), late_beside=rows * experiment.records[0].sample_time)
+
+
+def test_a_held_shift_stays_where_it_is(adequate):
+    """The prior would move it to zero."""
+    free = fitted(adequate)
+    (place,) = free.model.bodies
+    row = adequate.records[0].sample_time
+    held = free.model.with_record_shift({place: td.Value(-0.4 * row, fixed=True)})
+    again = estimate(held, prepare(adequate))
+    assert rows_late(again, adequate)[0] == pytest.approx(-0.4, rel=1e-9)
+    assert rows_late(again, adequate)[1] > 0.0
+
+
+def test_a_log_has_the_shift_of_the_other_joints_where_less_is_left(adequate):
+    """The fit records say a row less than the check records."""
+    experiment = only_late(shifted(adequate, 0.5), -1.0, "fit")
+    free = fitted(experiment)
+    assert rows_late(free, experiment)[0] == pytest.approx(-0.5, abs=0.1)
+    held = with_paying_shift(free, beside(experiment, 0.5))
+    assert rows_late(held, experiment)[0] == pytest.approx(0.5, rel=1e-9)
+    assert held.check_error < free.check_error
+    (shift,) = shifts_of(held.model, prepare(experiment).stretches)
+    assert "0.5" in str(shift) and "rows late" in str(shift)
+    assert "as at the other joints" in str(shift)
+
+
+@pytest.mark.parametrize("others", [0.0, 0.5])
+def test_a_joint_whose_drive_is_late_keeps_the_shift_of_its_log(adequate, others):
+    experiment = shifted(adequate, -0.7)
+    kept = with_paying_shift(fitted(experiment), beside(experiment, others))
+    assert rows_late(kept, experiment)[0] == pytest.approx(-0.7, abs=0.1)
+    (shift,) = shifts_of(kept.model, prepare(experiment).stretches)
+    assert "as at the other joints" not in str(shift)
+
+
 def logged_late(experiment, rows):
     """The experiment whose log holds commands back by whole rows."""
     for _ in range(rows):

@@ -199,7 +199,7 @@ def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Know
 
     size: root of the squares that count as one observation
     """
-    columns, residual, slopes, _ = _linear(model, stretches)
+    columns, residual, slopes, _ = _linear(model, stretches, is_held=True)
     basis = _basis(slopes)
     columns, residual = (x - basis @ (basis.T @ x) for x in (columns, residual))
     # residual at b: residual - columns (b - links)
@@ -208,16 +208,18 @@ def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Know
 
 
 def _linear(
-    model: Model, stretches: tuple[Stretch, ...]
+    model: Model, stretches: tuple[Stretch, ...], *, is_held: bool = False
 ) -> tuple[Array, Array, Array, tuple[Stretch, ...]]:
     """Linear problem of a joint, with the priors of its shifts as additional rows.
 
+    is_held: whether shifts that are held, or at a bound, cannot change: else the links would be
+        those of a shift that the joint does not have
     returns: columns of the links (rows, b), residual (rows,), columns of the joint's parameters and
         shifts, and the stretches
     """
     plain, free = remove_links(add_links(model, stretches)), _list_inner_parameters(model)
     lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
-    shifts = record_shifts(plain, round(lasts / BLOCK))
+    shifts = record_shifts(plain, round(lasts / BLOCK), model)
     parts = relative_residuals(model, plain, (*free, *shifts.names))
     roots = [np.sqrt(s.weight) for s in plain]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
@@ -225,6 +227,10 @@ def _linear(
     slopes = slopes * np.append(np.ones(len(free)), shifts.row)
     samples = shifts.start(model)
     known, slope = shifts.prior(samples, residual, slopes)
+    if is_held:
+        stays = shifts.held | shifts.at_bound(samples)
+        for part in (slopes, slope):
+            part[:, len(free) :][:, stays] = 0.0
     columns = np.vstack([weighted_columns(s) for s in plain])
     nothing = np.zeros((len(known), columns.shape[1]))
     return (

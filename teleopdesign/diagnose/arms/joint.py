@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from ...blocks import Value
 from ...model import Model
 from ..fit import Fit, estimate, fit_squares
 from ..ladder_state import LadderSearch, LadderState, look
 from ..prepare import Prepared
+from ..record_shift import shifts_of
 from ..rung import Rung
 from .fit import ArmFit, estimate_arm, knowledge, misfits, with_others
 from .other_motion import most_coupled, with_other_motion
@@ -60,10 +63,10 @@ def others_of(joints: Mapping[str, Joint]) -> dict[str, str]:
 
 
 def with_shifts_of(joints: Mapping[str, Joint], fit: ArmFit, prepared: PreparedArm) -> ArmFit:
-    """The arm's fit, with those shifts of records at zero that the searches hold at zero.
+    """The arm's fit, with those shifts of records held that the searches hold.
 
-    A shift that raises the check error of its joint is held at zero in the search at this joint.
-    The fit of all joints estimates it again unless it is held there, too.
+    A shift that raises the check error of its joint is held in the search at this joint. The fit of
+    all joints estimates it again unless it is held there, too.
     returns: the fit itself where the same shifts are held, or where no less is left
     """
     models = {j: one.model for j, one in fit.fits.items()}
@@ -78,17 +81,43 @@ def with_shifts_of(joints: Mapping[str, Joint], fit: ArmFit, prepared: PreparedA
     return again if again.check_error < fit.check_error else fit
 
 
-def _list_held(shifts: Mapping[str, Value]) -> list[str]:
-    """The logs whose shift is held."""
-    return sorted(log for log, late in shifts.items() if late.fixed)
+def _list_held(shifts: Mapping[str, Value]) -> list[tuple[str, float]]:
+    """The logs whose shift is held, and this shift."""
+    return sorted((log, late.value) for log, late in shifts.items() if late.fixed)
+
+
+def with_clock_of_others(
+    records: Mapping[str, Prepared], fits: Mapping[str, Fit], joint: str
+) -> Prepared:
+    """Records of a joint with the shift of the logs of the other joints, by their fits.
+
+    It is the median of the shifts that were estimated, weighted by their information: one joint
+    whose drive is late does not move it. A shift at its bound is no estimate.
+    """
+    shifts = [
+        (shift.late, shift.stderr**-2)
+        for j, fit in fits.items()
+        for shift in shifts_of(fit.model, records[j].stretches)
+        if j != joint and shift.at == j and not (shift.held or shift.at_bound)
+        if shift.stderr > 0.0
+    ]
+    late = _weighted_median(shifts) if shifts else None
+    return replace(records[joint], late_beside=late)
+
+
+def _weighted_median(pairs: Sequence[tuple[float, float]]) -> float:
+    """The value up to which half of the weight lies; pairs: value and weight."""
+    values, weights = np.array(sorted(pairs)).T
+    return float(values[np.searchsorted(np.cumsum(weights), 0.5 * weights.sum())])
 
 
 def with_known(
     records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
 ) -> Prepared:
-    """Records of a joint with the information of the other joints on the links, by their fits."""
+    """Records of a joint with what the fits of the other joints say of the links and the clock."""
+    mine = with_clock_of_others(records, fits, joint)
     if prepared.base is None:
-        return records[joint]
+        return mine
     sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
     known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
-    return with_others(records[joint], known, sizes[joint], fits[joint].model)
+    return with_others(mine, known, sizes[joint], fits[joint].model)

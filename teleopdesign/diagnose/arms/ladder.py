@@ -24,7 +24,14 @@ from ..search_plan import PLAN, SearchPlan
 from .bodies import as_bodies, with_final_bodies
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, link_errors
-from .joint import Joint, begin_joint, others_of, with_known, with_shifts_of
+from .joint import (
+    Joint,
+    begin_joint,
+    others_of,
+    with_clock_of_others,
+    with_known,
+    with_shifts_of,
+)
 from .other_motion import with_other_motions
 from .other_way import undetermined_coupling
 from .prepared import PreparedArm, isolate_joint, prepare_arm
@@ -75,7 +82,8 @@ def find_missing_in_arm(
             plan=plan.for_joints(len(prepared.joints)),
             progress=lambda text, j=j: report(f"{j}: {text}"),  # type: ignore[misc]
         )
-        joints[j] = begin_joint(j, search, first.prepared[j], first.fits[j].model, prepared)
+        records = with_clock_of_others(first.prepared, first.fits, j)
+        joints[j] = begin_joint(j, search, records, first.fits[j].model, prepared)
     rungs = _climb(joints, with_shifts_of(joints, first, prepared), prepared, report)
     prepared = with_other_motions(prepared, others_of(joints))
     last = with_shifts_of(joints, rungs[-1].fit, prepared)
