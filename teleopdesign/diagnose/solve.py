@@ -113,12 +113,15 @@ class _Residuals:
 
     def with_prior(self, x: Array) -> tuple[Array, Array]:
         """The same, with the k rows of the prior of the shifts; none changes by a held shift."""
+        return self.add_prior(x, *self.both(x))
+
+    def add_prior(self, x: Array, residual: Array, jacobian: Array) -> tuple[Array, Array]:
+        """A residual and its Jacobian at x, with the rows of the prior as in `with_prior`."""
         p, shifts = len(self.free), self.shifts
-        r, j = self.both(x)
-        known, slope = shifts.prior(x[p:], r, j)
-        both = np.vstack([j, slope])
+        known, slope = shifts.prior(x[p:], residual, jacobian)
+        both = np.vstack([jacobian, slope])
         both[:, p:][:, shifts.held] = 0.0
-        return np.append(r, known), both
+        return np.append(residual, known), both
 
     def residual_with_prior(self, x: Array) -> Array:
         """The residual of `with_prior` alone."""
@@ -203,11 +206,8 @@ def model_without(
     left, start, lower, upper = _problem(solution.model, free, prepared, known, effort)
     if any(s.shared is not None for s in known) or not len(start):
         return solve(solution.model, free, prepared, known, effort).model
-    p, shifts = len(free), left.shifts
-    r, j = solution.residual[rows], np.hstack([solution.jacobian, solution.by_shift])[rows]
-    j[:, p:][:, shifts.held] = 0.0
-    known_shift, slope = shifts.prior(start[p:], r, j)
-    r, j = np.append(r, known_shift), np.vstack([j, slope])
+    columns = np.hstack([solution.jacobian, solution.by_shift])[rows]
+    r, j = left.add_prior(start, solution.residual[rows], columns)
     x = np.clip(start, lower, upper)
     step = gauss_newton_step(j, r, lower - x, upper - x)
     if not np.isfinite(step).all():

@@ -6,8 +6,8 @@
 Gears and worn joints have backlash. Small motion distinguishes backlash from
 `transmission_compliance`: with backlash the tip does not follow small motion at all.
 
-The time of the next contact depends on the last contact by more than sensors resolve. So along a
-measured motion a correction leads the computed tip back to its course (`_structure.py`).
+The next contact depends on the last one by more than sensors resolve, so along a measured motion a
+correction leads the computed tip back to its course (`_structure.py`).
 """
 
 from sympy import Piecewise
@@ -25,16 +25,16 @@ def coupling(now, p):
     )
 
 
-#: how closely the simulated tip follows the measurement: with less, the simulated contacts more
-#: often occur at other times than the measured ones
+#: how closely the simulated tip follows the measurement: with less, contacts are out of step
 FOLLOWING = 3.0
 EFFECT = make_structure(
     coupling=coupling,
     following=FOLLOWING,
     energy="dissipates",
     parameters={
+        # a search from half the true inertia, or from three times it, often ends elsewhere
         "tip_inertia": Parameter(
-            "inertia", "m_t: inertia of the tip side", search=FitSearch(starts=(0.1, 0.3))
+            "inertia", "m_t: inertia of the tip side", search=FitSearch(starts=(0.1, 0.2, 0.4, 0.8))
         ),
         "stiffness": Parameter(
             "stiffness",

@@ -61,7 +61,7 @@ STARTS = {
     "backlash.damping": (0.03,),
     "backlash.gap": (0.7, 2.5, 10.0, 35.0, 120.0),
     "backlash.stiffness": (0.03, 0.1, 0.3),
-    "backlash.tip_inertia": (0.1, 0.3),
+    "backlash.tip_inertia": (0.1, 0.2, 0.4, 0.8),
     "cogging.amplitude": (0.03,),
     "cogging.period": WAVES,
     "cogging.phase": (0.0,),
