@@ -95,6 +95,15 @@ def test_long_lists_of_columns_end_in_dots_and_short_ones_do_not():
     assert reasons({}) == ""
 
 
+@pytest.mark.parametrize("step", [9.1309234e-6, 2 * np.pi / 4096, 0.01])
+def test_a_step_is_written_with_the_digits_that_keep_readings_on_its_grid(step):
+    resolution = look({"t": T, "angle [rad]": step * np.round(Q / step), "tau": U})
+    resolution = resolution.channels["position"]["resolution"]
+    reach = np.ptp(Q)
+    assert abs(resolution / step - 1.0) * reach < 0.1 * step
+    assert float(f"{resolution:.6g}") == resolution, "no more digits than needed"
+
+
 SIGNED = np.round(400.0 * np.cos(2 * np.pi * 0.7 * T))
 
 

@@ -44,6 +44,8 @@ BY_NAME = 0.1
 #: relative difference between a velocity and the derivative of its position that filters and
 #: rounding may cause
 SAME_TIME = 0.1
+#: part of a step by which readings at the end of a range may lie beside a grid of rounded steps
+OFF_GRID = 0.1
 
 
 def find_position(
@@ -215,7 +217,7 @@ def describe_position(
         factor = si_factor(unit, quantity="position", axis=axis)
         step = _step_of_readings(column.readings)
         if step > 0:
-            entry["resolution"] = float(f"{step:.5g}")
+            entry["resolution"] = _with_few_digits(step, float(np.ptp(column.values)))
             survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
     if jump is not None:
         turn = 2 * math.pi / factor
@@ -257,6 +259,12 @@ def _step_of_readings(values: Array) -> float:
     raw = values[:ENOUGH]
     changes = int(np.count_nonzero(np.diff(raw)))
     return grid_of(raw, reading_step(raw)) if changes >= 9 else 0.0
+
+
+def _with_few_digits(step: float, reach: float) -> float:
+    """A step with as few digits as keep it on its grid over a whole range."""
+    rounded = (float(f"{step:.{digits}g}") for digits in range(5, 17))
+    return next((r for r in rounded if abs(r / step - 1.0) * reach < OFF_GRID * step), step)
 
 
 def _position_unit(
