@@ -11,7 +11,9 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from ..errors import ModelError
 from ..measurement.motion import Motion
+from ..model import Model
 from .adequacy import moment_above_noise, records_differ
 from .between_rows import floor_between_rows
 from .candidates import Candidate
@@ -153,10 +155,35 @@ def find_hidden_rung(
     return None
 
 
+def _find_dependent(rungs: Sequence[Rung], rung: Rung, why: str) -> tuple[Rung, str] | None:
+    """The last rung whose effect needs that of another rung, with the reason; None: none does.
+
+    why: the doubt about the other rung
+    """
+    model = rungs[-1].fit.model
+    if _can_undo([rung], model):
+        return None
+    others = (r for r in reversed(rungs) if r.added not in (None, rung.added))
+    other = next((r for r in others if _can_undo([r, rung], model)), None)
+    return None if other is None else (other, f"it needs {rung.added}: {why}")
+
+
+def _can_undo(rungs: Sequence[Rung], model: Model) -> bool:
+    """Whether the effects of rungs can be taken from a model, one after the other."""
+    try:
+        for rung in rungs:
+            model = rung.undo_addition(model)
+    except ModelError:
+        return False
+    return True
+
+
 def remove_doubtful_rung(
     search: LadderSearch, state: LadderState, rungs: Sequence[Rung]
 ) -> LadderState | None:
     """The ladder without the last effect that is doubtful at its end.
+
+    An effect that needs the doubtful one goes first.
 
     rungs: of the state, with the errors that the answer would state
     returns: None where no effect is doubtful, or the effect was removed before
@@ -165,7 +192,7 @@ def remove_doubtful_rung(
     doubted = doubted or find_hidden_rung(rungs, criteria=search.criteria)
     if doubted is None:
         return None
-    rung, why = doubted
+    rung, why = _find_dependent(state.rungs, *doubted) or doubted
     assert rung.added is not None
     gone = {one.candidate.key for one in state.set_aside}
     fewer = [r for r in state.rungs if r.added != rung.added]

@@ -252,6 +252,23 @@ def test_what_hides_the_command_is_set_aside_where_nothing_is_doubtful(doubts, m
     assert remove_doubtful_rung(search, again, rungs) is None
 
 
+def test_what_needs_a_doubtful_effect_goes_first_and_then_the_doubtful_one(doubts, monkeypatch):
+    """As friction behind a transmission whose tip is heavier than the whole body."""
+    table = Table(error, needs=(("bias", "spring"),))
+    rungs = ladder(table, "spring", "bias", "quadratic_drag")
+    monkeypatch.setattr(rungs_module, "estimate", table.estimate)
+    search = table.search()
+    search.progress = lambda line: None
+    doubts({SPRING: "no part of the body"})
+    moved = remove_doubtful_rung(search, table.state(rungs), rungs)
+    assert [r.added for r in moved.rungs[1:]] == [SPRING, DRAG]
+    assert moved.set_aside[-1].reason == "it needs spring at device: no part of the body"
+    moved = remove_doubtful_rung(search, moved, moved.rungs)
+    assert [r.added for r in moved.rungs[1:]] == [DRAG]
+    assert [one.candidate for one in moved.set_aside] == [BIAS, SPRING]
+    assert moved.set_aside[-1].reason == "no part of the body"
+
+
 @pytest.mark.parametrize(("by", "corrected"), [(0.9, True), (1.0, True), (100.0, False)])
 def test_reading_errors_are_taken_off_unless_the_ladder_would_rise(monkeypatch, by, corrected):
     rungs = ladder(Table(error), "spring", "bias")

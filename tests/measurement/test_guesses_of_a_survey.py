@@ -77,6 +77,22 @@ def test_a_torque_turns_what_it_drives(name):
     assert look({"time": T, "position": Q, "force": U}).axis == "prismatic"
 
 
+@pytest.mark.parametrize(
+    ("name", "axis"),
+    [
+        ("torso_lift_joint_position", "prismatic"),
+        ("linear encoder", "prismatic"),
+        ("slider motor pos", "prismatic"),
+        ("arm_1_joint_position", "revolute"),
+        ("lift_angle", "revolute"),
+    ],
+)
+def test_a_joint_that_lifts_or_slides_is_no_angle(name, axis):
+    survey = look({"time": T, name: Q, "effort": U})
+    assert survey.axis == axis
+    assert ("part that slides" in survey.guesses["model.device.axis"]) == (axis == "prismatic")
+
+
 def test_the_state_of_a_controller_of_ros_is_read_by_its_terms():
     rate = np.gradient(Q, T)
     columns = {

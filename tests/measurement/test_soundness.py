@@ -77,6 +77,18 @@ def read(x):
     return STEP * np.round(x / STEP)
 
 
+@pytest.mark.parametrize(("rows", "is_lost"), [(1, True), (3, True), (8, False)])
+def test_a_force_that_is_mostly_zero_for_rows_at_a_time_is_a_log_without_its_readings(
+    rod, rows, is_lost
+):
+    rest = np.ones(len(rod.records[0].signals["device.actuator_force"]), dtype=bool)
+    for first in range(0, len(rest) - rows, 20):
+        rest[first : first + rows] = False
+    findings = warnings(spoilt(rod, "actuator_force", put(rest, 0.0)), "force steps")
+    assert bool(findings) == is_lost
+    assert all("% of the rows" in f.sentence for f in findings)
+
+
 def test_a_sound_record_gives_no_warning_and_no_note(rod):
     assert warnings(rod) == []
     assert {f.concern for f in check_signals(rod)} == {"fine"}

@@ -95,6 +95,36 @@ def test_long_lists_of_columns_end_in_dots_and_short_ones_do_not():
     assert reasons({}) == ""
 
 
+@pytest.mark.parametrize("step", [9.1309234e-6, 2 * np.pi / 4096, 0.01])
+def test_a_step_is_written_with_the_digits_that_keep_readings_on_its_grid(step):
+    resolution = look({"t": T, "angle [rad]": step * np.round(Q / step), "tau": U})
+    resolution = resolution.channels["position"]["resolution"]
+    reach = np.ptp(Q)
+    assert abs(resolution / step - 1.0) * reach < 0.1 * step
+    assert float(f"{resolution:.6g}") == resolution, "no more digits than needed"
+
+
+SIGNED = np.round(400.0 * np.cos(2 * np.pi * 0.7 * T))
+
+
+@pytest.mark.parametrize(
+    ("readings", "is_signed"),
+    [
+        (np.where(SIGNED < 0, 1024.0 - SIGNED, SIGNED), True),
+        (np.where(SIGNED < 0, 65536.0 + SIGNED, SIGNED), True),
+        (SIGNED, False),
+        (SIGNED + 512.0, False),
+        (np.abs(SIGNED), False),
+    ],
+)
+def test_numbers_without_their_sign_are_remarked(readings, is_signed):
+    survey = look({"t": T, "angle [rad]": Q, "torque": readings})
+    largest = f"({readings.max():.0f} for -400)"
+    notes = [note for note in survey.notes if "without their sign" in note]
+    assert bool(notes) == is_signed
+    assert all(largest in note or "65535 for -1" in note for note in notes)
+
+
 def acted(wanted, measured):
     columns = {
         "torque_cmd": SurveyedColumn("torque_cmd", wanted, wanted, None),

@@ -16,7 +16,7 @@ from ..experiment import Experiment
 from .clipping import check_clipped
 from .clock import check_clock, clock_in_order
 from .encoder_steps import check_steps
-from .force_steps import check_force_steps
+from .force_steps import check_force_steps, check_lost_force
 from .held_samples import check_constant, check_repeats, check_stuck, check_update
 from .log_reading import check_reading
 from .mains_hum import check_hum
@@ -59,7 +59,7 @@ def _check_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
         return constant  # a velocity is only compared with the position
     findings = [*check_stuck(signal), *check_clipped(signal), *check_outliers(signal)]
     findings += [*check_jumps(signal), *check_repeats(signal), *check_update(signal)]
-    findings += check_force_steps(signal) + check_hum(signal, others)
+    findings += [*check_force_steps(signal), *check_lost_force(signal), *check_hum(signal, others)]
     return findings + check_steps(signal, others) + check_noise(signal, others)
 
 

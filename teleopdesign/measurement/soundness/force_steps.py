@@ -1,4 +1,4 @@
-"""Force steps: a commanded or measured force with a coarse resolution in the log."""
+"""Force steps: a force with a coarse resolution in the log, or one that mostly reads zero."""
 
 from __future__ import annotations
 
@@ -16,6 +16,31 @@ COARSE = 0.03
 LEVELS = 5
 #: part of all changes that lead to the next level: a rounded signal passes through every level
 TO_THE_NEXT = 0.9
+#: rows, and fewest times, that a force differs from zero at a time, where its log lacks readings: a
+#: test with pulses holds each one for longer, or has fewer
+SHORT, OFTEN = 4.0, 20
+
+
+def check_lost_force(signal: Signal) -> list[Finding]:
+    """Report a force that mostly reads zero, and other values for a few rows at a time."""
+    if signal.channel.quantity not in ("actuator_force", "interaction_force"):
+        return []
+    acts = signal.values != 0.0
+    times = int(np.count_nonzero(np.diff(acts.astype(int)) == 1))
+    part, rows = float(np.mean(acts)), float(np.count_nonzero(acts)) / max(times, 1)
+    if part > 0.5 or times < OFTEN or rows > SHORT:
+        return []
+    return [
+        Finding(
+            "force steps",
+            "warning",
+            f"{signal.name} is exactly 0 in {100 * (1 - part):.0f} % of the rows, and differs from "
+            f"0 for {rows:.1f} rows at a time: the log lacks readings, or the force hardly exceeds "
+            "its resolution. No model of the device explains such a force.",
+            {"part": 1 - part, "rows": rows, "count": float(times)},
+            signal.record.file,
+        )
+    ]
 
 
 def check_force_steps(signal: Signal) -> list[Finding]:

@@ -11,6 +11,9 @@ IN_TURNS = frozenset(("odrive", "moteus"))
 TURNING = IN_TURNS | set(
     "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
 )
+#: words for parts that slide, in names without an angle: "torso_lift_joint" is a joint that slides
+SLIDING = frozenset("lift elevator slide slider prismatic linear rail carriage".split())
+ANGLES = frozenset("angle winkel theta phi".split())
 #: words of a force that turns
 TORQUES = frozenset(
     "torque torques drehmoment moment couple coppia tau effort トルク 力矩 扭矩 토크 момент".split()
@@ -46,12 +49,15 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         why, axis = f"forces are in {turned[0]}", "revolute"
     else:
         words = words_of(position)
+        sliding = SLIDING.intersection(words) and not ANGLES.intersection(words)
         turning = TURNING.intersection(words)
         torques = TORQUES.intersection(names)
         revolute = turning or torques or unit == "counts" or "A" in units
-        axis = "revolute" if revolute else "prismatic"
+        axis = "revolute" if revolute and not sliding else "prismatic"
         why = "no unit and no name of a column determines the axis"
-        if turning:
+        if sliding:
+            why = f"the name {position!r} is that of a part that slides"
+        elif turning:
             why = f"the name {position!r} is that of an angle"
         elif torques:
             why = f"the name of a column contains {min(torques)!r}"

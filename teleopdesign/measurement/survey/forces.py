@@ -30,6 +30,7 @@ from .content import (
 )
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si
+from .set_point import has_numbers_of, may_be_set_point
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
 #: with the name or unit of a force
@@ -65,6 +66,10 @@ def describe_forces(
         n: c
         for n, c in free.items()
         if not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit)
+    }
+    # a set point of the position is no force
+    free = {
+        n: c for n, c in free.items() if not (may_be_set_point(c) and has_numbers_of(c.values, x))
     }
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     scores = {

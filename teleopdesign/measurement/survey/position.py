@@ -13,6 +13,7 @@ from ...quantity import measures, si_factor
 from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
+from ..first_guess import explain_force
 from .axis_kind import IN_TURNS
 from .content import (
     SURE_NAME,
@@ -36,12 +37,15 @@ from .derivative import (
     wrap_of,
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
+from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
 #: relative difference between a velocity and the derivative of its position that filters and
 #: rounding may cause
 SAME_TIME = 0.1
+#: part of a step by which readings at the end of a range may lie beside a grid of rounded steps
+OFF_GRID = 0.1
 
 
 def find_position(
@@ -51,10 +55,12 @@ def find_position(
     h = sample_time_of(survey)
     moving = {n: c for n, c in survey.columns.items() if moves(c) and _may_be_position(c)}
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
+    followed = followed_columns(_without_names(moving, flat))
     derivative: dict[str, tuple[str, float]] = {}
     scores: dict[str, float] = {}
     for name, column in moving.items():
-        score = likeness(name, "position") - 0.8 * is_wanted(name)
+        is_set_point = is_wanted(name) or name in followed.values()
+        score = likeness(name, "position") - 0.8 * is_set_point + 0.4 * (name in followed)
         kinds = [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
@@ -76,25 +82,70 @@ def find_position(
         best = choices.position
     elif scores:
         best = max(scores, key=lambda n: scores[n])
+        if likeness(best, "position") == 0:
+            best = _most_explained([best, *as_likely(scores, best)], flat, h)
+        _note_choice(survey, best, scores, derivative, followed)
     else:
         raise ExperimentError(
             f"{file}: found no position: no column changes without being a force or "
             f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
             f"{_integral_of(moving)}{reasons(survey.unread)}"
         )
-    if choices.position is None and likeness(best, "position") < SURE_NAME:
-        named = likeness(best, "position") > 0 or is_unit_of(
-            survey.columns[best].unit or "", "position"
-        )
-        why = "name or unit suggest a position" if named else "it is the first column that moves"
-        why = "another column is its derivative" if best in derivative else why
-        survey.guesses["channels.position.column"] = f"{best!r} is read as the position: {why}"
-    elif choices.position is None and (others := as_likely(scores, best)):
-        survey.guesses["channels.position.column"] = explain_ambiguity(best, others, "the position")
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _note_choice(
+    survey: Survey,
+    best: str,
+    scores: Mapping[str, float],
+    derivative: Mapping[str, object],
+    followed: Mapping[str, str],
+) -> None:
+    """Mark the chosen column as a guess, with the reason, where its name alone does not decide."""
+    key, others = "channels.position.column", as_likely(scores, best)
+    if likeness(best, "position") >= SURE_NAME:
+        if others:
+            survey.guesses[key] = explain_ambiguity(best, others, "the position")
+        return
+    unit = survey.columns[best].unit
+    if best in followed:
+        why = f"it follows {followed[best]!r}, as a position follows its set point"
+    elif best in derivative:
+        why = "another column is its derivative"
+    elif likeness(best, "position") > 0 or is_unit_of(unit, "position"):
+        why = "name or unit suggest a position"
+    elif others:
+        why = "its motion explains more of another column than those of other columns do"
+    else:
+        why = "it is the first column that moves"
+    survey.guesses[key] = f"{best!r} is read as the position: {why}"
+
+
+def _most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str:
+    """That of equally likely columns whose motion explains most of any other column."""
+    if len(names) == 1:
+        return names[0]
+    shares = {
+        name: max(explain_force(f, flat[name], h).explained for n, f in flat.items() if n != name)
+        for name in names
+    }
+    return max(shares, key=lambda name: shares[name])
+
+
+def _without_names(
+    moving: Mapping[str, SurveyedColumn], flat: Mapping[str, Array]
+) -> dict[str, Array]:
+    """The columns that may be a position or its set point, and whose names do not say which."""
+    return {
+        name: flat[name]
+        for name, column in moving.items()
+        if likeness(name, "position") < SURE_NAME
+        and not _is_another(column)
+        and may_be_set_point(column)
+    }
 
 
 def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
@@ -166,7 +217,7 @@ def describe_position(
         factor = si_factor(unit, quantity="position", axis=axis)
         step = _step_of_readings(column.readings)
         if step > 0:
-            entry["resolution"] = float(f"{step:.5g}")
+            entry["resolution"] = _with_few_digits(step, float(np.ptp(column.values)))
             survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
     if jump is not None:
         turn = 2 * math.pi / factor
@@ -208,6 +259,12 @@ def _step_of_readings(values: Array) -> float:
     raw = values[:ENOUGH]
     changes = int(np.count_nonzero(np.diff(raw)))
     return grid_of(raw, reading_step(raw)) if changes >= 9 else 0.0
+
+
+def _with_few_digits(step: float, reach: float) -> float:
+    """A step with as few digits as keep it on its grid over a whole range."""
+    rounded = (float(f"{step:.{digits}g}") for digits in range(5, 17))
+    return next((r for r in rounded if abs(r / step - 1.0) * reach < OFF_GRID * step), step)
 
 
 def _position_unit(

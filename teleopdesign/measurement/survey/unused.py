@@ -22,6 +22,7 @@ from .content import (
     sample_time_of,
 )
 from .derivative import DERIVATIVE, derivative_factor, unwrap_column, wrap_of
+from .set_point import follows, may_be_set_point
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
@@ -73,6 +74,8 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
         return "a desired value, not a measured one"
     x = survey.columns[position].values
     jump = wrap_of(x)
+    if may_be_set_point(column) and follows(unwrap_column(x, jump), column.values):
+        return f"a set point: {position!r} follows it"
     _, agree = derivative_factor(unwrap_column(x, jump), column.values, sample_time_of(survey))
     if agree > DERIVATIVE and "velocity" in survey.channels:
         return f"a second velocity for {position!r}"

@@ -1,0 +1,87 @@
+"""Set points among the columns of a log: the position of a controlled machine follows them.
+
+A set point has the numbers of the position, only earlier. Such a column is neither the position nor
+a force, whatever its name: "r" beside "y", "SV" beside "PV", "reference" beside "measurement".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ..column_names import WANTED, likeness, words_of
+from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of
+from .derivative import DERIVATIVE
+
+#: part of a log by which a machine may be late behind its set point
+LATEST = 0.1
+#: part of the squares of a column by which its position may differ: two columns that agree as a
+#: velocity and the derivative of its position must
+APART = 1.0 - DERIVATIVE**2
+
+
+def followed_columns(flat: Mapping[str, Array]) -> dict[str, str]:
+    """Column -> the column that it follows: the set point of a position.
+
+    flat: values (n,) of the columns that may be positions, by name
+    """
+    followed: dict[str, str] = {}
+    for name, values in flat.items():
+        for other, earlier in flat.items():
+            if name != other and follows(values, earlier):
+                followed[name] = other
+                break
+    return followed
+
+
+def follows(column: Array, other: Array) -> bool:
+    """Whether a column has the numbers of another one, only later."""
+    if not _are_alike(column, other):
+        return False
+    at_once = _apart(column, other, 0)
+    later = min(_apart(column, other, k) for k in _delays(len(column)))
+    earlier = min(_apart(other, column, k) for k in _delays(len(column)))
+    return later < min(at_once, earlier, APART)
+
+
+def has_numbers_of(column: Array, position: Array) -> bool:
+    """Whether a column has the numbers of the position, at the same time, earlier or later."""
+    if not _are_alike(column, position):
+        return False
+    delays = _delays(len(column))
+    least = (min(_apart(column, position, k), _apart(position, column, k)) for k in delays)
+    return min(_apart(column, position, 0), *least) < APART
+
+
+def may_be_set_point(column: SurveyedColumn) -> bool:
+    """Whether unit and name of a column leave open that it is a set point of the position.
+
+    "cmd" and "command" name forces and set points; "torque" names a force only.
+    """
+    if column.unit is not None and is_unit_of(column.unit, "force"):
+        return False
+    plain = " ".join(word for word in words_of(column.name) if word not in WANTED)
+    return max(likeness(plain, f"{k}_force") for k in ("actuator", "interaction")) < SURE_NAME
+
+
+def _are_alike(column: Array, other: Array) -> bool:
+    """Whether mean and spread let two columns have the same numbers: a quick first look."""
+    spread = float(np.std(other))
+    within = abs(float(np.mean(column) - np.mean(other))) < spread
+    return within and 0.5 * spread < float(np.std(column)) < 2.0 * spread
+
+
+def _delays(rows: int) -> Iterator[int]:
+    """Delays in rows, each about a quarter longer than the one before."""
+    delay = 1
+    while delay <= max(LATEST * rows, 1.0):
+        yield delay
+        delay += 1 + delay // 4
+
+
+def _apart(late: Array, early: Array, delay: int) -> float:
+    """Mean square of the difference between a column and one `delay` rows earlier, over its own."""
+    rows = len(late) - delay
+    whole = float(np.var(late))
+    return float(np.mean((late[delay:] - early[:rows]) ** 2)) / whole if whole > 0 else np.inf

@@ -1,0 +1,97 @@
+"""Set points in a log: neither the position nor a force, whatever their names."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey.set_point import follows, has_numbers_of
+
+T = 0.01 * np.arange(1500)
+WANTED = 40.0 * np.sign(np.sin(1.3 * T)) + 15.0 * np.sin(2.9 * T)
+
+
+def look(columns):
+    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, remarks=())
+    return survey_log(log, "log", Choices())
+
+
+def controlled():
+    """Position (deg) and command of a motor under a position loop."""
+    place = speed = 0.0
+    rows = []
+    for wanted in WANTED:
+        force = float(np.clip(0.03 * (wanted - place) - 0.001 * speed, -1.0, 1.0))
+        rows.append((place, force))
+        for _ in range(10):
+            speed += 0.001 * (force - 0.05 * np.tanh(speed) - 2e-4 * speed) / 3.5e-5
+            place += 0.001 * speed
+    return np.array(rows).T
+
+
+PLACE, FORCE = controlled()
+
+
+@pytest.mark.parametrize(
+    ("names", "position", "force"),
+    [
+        ("r y u", "y", "u"),
+        ("SV PV MV", "PV", "MV"),
+        ("Setpoint Input Output", "Input", "Output"),
+        ("reference measurement voltage", "measurement", "voltage"),
+        ("w x y", "x", "y"),
+        ("yd y u", "y", "u"),
+        ("goal present load", "present", "load"),
+        ("command encoder pwm", "encoder", "pwm"),
+    ],
+)
+def test_a_set_point_is_neither_the_position_nor_a_force(names, position, force):
+    columns = dict(zip(names.split(), (WANTED, PLACE, FORCE), strict=True))
+    survey = look({"t": T, **columns})
+    assert survey.channels["position"]["column"] == position
+    assert survey.channels["actuator_force"]["column"] == force
+    assert "interaction_force" not in survey.channels
+    assert names.split()[0] in survey.unused
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "position"),
+    [
+        ({"r": WANTED, "e": WANTED - PLACE}, {"y": PLACE, "u": FORCE}, "y"),
+        ({"e": WANTED - PLACE}, {"u": FORCE, "y": PLACE}, "y"),
+        ({"input": FORCE}, {"output": PLACE}, "output"),
+        ({"CH1": FORCE, "CH2": WANTED}, {"CH3": PLACE}, "CH3"),
+    ],
+)
+def test_of_columns_without_names_the_motion_explains_a_force(first, second, position):
+    survey = look({"t": T, **first, **second})
+    assert survey.channels["position"]["column"] == position
+    assert "channels.position.column" in survey.guesses
+    assert np.array_equal(survey.columns[survey.channels["actuator_force"]["column"]].values, FORCE)
+
+
+def test_the_reason_names_the_set_point():
+    survey = look({"t": T, "r": WANTED, "y": PLACE, "u": FORCE})
+    assert "it follows 'r'" in survey.guesses["channels.position.column"]
+    assert survey.unused["r"] == "a set point: 'y' follows it"
+
+
+@pytest.mark.parametrize("delay", [1, 7, 60])
+def test_a_column_follows_one_that_has_its_numbers_earlier(delay):
+    late = np.r_[np.full(delay, WANTED[0]), WANTED[:-delay]]
+    assert follows(late, WANTED) and not follows(WANTED, late)
+    assert has_numbers_of(late, WANTED) and has_numbers_of(WANTED, late)
+    assert not follows(0.4 * late, WANTED), "a gear lies between"
+    assert not follows(late + 100.0, WANTED)
+
+
+def test_equal_columns_follow_none_of_the_other_and_a_force_has_other_numbers():
+    assert not follows(WANTED, WANTED.copy()) and has_numbers_of(WANTED, WANTED.copy())
+    assert not has_numbers_of(FORCE, PLACE) and not has_numbers_of(np.ones(1500), PLACE)
+
+
+def test_a_force_by_its_name_or_unit_stays_one_where_a_spring_gives_it_the_numbers_of_a_position():
+    late = np.r_[WANTED[:3], WANTED[:-3]]
+    for name in ("torque", "a [Nm]"):
+        survey = look({"t": T, "angle [rad]": late, name: WANTED})
+        assert survey.channels["actuator_force"]["column"] == name
