@@ -14,7 +14,7 @@ from teleopdesign.measurement.held_command import held_command
 from teleopdesign.measurement.resample import _interpolate_in_steps
 from teleopdesign.measurement.soundness.signal import local_scale
 from teleopdesign.measurement.spans import cut_to
-from teleopdesign.measurement.survey import Choices, Survey, SurveyedColumn
+from teleopdesign.measurement.survey import Choices, Survey, SurveyedColumn, survey_log
 from teleopdesign.measurement.survey.derivative import derivative_factor, wrap_of
 from teleopdesign.measurement.survey.force_entry import describe_force
 from teleopdesign.measurement.survey.forces import _find_hand
@@ -241,3 +241,16 @@ def test_rows_out_of_order_are_sorted_and_a_clock_set_back_begins_a_stretch():
     assert rows_in_order(near, (slice(0, 40),), same)[1] == 0
     same[20] = True
     assert rows_in_order(near, (slice(0, 40),), same)[1] == 1
+
+
+def test_a_second_velocity_and_a_column_of_other_length_say_why_they_are_left_out():
+    t = 0.005 * np.arange(1200)
+    q = np.sin(2 * np.pi * 0.7 * t) + 0.2 * np.sin(2 * np.pi * 2.1 * t)
+    v = np.gradient(q, t)
+    force = 0.02 * np.gradient(v, t) + 0.3 * np.sign(v)
+    columns = {"t": t, "q [rad]": q, "dq [rad/s]": v, "tau [Nm]": force, "few": np.arange(7.0) % 3}
+    columns["w [rad/s]"] = v + 0.05 * np.random.default_rng(1).standard_normal(1200)
+    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted})
+    left_out = survey_log(log, "log", Choices()).unused
+    assert left_out["w [rad/s]"] == "a second velocity for 'q [rad]'"
+    assert left_out["few"] == "has 7 rows, another number than the time"
