@@ -9,11 +9,13 @@ from measurement.made_channels import H, channel, record_of
 
 from teleopdesign.measurement import log_clock
 from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.motion import without_mains
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.soundness import clock
 from teleopdesign.measurement.soundness.clipping import check_clipped, visits
 from teleopdesign.measurement.soundness.encoder_steps import measure_griddedness
 from teleopdesign.measurement.soundness.held_samples import check_repeats
+from teleopdesign.measurement.soundness.noise import check_noise
 from teleopdesign.measurement.soundness.outliers import (
     _mark_out_of_range,
     _match_events,
@@ -114,6 +116,26 @@ def test_repeated_samples_of_a_later_stretch_are_counted_from_the_first_row_of_t
     x[160:250:4] = x[159:249:4]
     (finding,) = check_repeats(channel(x, step=1.0, segments=(slice(0, 150), slice(150, 400))))
     assert finding.numbers["part"] > 0.05 and finding.concern == "warning"
+
+
+@pytest.mark.parametrize(("scatter", "is_wrong"), [(0.0307, False), (0.01, True), (0.06, True)])
+def test_stated_noise_counts_with_the_rounding_of_its_resolution(scatter, is_wrong):
+    """0.01 and 0.29 steps of 0.1: 0.0307 in all, within a factor of 1.6."""
+    x = scatter * np.random.default_rng(3).standard_normal(4000)
+    findings = check_noise(channel(x, noise=0.01, resolution=0.1), [])
+    assert [f.topic for f in findings] == ["noise"] * is_wrong
+
+
+def test_hum_is_that_of_the_longest_stretch():
+    """The position shows the tone in the second stretch alone, which is shorter."""
+    t = H * np.arange(9000)
+    tone, noise = np.sin(2 * np.pi * 50.0 * t), np.random.default_rng(4).standard_normal(9000)
+    force, parts = 0.5 * tone + 0.02 * noise, (slice(0, 5000), slice(5000, 9000))
+    record = replace(record_of(9000, parts), signals={"a.position": np.where(t < 5.0, t, tone)})
+    record.signals["f"] = force
+    assert without_mains(record, "f") == pytest.approx(0.02 * noise, abs=0.02)
+    record.signals["a.position"] = np.where(t < 4.0, tone, t)
+    assert without_mains(record, "f") is force
 
 
 # stamps and clocks

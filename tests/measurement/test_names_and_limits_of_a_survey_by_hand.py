@@ -214,7 +214,9 @@ def test_whole_numbers_over_a_wide_range_are_counts(name, reach, counts):
     ("factor", "counts"),
     [(2 * np.pi / 4096, 4096.0), (2 * np.pi / 4096 * 1.009, 4096.0),
      (2 * np.pi / 4050, 4096.0), (2 * np.pi / 4150, 4096.0), (2 * np.pi / 4200, 0.0),
-     (2 * np.pi / 3960, 4000.0), (-2 * np.pi / 4096, 0.0), (0.0, 0.0)],
+     (2 * np.pi / 3960, 4000.0), (-2 * np.pi / 4096, 0.0),
+     (2 * np.pi / 128, 128.0), (2 * np.pi / 2**24, 2.0**24), (2 * np.pi / 8e4, 8e4),
+     (2 * np.pi / 100, 100.0), (0.0, 0.0)],
 )  # fmt: skip
 def test_counts_of_a_turn_are_those_of_an_encoder_within_a_fiftieth(monkeypatch, factor, counts):
     monkeypatch.setattr(encoder_counts, "derivative_factor", lambda *_: (factor, 1.0))

@@ -16,6 +16,7 @@ from teleopdesign.measurement.repeated_rows import (
     _leaps,
     _noise_vanishes,
     rows_between_readings,
+    stuck_stretches,
 )
 from teleopdesign.measurement.resample import filling_error, resample_on_grid
 from teleopdesign.measurement.signals_of_log import (
@@ -84,6 +85,20 @@ def test_noise_turns_round_in_four_of_ten_changes_on_both_sides(turns):
     assert _noise_vanishes(y, first, past) == (turns == 8)
     assert not _noise_vanishes(y[1:], first - 1, past - 1)
     assert not _noise_vanishes(y[:-1], first, past)
+
+
+@pytest.mark.parametrize(
+    ("changes", "is_stuck"),
+    [((12, 12, 6), False), ((12, 12, 12), True), ((12, 9, 12), True), ((14, 12, 12), True),
+     ((17, 12, 12), False), ((12, 12, 3), False), ((4, 4, 4), True), ((3, 3, 3), False)],
+)  # fmt: skip
+def test_a_position_stops_dead_where_it_slows_by_less_than_a_fifth_of_its_speed(changes, is_stuck):
+    """A sample, over the last three changes before the hold; three steps are no motion."""
+    x = np.cumsum([0.0, changes[0], changes[0], *changes, *[0.0] * 12])
+    stretches = stuck_stretches(x, 1.0, "position")
+    assert stretches == ([(5, 18)] if is_stuck else [])
+    assert stuck_stretches(x, 1.0, "actuator_force") == []
+    assert stuck_stretches(x[1:], 1.0, "position") == [], "four changes before it are few"
 
 
 # signals on the clock
