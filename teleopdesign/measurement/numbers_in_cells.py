@@ -33,7 +33,8 @@ def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
     if values.dtype.kind in "mM":
         return _seconds(values)
     if values.dtype.kind in "iu" and len(values) and np.abs(values[0]) > _LONG:
-        return np.asarray(values - values[0], dtype=np.float64)
+        # as signed: of unsigned numbers, one below the first leaves a number near 2^64
+        return np.asarray((values - values[0]).astype(np.int64), dtype=np.float64)
     if values.dtype.kind in "OU":
         values = _plain_objects(values.astype(object))
     if values.dtype.kind not in "fiub":

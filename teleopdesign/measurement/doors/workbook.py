@@ -61,12 +61,16 @@ def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> L
     )
     data = rows[first:]
 
+    def cells_of(k: int) -> list[Any]:
+        return [row[k] if k < len(row) else None for row in data]
+
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
-        return {n: _column([row[names.index(n)] for row in data]) for n in wanted}
+        return {n: _column(cells_of(names.index(n))) for n in wanted}
 
     unit_of = {n: u for n, u in zip(names, units, strict=False) if u}
     kinds = datetime.datetime | datetime.time | datetime.timedelta
-    unit_of |= {n: "s" for n, c in zip(names, rows[first], strict=False) if isinstance(c, kinds)}
+    begins = (_first_filled(cells_of(k)) for k in range(width))
+    unit_of |= {n: "s" for n, c in zip(names, begins, strict=True) if isinstance(c, kinds)}
     remarks = tuple(" ".join(filter(None, row)) for row in above)
     return Log(names, read, unit_of, notes, remarks=remarks)
 
@@ -84,11 +88,18 @@ def _seconds(cell: Any) -> float:
     return math.nan
 
 
+def _first_filled(cells: Sequence[Any]) -> Any:
+    """The first cell with a content; None: all are empty."""
+    return next((c for c in cells if c is not None), None)
+
+
 def _column(cells: Sequence[Any]) -> Any:
-    if any(isinstance(c, datetime.datetime) for c in cells[:1]):
+    begin = _first_filled(cells)
+    filled = [c for c in cells if c is not None]
+    if begin is not None and all(isinstance(c, datetime.datetime) for c in filled):
         return np.array(cells, dtype="datetime64[ns]")
-    if any(isinstance(c, datetime.time | datetime.timedelta) for c in cells[:1]):
+    if isinstance(begin, datetime.time | datetime.timedelta):
         return np.array([_seconds(c) for c in cells])
-    if any(isinstance(c, str) for c in cells):
-        return np.array(cells, dtype=object)
-    return np.array([np.nan if c is None else c for c in cells], dtype=object).astype(float)
+    if not all(isinstance(c, int | float) for c in filled):
+        return np.array(cells, dtype=object)  # its reader names the cell that is no number
+    return np.array([np.nan if c is None else c for c in cells], dtype=float)

@@ -73,11 +73,11 @@ def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> l
         )
     for signal in read:
         if signal.channel.quantity == "position":
-            findings += _scatter(signal, stamped=stamps is not None)
+            findings += _scatter(signal)
     return findings
 
 
-def _scatter(signal: Signal, *, stamped: bool) -> list[Finding]:
+def _scatter(signal: Signal) -> list[Finding]:
     h = signal.record.sample_time
     longest = max((x for _, x in signal.stretches), key=len)
     step = signal.channel.resolution or signal.step

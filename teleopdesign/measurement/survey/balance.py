@@ -84,8 +84,8 @@ def hand_by_balance(
 def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
     """Whether a column may be the force of the hand by its name and unit.
 
-    named: a column of the motor needs the name of a force, or the unit of one: with a free factor,
-        a motor voltage balances a current too
+    named: the column needs the unit of a force, or the name of one that is not the motor's: with a
+        free factor, a motor voltage balances a current too
     """
     name, unit = column.name, column.unit
     if is_wanted(name) or likeness(name, "position") >= SURE_NAME:
