@@ -33,9 +33,6 @@ class Efforts:
     fine: Effort = Effort(1e-7, 60)
     #: residuals and derivatives alone: the values stay where they are
     stay: Effort = Effort(1.0, 1)
-    #: part of the gain promised by a linear step that the step must reach, or the residual counts
-    #: as curved there: the next step is then damped as much, or a search goes on from it
-    linear: float = 0.75
     #: squares of what a body's residual changes by, over the squares themselves and over the
     #: tolerance, up to
     #: which the residual follows its tangents: what they miss is of higher order. More: faster, and

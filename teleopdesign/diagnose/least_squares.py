@@ -15,7 +15,6 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ..measurement.filtering import Array
-from .effort import EFFORTS
 
 
 @dataclass(frozen=True)
@@ -71,9 +70,7 @@ def minimise(
             continue
         new = sum_of_squares(new_residual)
         good = (squares - new) / expected
-        damping = (
-            damping / 10.0 if good > EFFORTS.linear else damping * 3.0 if good < 0.25 else damping
-        )
+        damping = damping / 10.0 if good > 0.75 else damping * 3.0 if good < 0.25 else damping
         quiet = quiet + 1 if squares - new < tolerance * squares else 0
         x, residual, jacobian, squares = trial, new_residual, new_jacobian, new
         if quiet >= 2:

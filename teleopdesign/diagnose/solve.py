@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..measurement.filtering import Array
 from ..model import Model
 from .bodies_apart import BodyByBody
-from .effort import EFFORTS, Effort
+from .effort import Effort
 from .least_squares import gauss_newton_step, minimise, sum_of_squares
 from .prepare import Prepared, Stretch
 from .record_shift import CLOCK, RecordShifts, record_shifts
@@ -213,11 +213,10 @@ def model_without(
     if not np.isfinite(step).all():
         return solution.model
     there = np.clip(x + step, lower, upper)
-    before, promised = sum_of_squares(r), sum_of_squares(r + j @ (there - x))
+    promised = sum_of_squares(r + j @ (there - x))
     reached = sum_of_squares(left.residual_with_prior(there))
-    near = left.model_at(there) if reached < before else solution.model
-    linear = before - reached >= EFFORTS.linear * (before - promised)
-    if linear or reached <= (1.0 + effort.tolerance) * promised:
+    near = left.model_at(there) if reached < sum_of_squares(r) else solution.model
+    if reached <= (1.0 + effort.tolerance) * promised:
         return near
     return solve(near, free, prepared, known, effort).model
 
