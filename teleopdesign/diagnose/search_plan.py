@@ -53,7 +53,7 @@ class SearchPlan:
     curved_stepped: int = 2
     #: the same where hidden states are corrected: they may still fall out of step, and squares are
     #: rugged. All are followed: the first steps from a good start may all fail (one search ended at
-    #: 38 % with three, at 4 % with six)
+    #: 43 % with three, at 4 % with six)
     corrected_predicted: int = 6
     corrected_stepped: int = 6
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and

@@ -2,36 +2,15 @@
 
 import numpy as np
 import pytest
+from measurement.columns_by_hand import column, log_of
 
-from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.first_guess import FirstGuess
 from teleopdesign.measurement.survey import (
     Choices,
     Survey,
-    SurveyedColumn,
     balance,
     clock,
-    survey_log,
 )
-
-T = 0.005 * np.arange(1200)
-Q = np.sin(2 * np.pi * 0.7 * T) + 0.2 * np.sin(2 * np.pi * 2.1 * T)
-V = np.gradient(Q, T)
-U = 0.02 * np.gradient(V, T) + 0.3 * np.sign(V)
-
-
-def column(name, values=(0.0, 1.0), unit=None):
-    values = np.asarray(values, dtype=float)
-    return SurveyedColumn(name, values, values, unit)
-
-
-def log_of(columns, clocks=(), **more):
-    return Log(tuple(columns), lambda w: {n: columns[n] for n in w}, clocks=dict(clocks), **more)
-
-
-def look(columns, **choices):
-    return survey_log(log_of(columns), "log", Choices(**choices))
-
 
 # the balance of two forces
 
