@@ -254,7 +254,7 @@ class Model:
             for e in b.effects
         )
 
-    @property
+    @cached_property
     def places(self) -> tuple[str, ...]:
         """Places of effects: the bodies, and "environment" where one is modelled."""
         touched = any(b.has(CONTACT.name) for b in self.bodies.values())

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..measurement.filtering import Array
 from ..model import Model
-from ..realise.traced import Probe
+from ..realise.tangent_columns import Probe
 from .effort import EFFORTS
 from .prepare import Stretch
 from .residual import relative_residuals

@@ -19,7 +19,7 @@ import sympy as sp
 from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
-from ..realise.traced import Probe
+from ..realise.tangent_columns import Probe
 from .bodies_apart import select_bodies
 from .fit import Fit
 from .prepare import Prepared

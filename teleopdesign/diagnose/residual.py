@@ -16,7 +16,8 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
 from ..realise.along_motion import Residual, residual_along
-from ..realise.traced import Probe, Traced, constant, filter_traced, in_rows
+from ..realise.tangent_columns import Probe
+from ..realise.traced import Traced, constant, filter_traced, in_rows
 from .prepare import Stretch
 from .record_offsets import AlongRecords, RecordOffsets, apply_offset_groups, offset_groups
 from .shared_links import clear

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -136,6 +136,10 @@ class Effect:
     text: str = ""
 
     def __hash__(self) -> int:
+        return self._hashed
+
+    @cached_property
+    def _hashed(self) -> int:
         return hash((self.name, self.role, self.law))  # what is equal has these in common
 
     def __copy__(self) -> Effect:
@@ -206,7 +210,7 @@ class Effect:
 
     def state_symbols(self) -> dict[str, sp.Symbol]:
         """State name -> sympy symbol."""
-        return {s: sp.Symbol(f"{self.name}_{s}", real=True) for s in self.states}
+        return {s: parameter_symbol(self.name, s) for s in self.states}
 
     def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
         more = {"inertia": INERTIA, "unexplained": UNEXPLAINED}

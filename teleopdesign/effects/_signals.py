@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import sympy as sp
 
 
+@cache
 def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
-    """Symbol of a parameter of an effect, by both names; other effects' laws can use it."""
+    """Symbol of a parameter or state of an effect, by both names; other effects' laws can use it.
+
+    One object for each pair of names: dictionaries find the same object without a comparison.
+    """
     return sp.Symbol(f"{effect}_{parameter}", real=True)
 
 

@@ -33,7 +33,8 @@ from .stages_along import (
     RECORD_SHIFT,
     acting_along,
 )
-from .traced import Along, LinkParameter, Probe, Traced, filter_traced, joined_rows
+from .tangent_columns import LinkParameter, Probe, TangentColumns
+from .traced import Along, Traced, filter_traced, joined_rows
 
 #: signal of a law -> its name in a motion, for signals that are known from the records alone
 _MEASURED = {
@@ -142,7 +143,7 @@ def measured_along(
     """
     shifts = {RECORD_SHIFT: COMMAND_LATE, INTERACTION_SHIFT: INTERACTION_LATE}
     symbols = {**body.symbols(), **shifts}
-    columns = tuple(symbols[name] if isinstance(name, str) else name for name in wrt)
+    columns = TangentColumns(symbols[name] if isinstance(name, str) else name for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
     readings = {
         SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()
@@ -200,7 +201,7 @@ def _with_late_drive(
     signal = along.signals[force]
     later = replace(signal, value=signal.value + step * signal.tangent[place])
     none = np.zeros((0, len(signal.value)))
-    bare = replace(along, columns=()).with_signals({force: later})
+    bare = replace(along, columns=TangentColumns()).with_signals({force: later})
     moved = ode_scan(effect, bare, [Traced(r.value, none) for r in rest])
     changed = {}
     for symbol, state in states.items():

@@ -111,10 +111,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
         along.columns,
     )
     parameters = np.array([along.values[s] for s in parameters_of_effect], dtype=float)
-    symbols = [getattr(c, "symbol", c) for c in columns]  # of a probe: its strength
-    places = np.array(
-        [symbols.index(s) if s in symbols else -1 for s in parameters_of_effect], dtype=int
-    )
+    places = np.array([columns.of_symbols.get(s, -1) for s in parameters_of_effect], dtype=int)
     fastest = _fastest(effect, along, parameters)
     covered = step * fastest
     steps = int(np.clip(np.ceil(covered / MODE_STEP), 1, MOST_STEPS))

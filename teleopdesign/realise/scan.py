@@ -7,9 +7,7 @@ phi_1(x) z + h phi_2(x) B. Tangents follow by differentiating the same expressio
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -20,6 +18,7 @@ from ..measurement.filtering import Array
 from .compiled import compile_source
 from .exponentials import PHI, head
 from .laws import Names, assignments, indent
+from .tangent_columns import TangentColumns
 from .traced import Along, Traced, joined_rows
 
 HEAD = head("Generated from an effect's law; do not edit.") + PHI
@@ -124,13 +123,9 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
 """
 
 
-def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
+def columns_of(effect: Effect, columns: TangentColumns) -> Array:
     """Row of the tangents for each parameter of the effect; -1 where there is none."""
-    symbols = effect.symbols()
-    return np.array(
-        [columns.index(symbols[n]) if symbols[n] in columns else -1 for n in effect.parameters],
-        dtype=int,
-    )
+    return np.array([columns.places.get(s, -1) for s in effect.symbols().values()], dtype=int)
 
 
 def contiguous(tangent: Array) -> Array:

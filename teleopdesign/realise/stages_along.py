@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import sympy as sp
@@ -93,18 +94,23 @@ def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStag
 
 def _stage(effect: Effect, along: Along, parts: int) -> ActuationStage:
     """A stage of the actuation, as averages over each step of its command."""
-    law = effect.expression()
-    delays: dict[sp.Symbol, float] = {}
-    late: dict[sp.Symbol, Traced] = {}
-    for i, call in enumerate(sorted(law.atoms(delayed), key=str)):
-        symbol = sp.Symbol(f"delayed_{i}", real=True)
-        law = law.subs(call, symbol)
-        late[symbol] = _shift(along, call.args[1])
-        delays[symbol] = max(_value_at(call.args[1], along.values), 0.0)
-    along = along.with_signals(late)
+    law, calls = _with_late_symbols(effect.expression())
+    delays = {symbol: max(_value_at(delay, along.values), 0.0) for symbol, delay in calls}
+    along = along.with_signals({symbol: _shift(along, delay) for symbol, delay in calls})
     if effect.states:
         along = along.with_signals(stage_scan(effect, along))
     return ActuationStage(effect, law, delays, along.signals, parts, along.evaluate(law))
+
+
+@lru_cache(maxsize=512)
+def _with_late_symbols(law: sp.Expr) -> tuple[sp.Expr, tuple[tuple[sp.Symbol, sp.Expr], ...]]:
+    """The law with a symbol for each delayed signal, and the delay of each symbol."""
+    calls = []
+    for i, call in enumerate(sorted(law.atoms(delayed), key=str)):
+        symbol = sp.Symbol(f"delayed_{i}", real=True)
+        law = law.subs(call, symbol)
+        calls.append((symbol, call.args[1]))
+    return law, tuple(calls)
 
 
 def _shift(along: Along, delay: sp.Expr) -> Traced:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..effects import SIGNALS, Effect, Role, sort_by_action
 from ..measurement.filtering import Array
+from .tangent_columns import Probe, TangentColumns
 
 
 @dataclass(frozen=True)
@@ -130,42 +131,27 @@ def filter_traced(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     return in_rows(both[0], both[1:], rows, len(signal.tangent))
 
 
-@dataclass(frozen=True, eq=False)
-class Probe:
-    """A direction in which a model may change: the strength of an effect, at zero.
-
-    at: place;  symbol: of the strength;  values: symbol -> value of the effect's other parameters
-    """
-
-    at: str
-    symbol: sp.Symbol
-    values: Mapping[sp.Symbol, float]
-
-
-@dataclass(frozen=True)
-class LinkParameter:
-    """A base parameter of an arm; at: body of the joint;  index: number of the parameter."""
-
-    at: str
-    index: int
-
-
 @dataclass(frozen=True)
 class Along:
     """Signals and values for laws along one motion of n samples.
 
     signals: symbol -> signal with its tangents;  values: parameter symbol -> value (SI)
-    columns: the p parameters and probes of the tangents (p, n);  step: s between samples
+    columns: the p parameters and probes of the tangents (p, n), also as a plain tuple
+    step: s between samples
     """
 
     signals: Mapping[sp.Symbol, Traced]
     values: Mapping[sp.Symbol, float]
-    columns: tuple[sp.Symbol | Probe | LinkParameter, ...]
+    columns: TangentColumns
     step: float
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.columns, TangentColumns):
+            object.__setattr__(self, "columns", TangentColumns(self.columns))
 
     def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:
         """The same with additional or other signals."""
-        return replace(self, signals={**self.signals, **signals})
+        return Along({**self.signals, **signals}, self.values, self.columns, self.step)
 
     def constant(self, signal: Array) -> Traced:
         """A signal (n,) that no parameter changes."""
@@ -179,9 +165,14 @@ class Along:
         """Effects of a role, without absent effects with states: their laws may divide by 0."""
         return [
             e
-            for e in sort_by_action(tuple(effects), role)
+            for e in _in_order_of_action(tuple(effects), role)
             if not (e.states and e.is_absent(self.values))
         ]
+
+
+@lru_cache(maxsize=4096)
+def _in_order_of_action(effects: tuple[Effect, ...], role: Role) -> tuple[Effect, ...]:
+    return tuple(sort_by_action(effects, role))
 
 
 @dataclass(frozen=True)
@@ -208,11 +199,10 @@ class NumericLaw:
         n = len(next(iter(signals.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *self._numbers(values, n))
-        value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,)).copy()
-        places = {column: j for j, column in enumerate(columns)}
-        symbols = [getattr(column, "symbol", column) for column in columns]  # a probe: its strength
+        value = np.empty(n)
+        value[:] = out[0]  # a constant law gives one number
         moved = [s for s in self.signals if not signals[s].is_constant]
-        mine = [j for j, s in enumerate(symbols) if s in self._among_parameters]
+        mine = [j for j, s in enumerate(columns.symbols) if s in self._among_parameters]
         if not moved and not mine:
             return constant(value, len(columns))
         by_signal = dict(zip(self.signals, out[1 : 1 + len(arrays)], strict=True))
@@ -221,10 +211,10 @@ class NumericLaw:
             for j in signals[s].moving_rows:
                 tangent[j] += by_signal[s] * signals[s].tangent[j]
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
-            if p in places:
-                tangent[places[p]] += d
-        for j, column in enumerate(columns):
-            if isinstance(column, Probe) and column.symbol in self._among_parameters:
+            if (place := columns.places.get(p)) is not None:
+                tangent[place] += d
+        for j in mine:
+            if isinstance(column := columns[j], Probe):
                 tangent[j] += self._slope(column, arrays, values)
         return Traced(value, tangent, joined_rows(*(signals[s] for s in moved), more=mine))
 

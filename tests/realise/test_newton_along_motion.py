@@ -13,7 +13,7 @@ from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.simulated import least_levels
 from teleopdesign.realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
-from teleopdesign.realise.traced import Probe
+from teleopdesign.realise.tangent_columns import Probe
 
 INSIDE = slice(150, -150)
 

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 import sympy as sp
+from effects.along import body_of, motion_along, signals
 
 from teleopdesign.effects import SIGNALS
+from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.traced import Along, Traced, constant, filter_traced
 
 N, P = 12, 4
@@ -82,3 +84,17 @@ def test_a_law_looks_its_parameters_up_and_compares_no_symbols(monkeypatch):
     assert not compared
     assert np.array_equal(force.value, 3.0 * speed.value)
     assert np.array_equal(force.tangent, np.vstack([np.zeros((8, 2)), speed.value]))
+
+
+def test_the_residual_along_a_motion_compares_hardly_any_symbols(monkeypatch):
+    """The objects are the same, so dictionaries compare none; only laws are compared with zero."""
+    effects = ("coulomb", "viscous", "spring", "transmission_compliance", "actuation_delay")
+    body, motion = body_of(*effects), motion_along(*signals(1, 200), resolution=1e-6)
+    names = [name for name, _ in body.declared()]
+    residual_along(body, motion, names)  # laws derived once
+    compared = []
+    equal = sp.Basic.__eq__
+    monkeypatch.setattr(sp.Basic, "__eq__", lambda a, b: compared.append((a, b)) or equal(a, b))
+    again = residual_along(body.with_values({"coulomb.level": 0.7}), motion, names)
+    assert again.residual.tangent.shape[0] == len(names)
+    assert len(compared) <= 4

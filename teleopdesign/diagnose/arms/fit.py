@@ -16,7 +16,7 @@ from ...by_value import ByValue
 from ...measurement.filtering import Array
 from ...model import Model
 from ...realise.along_motion import residual_along
-from ...realise.traced import LinkParameter
+from ...realise.tangent_columns import LinkParameter
 from ..effort import EFFORTS, Effort
 from ..error import force_error
 from ..fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
