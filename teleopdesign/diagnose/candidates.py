@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
 
 import numpy as np
 import sympy as sp
@@ -213,19 +212,29 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
             if p.search.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
         ]
         turns = model.body(place).axis == "revolute"
-        grids = [_starts_of(parameters[n], scale, turns=turns) for n in free]
-        names = [f"{place}.{name}.{n}" for n in free]
+        stated = {n: model.parameters[f"{place}.{name}.{n}"].value for n in parameters}
+        starts = [{n: v for n, v in stated.items() if n not in free}]
+        for n in free:
+            starts = [
+                s | {n: value}
+                for s in starts
+                for value in _starts_of(parameters[n], scale, s, turns=turns)
+            ]
         models = [
-            m.with_values(dict(zip(names, values, strict=True)))
+            m.with_values({f"{place}.{name}.{n}": value for n, value in s.items()})
             for m in models
-            for values in product(*grids)
+            for s in starts
         ]
     return models
 
 
-def _starts_of(parameter: Parameter, scale: dict[str, float], *, turns: bool) -> list[float]:
+def _starts_of(
+    parameter: Parameter, scale: dict[str, float], others: dict[str, float], *, turns: bool
+) -> list[float]:
+    """Start values of a parameter; others: those of the effect's parameters before it."""
     search = parameter.search
-    starts = [m * scale[parameter.scale] for m in search.starts]
+    unit = others[search.of] if search.of else scale[parameter.scale]
+    starts = [m * unit for m in search.starts]
     if turns:
         of_a_turn = [2.0 * np.pi / k for k in range(1, search.of_a_turn + 1)]
         starts += [s for s in of_a_turn if s < min(starts)]

@@ -143,6 +143,11 @@ def _check_effect(module: ModuleType, path: Path) -> Effect:
     for name in effect.absent:
         if name not in effect.parameters:
             raise ModelError(f'{path}: absent: no parameter "{name}"')
+    for i, (name, parameter) in enumerate(effect.parameters.items()):
+        if (other := parameter.search.of) and other not in list(effect.parameters)[:i]:
+            raise ModelError(
+                f'{path}: {name}: FitSearch(of="{other}"): expected a parameter before {name}'
+            )
     effect = effect.named(path.stem, module.__doc__ or "")
     with laws_of(path, effect.parameters):
         allowed = {*SIGNALS.values(), *effect.symbols().values(), *effect.state_symbols().values()}

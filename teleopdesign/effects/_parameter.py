@@ -31,6 +31,8 @@ class FitSearch:
         travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
     of_a_turn: on a revolute axis, starts at whole fractions of a turn too, down to one over this
         number, where they are shorter than all `starts`
+    of: another parameter, before this one in the effect: `starts` are multiples of each of its
+        values, so that both start together; "": of the record's scale
     within: upper bound in that scale, above which the parameter would have another meaning
     chosen: fixed at the first start, not estimated: other parameters are relative to this one
     essential: must surely exceed zero, because at zero the effect is another one; and other values
@@ -40,6 +42,7 @@ class FitSearch:
     starts: tuple[float, ...] = (0.01, 0.1)
     scale: str = ""
     of_a_turn: int = 0
+    of: str = ""
     within: float = float("inf")
     chosen: bool = False
     essential: bool = False

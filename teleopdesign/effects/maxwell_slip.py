@@ -25,8 +25,11 @@ def element(i):
     return State("force", lambda now, p: getattr(p, f"stiffness_{i}") * now.velocity, stop=slip)
 
 
-def of_element(i, quantity, meaning, *starts):
-    search = FitSearch(starts=starts, within=1e4 if i > 2 else float("inf"))  # 3, 4: may be rigid
+# the starts are all soft to all stiff, each element some times stiffer than the one before: from
+# starts with less order the search stopped at worse values in four cases of ten
+def of_element(i, quantity, meaning, *starts, of=""):
+    within = 1e4 if i > 2 else float("inf")  # 3, 4: may be rigid
+    search = FitSearch(starts=starts, of=of, within=within)
     return Parameter(quantity, f"{meaning} of element {i}", optional=i > 2, search=search)
 
 
@@ -36,13 +39,13 @@ EFFECT = Effect(
     law=law,
     states={f"force_{i}": element(i) for i in (1, *MORE)},
     parameters={
-        "stiffness_1": of_element(1, "stiffness", "K_1: stiffness", 10.0, 100.0, 1e3),
-        "stiffness_2": of_element(2, "stiffness", "K_2: stiffness", 1.0, 10.0, 100.0),
-        "level_2": of_element(2, "force", "W_2: slip level", 0.3),
-        "stiffness_3": of_element(3, "stiffness", "K_3: stiffness", 30.0),
-        "level_3": of_element(3, "force", "W_3: slip level", 0.03),
-        "stiffness_4": of_element(4, "stiffness", "K_4: stiffness", 0.3),
-        "level_4": of_element(4, "force", "W_4: slip level", 0.03),
+        "stiffness_1": of_element(1, "stiffness", "K_1: stiffness", 0.1, 0.3, 1.0, 3.0, 10.0),
+        "stiffness_2": of_element(2, "stiffness", "K_2: stiffness", 3.0, 10.0, of="stiffness_1"),
+        "level_2": of_element(2, "force", "W_2: slip level", 0.25),
+        "stiffness_3": of_element(3, "stiffness", "K_3: stiffness", 3.0, of="stiffness_2"),
+        "level_3": of_element(3, "force", "W_3: slip level", 0.25),
+        "stiffness_4": of_element(4, "stiffness", "K_4: stiffness", 3.0, of="stiffness_3"),
+        "level_4": of_element(4, "force", "W_4: slip level", 0.25),
     },
     absent={"stiffness_1": float("inf"), "stiffness_2": float("inf")},
     order=softest_first,

@@ -77,6 +77,11 @@ BAD = {
     "import": ("from teleopdesign import Effect", "from teleopdesign import Efect", "Efect"),
     "failure of its own": ("def law", "1 / 0\n\n\ndef law", "ZeroDivisionError"),
     "absent names no parameter": ('absent={"drag"', 'absent={"drg"', 'absent: no parameter "drg"'),
+    "a start of a later parameter": (
+        'force per velocity squared"',
+        'force per velocity squared", search=__import__("teleopdesign").FitSearch(of="later")',
+        'drag: FitSearch.of="later".: expected a parameter before drag',
+    ),
     "argument left out": ('    absent={"drag": 0.0},\n', "", "absent"),
 }
 
