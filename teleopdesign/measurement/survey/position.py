@@ -37,6 +37,7 @@ from .derivative import (
     wrap_of,
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
+from .force_entry import describe_code
 from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
@@ -193,7 +194,7 @@ def describe_position(
 ) -> None:
     """Set the channels of position and velocity: unit, wrap, resolution and gear ratio."""
     column, axis = survey.columns[position], survey.axis
-    entry: dict[str, Any] = {"column": position}
+    entry: dict[str, Any] = {"column": position, **describe_code(survey, position, "position")}
     unit = choices.units.get(position) or column.unit
     if unit is None and choices.counts_per_turn is not None:
         unit = "counts"
@@ -230,7 +231,10 @@ def describe_position(
     if velocity is not None:
         velocity_unit = choices.units.get(velocity) or survey.columns[velocity].unit
         if velocity_unit is not None and measures(velocity_unit, "velocity", axis):
-            more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
+            more: dict[str, Any] = (
+                {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
+            )
+            more |= describe_code(survey, velocity, "velocity")
             survey.channels["velocity"] = {"column": velocity, "unit": velocity_unit, **more}
             _hold_time_against(survey, column, velocity)
 
