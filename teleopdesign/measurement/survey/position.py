@@ -90,7 +90,7 @@ def find_position(
         raise ExperimentError(
             f"{file}: found no position: no column changes without being a force or "
             f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
-            f"{_integral_of(moving)}{reasons(survey.unread)}"
+            f"{_integral_of(moving)}{_named_as_force(moving)}{reasons(survey.unread)}"
         )
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
@@ -153,6 +153,14 @@ def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
     """What to do with a log of velocities, as the end of a message; "" without a velocity."""
     names = [name for name, column in moving.items() if _is_velocity(column)]
     return f"; add a column with the integral of {names[0]!r}" if names else ""
+
+
+def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
+    """How to choose a column that its name makes a force, for a message; not beside a velocity."""
+    if any(map(_is_velocity, moving.values())):
+        return ""
+    names = [n for n, c in moving.items() if c.unit is None]
+    return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
 
 
 def _is_another(column: SurveyedColumn) -> bool:
