@@ -79,8 +79,8 @@ WORDS: dict[str, tuple[str, ...]] = {
         "torque", "current", "strom", "moment", "drehmoment", "effort", "motor", "command", "cmd",
         "tau", "force", "kraft", "u", "i", "f", "control", "couple", "courant", "corriente",
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
-        "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps", "voltage",
-        "spannung", "pwm", "duty",
+        "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps", "iq",
+        "voltage", "spannung", "uq", "vq", "pwm", "duty",
     ),
     "segment": ("segment", "run", "trial", "repetition", "versuch", "essai"),
 }  # fmt: skip

@@ -122,6 +122,17 @@ def test_a_voltage_drives_a_motor_in_volts():
     assert force["torque_constant"]["unit"] == "N*m/V"
 
 
+def test_a_brushless_motor_is_driven_by_its_current_and_turns():
+    """Of "Iq" and "Uq", which drives against the speed, the voltage was read, and mm and N."""
+    columns = {"Time": T, "Position": 20.0 * np.sin(6.0 * T), "Velocity": 120.0 * np.cos(6.0 * T)}
+    current = -0.4 * np.sin(6.0 * T) + 0.05 * np.sign(np.cos(6.0 * T))
+    survey = look({**columns, "Iq": current, "Uq": 2.5 * np.cos(6.0 * T) + 0.5 * current})
+    assert survey.axis == "revolute"
+    assert survey.channels["actuator_force"]["column"] == "Iq"
+    assert survey.channels["actuator_force"]["unit"] == "A"
+    assert "a second force" in survey.unused["Uq"]
+
+
 def test_a_position_named_like_a_force_is_proposed():
     with pytest.raises(ExperimentError, match="if 'sensor' is the position: --position 'sensor'"):
         look({"time": T, "sensor": np.sin(T), "action": 0.0 * T})

@@ -12,7 +12,7 @@ from ..column_names import unit_in_name, why_no_unit, words_of
 from ..conversion import conversion_of
 from ..signed_numbers import SIGN_BIT
 from ..toml_table import Table
-from .acting import names_current, names_torque
+from .acting import names_current, names_torque, names_voltage
 from .axis_kind import TORQUES
 from .content import Array, Choices, Survey
 from .remarks import torque_constant_in
@@ -22,8 +22,6 @@ PLACEHOLDER = 1.0
 #: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille", and objects
 #: of drives on a field bus (CiA 402), which are in thousandths
 PER_CENT = re.compile(r"[%‰]|per ?mill?e|\b0x60(?:71|74|77|78)\b", re.I)
-#: words of a voltage, which drives a motor as its current does
-VOLTAGES = frozenset(("voltage", "volts", "spannung"))
 #: bits of analog inputs; and part of the middle by which their mean may lie beside it: offsets of
 #: amplifiers and a mean force. A count of something else lies there by chance once in ten
 INPUT_BITS, NEAR_MIDDLE = (8, 10, 12, 14, 16), 0.1
@@ -50,7 +48,7 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     if unit is None and names_current(name):
         unit = "A"
         survey.guesses[f"channels.{key}.unit"] = f"A: the name {name!r} is that of a current"
-    if unit is None and VOLTAGES.intersection(words_of(name)):
+    if unit is None and names_voltage(name):
         unit = "V"
         survey.guesses[f"channels.{key}.unit"] = f"V: the name {name!r} is that of a voltage"
     if unit in ("A", "mA", "V"):
