@@ -143,3 +143,5 @@ def test_a_guessed_clock_is_stated_where_the_log_is_too_short():
     columns = {"n": np.arange(250.0), "x": np.sin(np.arange(250.0)), "u": np.cos(np.arange(250.0))}
     with pytest.raises(ExperimentError, match="'n' is read as the time: .*--sample-rate HZ"):
         look(columns)
+    with pytest.raises(ExperimentError, match="at least 64$"):
+        look({name: values[:9] for name, values in columns.items()})

@@ -15,6 +15,7 @@ from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
 from ..column_names import as_unit
 from ..doors._log import Log, join_names
+from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
 from .axis_kind import axis_of
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
@@ -68,7 +69,8 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     try:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
-        raise ExperimentError(f"{problem}{_guessed_clock(guesses)}") from None
+        few = min(map(len, raw.values())) < FEWEST
+        raise ExperimentError(f"{problem}{'' if few else _guessed_clock(guesses)}") from None
     duration = duration_of(raw, time_name, unit, choices)
     survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
     if time_name is not None:

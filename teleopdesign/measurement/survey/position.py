@@ -159,7 +159,8 @@ def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
     """How to choose a column that its name makes a force, for a message; not beside a velocity."""
     if any(map(_is_velocity, moving.values())):
         return ""
-    names = [n for n, c in moving.items() if c.unit is None]
+    unsure = (n for n, c in moving.items() if c.unit is None)
+    names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
     return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
 
 
