@@ -6,6 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from ..diagnose.constant_force import tells_nothing
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
 from ..errors import ExperimentError
@@ -54,6 +56,8 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
         prepared = prepare(part)
     except ExperimentError as problem:
         return (*findings, _report_skipped(str(problem), "warning"))
+    if tells_nothing(prepared.stretches, model):
+        return (*findings, _constant_force())
     mixed = list(check_mixed_columns(part))
     if mixed:
         return (*findings, *mixed, _report_skipped("first make the columns agree", "note"))
@@ -78,6 +82,17 @@ def _report_skipped(why: str, concern: Literal["note", "warning"]) -> Finding:
         "what the record can show",
         concern,
         f"not checked which effects the record can show: {why}.",
+    )
+
+
+def _constant_force() -> Finding:
+    return Finding(
+        "constant force",
+        "warning",
+        f"the force varies by less than {100 * CRITERIA.varies:g} %: a constant friction explains "
+        "it along any motion, so that no inertia, no damping and no effect can be told. Record a "
+        "motion under a force that varies, or one that also coasts; or state the inertia, with "
+        "fixed = true.",
     )
 
 

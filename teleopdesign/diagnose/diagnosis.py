@@ -11,6 +11,7 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate, list_look_alikes
+from .constant_force import tells_nothing
 from .decision import verdict
 from .fit import Fit
 from .ladder_text import ladder_html, ladder_text, sentence
@@ -132,6 +133,11 @@ class Diagnosis(ByValue):
     def missing(self) -> tuple[Candidate, ...]:
         """Effects that are called missing, in the order added; none where they cannot be named."""
         return self.named if self.verdict == "effects_missing" else ()
+
+    @property
+    def tells_nothing(self) -> bool:
+        """Whether the force is constant and no inertia is known: no effect was a candidate."""
+        return tells_nothing(self.prepared.stretches, self.rungs[0].fit.model)
 
     def reason_set_aside(self, key: tuple[str, str]) -> str:
         """Why an effect (name, place) was accepted and removed again; "" for all other effects."""

@@ -13,6 +13,7 @@ from ..model import Model
 from .adequacy import Floors, allowed_floor, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
+from .constant_force import tells_nothing
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .diagnosis import SetAside
@@ -164,16 +165,19 @@ def search_for(
     seed: int = 0,
     plan: SearchPlan = PLAN,
 ) -> LadderSearch:
-    """A search for the effects that a model lacks.
+    """A search for the effects that a model lacks; without candidates where records tell nothing.
 
     model: None: the model that the experiment describes
     """
     whole = prepare(experiment)
+    stated = model or Model.from_experiment(experiment)
+    if tells_nothing(whole.stretches, stated):
+        stated = restrict_candidates((), stated)
     return LadderSearch(
         experiment=experiment,
         whole=whole,
         prepared=cut_to_windows(whole, plan),
-        stated=model or Model.from_experiment(experiment),
+        stated=stated,
         seed=seed,
         plan=plan,
         progress=progress or (lambda _: None),

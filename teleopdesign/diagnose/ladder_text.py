@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from ..blocks import Value
 from ..notebook import html_table
 from ..quantity import unit_after_number, unit_of
 from ..standard_error import with_standard_error
 from .adequacy import records_differ
+from .constant_force import constant_force_line, describe_constant_force
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
-from .prepare import Stretch, measured_force
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
 
@@ -190,18 +188,6 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     return "\n".join(lines)
 
 
-def constant_force_line(stretches: Sequence[Stretch]) -> str | None:
-    """A sentence where the measured force hardly varies in any stretch; else None."""
-    forces = [measured_force(s) for s in stretches]
-    if any(np.std(f) > CRITERIA.varies * np.sqrt(np.mean(f**2)) for f in forces):
-        return None
-    return (
-        f"records: the measured force varies by less than {100 * CRITERIA.varies:g} %: a constant "
-        "friction explains it along any motion, and its error says nothing of the inertia or of "
-        "friction that varies. Record a motion under a force that varies, or one that also coasts"
-    )
-
-
 def _records_line(diagnosis: Diagnosis) -> str:
     """A sentence that the check error exceeds the fit error, with the likely cause."""
     after, on_all = diagnosis.after, diagnosis.on_all_records
@@ -284,6 +270,8 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
         return f"verdict: undecided, {names}: these records do not decide.{rest}"
+    if diagnosis.tells_nothing:
+        return f"verdict: undecided. {describe_constant_force()}"
     return (
         f"verdict: undecided. No candidate effect explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"

@@ -34,7 +34,8 @@ ALIASES = {
     "inches": "in", "lb": "lbf", "lbs": "lbf",
     "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
 }  # fmt: skip
-_BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])([^()\[\]{}]++)[)\]}]\s*+$")
+#: text in brackets at the end of a name; a number there counts axes: "pos (5)", "tau[1]"
+_BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])(?!\s*\d+\s*[)\]}])([^()\[\]{}]++)[)\]}]\s*+$")
 #: a torque as a weight at a lever: "oz-in", "ft lbs", "kg*cm", as motors' sheets write it
 _WEIGHT_AT_LEVER = re.compile(
     r"(?P<weight>oz|lb|kg)s?[-*·⋅. ]?(?P<lever>in|ft|cm)"
@@ -78,7 +79,8 @@ WORDS: dict[str, tuple[str, ...]] = {
         "torque", "current", "strom", "moment", "drehmoment", "effort", "motor", "command", "cmd",
         "tau", "force", "kraft", "u", "i", "f", "control", "couple", "courant", "corriente",
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
-        "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps",
+        "扭矩", "토크", "전류", "момент", "ток", "сила", "cur", "curr", "amps", "iq",
+        "voltage", "spannung", "uq", "vq", "pwm", "duty",
     ),
     "segment": ("segment", "run", "trial", "repetition", "versuch", "essai"),
 }  # fmt: skip

@@ -3,11 +3,11 @@
     signal = sign * unit * (torque constant) * (lever arm) * (gear ratio)^(+-1)
              * (sum of scale * column + offset)
 
-A column that wraps (an angle within one turn, a counter) is unwrapped first. `gear_ratio` is the
-number of motor turns per turn of the joint: a position or velocity read at the motor is divided by
-the ratio, a force at the motor is multiplied by it. On a prismatic axis the ratio has a unit, `{
-value = 1.257, unit = "rad/mm" }`. On a revolute axis a force in N acts at a `lever_arm`, such as a
-handle at `{ value = 70, unit = "mm" }` from the axis.
+A column of counts that hold a sign is decoded first. A column that wraps (an angle within one turn,
+a counter) is unwrapped then. `gear_ratio` is the number of motor turns per turn of the joint: a
+position or velocity read at the motor is divided by the ratio, a force at the motor is multiplied
+by it. On a prismatic axis the ratio has a unit, `{ value = 1.257, unit = "rad/mm" }`. On a revolute
+axis a force in N acts at a `lever_arm`, such as a handle at `{ value = 70, unit = "mm" }` from it.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ..errors import ExperimentError, quote
 from ..quantity import converting_factor, is_unit, measures, si_factor, to_si
+from .signed_numbers import SIGN_BIT, TWOS_COMPLEMENT, SignCode, sign_code_from
 from .toml_table import Table, describe_toml_value
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ LONGEST_DELAY = 0.2
 #: keys of a channel that say how its column becomes a signal
 KEYS = (
     "scale", "offset", "sign", "unwrap", "torque_constant", "lever_arm", "gear_ratio", "count",
-    "counts_per_turn", "delay",
+    "counts_per_turn", "delay", TWOS_COMPLEMENT, SIGN_BIT,
 )  # fmt: skip
 
 
@@ -45,6 +46,7 @@ class Conversion:
     factor: from the sum to SI, with sign, gear ratio and torque constant
     period: of a wrap, in the unit of the column; 0: the column does not wrap
     delay: of the signal in the log, s; positive if the log has the signal late
+    code: how the columns hold signed numbers; None: as they are
     """
 
     columns: tuple[str, ...]
@@ -53,6 +55,7 @@ class Conversion:
     factor: float = 1.0
     period: float = 0.0
     delay: float = 0.0
+    code: SignCode | None = None
 
     def signal(self, columns: Mapping[str, Array]) -> Array:
         """The signal (n,) in SI."""
@@ -67,16 +70,27 @@ class Conversion:
     def is_plain(self) -> bool:
         """Whether the signal is one column times a factor."""
         one = len(self.columns) == 1 and self.scales == (1.0,)
-        return one and self.offset == 0.0 and self.period == 0.0
+        return one and self.offset == 0.0 and self.period == 0.0 and self.code is None
 
     def wraps(self, columns: Mapping[str, Array]) -> int:
         """How many times the columns wrap."""
         if self.period == 0.0:
             return 0
         half = 0.5 * self.period
-        return sum(int(np.sum(np.abs(np.diff(columns[n])) > half)) for n in self.columns)
+        decoded = (self._decode(columns[n]) for n in self.columns)
+        return sum(int(np.sum(np.abs(np.diff(column)) > half)) for column in decoded)
+
+    def refuse_other_counts(self, columns: Mapping[str, Array], where: str) -> None:
+        """Raise an ExperimentError for a reading that the code of signed numbers does not have."""
+        if self.code is not None:
+            for name in self.columns:
+                self.code.refuse_other_counts(columns[name], where)
+
+    def _decode(self, column: Array) -> Array:
+        return column if self.code is None else self.code.decode(column)
 
     def _unwrap(self, column: Array) -> Array:
+        column = self._decode(column)
         if self.period == 0.0:
             return column
         return np.asarray(np.unwrap(column, period=self.period), dtype=np.float64)
@@ -133,9 +147,9 @@ def conversion_of(
         factor = _without_constant(base, kind, axis, where)
     factor *= sign * constant * per_count
     period = _period(table, unit, kind=kind, axis=axis, scales=scales)
-    conversion = Conversion(
-        columns, scales, table.number_or_none("offset") or 0.0, factor, period, _delay(table)
-    )
+    offset = table.number_or_none("offset") or 0.0
+    code = sign_code_from(table)
+    conversion = Conversion(columns, scales, offset, factor, period, _delay(table), code)
     counts = unit in COUNTS
     return conversion, abs(factor) * max(map(abs, scales)) if counts else None
 

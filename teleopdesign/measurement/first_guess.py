@@ -34,6 +34,8 @@ _SURELY = 3.0
 #: a motion is in one direction if its direction or speed varies by less than this part of its rms:
 #: noise and the ends of the low-pass make about as much variation
 _ONE_WAY = 0.05
+#: part of its rms by which a force must vary to tell a sign: any motion explains a constant one
+_VARIES = 0.01
 #: a force that depends on position counts only if it leaves less than this part of the squares
 _MOSTLY = 0.5
 
@@ -113,7 +115,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     force.
     """
     stretch = _stretch((force, position), position, sample_time)
-    if stretch is None:
+    if stretch is None or _is_constant(force, sample_time):
         return False
     (acceleration, direction, velocity, _), (target, place) = stretch
     place = place - place.mean()
@@ -164,18 +166,30 @@ def balance_factor(
     return (0.0, np.inf) if fit is None else (float(fit[0][-1]), float(fit[1][-1]))
 
 
+def _inner(sample_time: float) -> slice:
+    """The rows without the ends, which the low-pass spoils."""
+    trim = max(1, round(0.25 / sample_time))
+    return slice(trim, -trim)
+
+
+def _is_constant(force: Array, sample_time: float) -> bool:
+    """Whether a force (n,) hardly varies between the ends: such a force tells no sign."""
+    inner = force[_inner(sample_time)]
+    with np.errstate(over="ignore", invalid="ignore"):  # values beyond 1e150
+        return bool(np.std(inner) <= _VARIES * np.sqrt(np.mean(inner**2)))
+
+
 def _stretch(
     forces: Sequence[Array], position: Array, sample_time: float
 ) -> tuple[Array, Array] | None:
     """Columns of the motion (4, rows) and low-passed forces, without the ends; None: too short."""
-    trim = max(1, round(0.25 / sample_time))
-    if len(position) < 4 * trim:
+    inner = _inner(sample_time)
+    if len(position) < 4 * inner.start:
         return None
     band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     v, a, direction = motion_columns(position, sample_time)
     s = spectrum(len(position), sample_time)
     low = s.lowpass(band)
-    inner = slice(trim, -trim)
     columns = np.stack([a, direction, v, np.ones(len(v))])[:, inner]
     return columns, np.stack([s.multiply(force, low)[inner] for force in forces])
 

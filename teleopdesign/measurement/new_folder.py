@@ -13,7 +13,9 @@ from .channel import channels_from, sample_rate_from
 from .description import bodies_from
 from .first_guess import FirstGuess, guess_from
 from .record import read_record
+from .record_clock import FEWEST, SHORTEST
 from .survey import Survey, spans_of
+from .survey.content import sample_time_of
 from .toml_table import Table
 from .toml_text import comment_text, inline_text, string_text
 
@@ -111,11 +113,33 @@ def _records(
 ) -> list[dict[str, Any]]:
     if len(names) > 1:
         return [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
-    fit, check = spans_of(survey.duration, survey.trials) if spans is None else spans
+    if spans is None and not _may_be_cut(survey):
+        survey.notes.append(
+            "too short to be cut into a fit and a check record: errors are computed on blocks that "
+            "are left out of the fit in turn"
+        )
+        return [{"file": names[0], "use": "fit"}]
+    fit, check = _usual_spans(survey) if spans is None else spans
     return [
         {"file": names[0], "use": "fit", "span": fit},
         {"file": names[0], "use": "check", "span": check},
     ]
+
+
+def _may_be_cut(survey: Survey) -> bool:
+    """Whether both halves of a log are long enough for a record."""
+    rows = survey.duration / sample_time_of(survey)
+    return rows >= 2 * FEWEST and survey.duration >= 2 * SHORTEST
+
+
+def _usual_spans(survey: Survey) -> FitAndCheck:
+    """The usual cut of one log, or the middle where the usual check record would be too short."""
+    fit, check = spans_of(survey.duration, survey.trials)
+    shortest = max(FEWEST * sample_time_of(survey), SHORTEST)
+    if survey.duration - check[0] >= shortest and fit[1] >= shortest:
+        return fit, check
+    middle = float(f"{0.5 * survey.duration:.4g}")
+    return (0.0, middle), (middle, check[1])
 
 
 def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, Any]]) -> FirstGuess:

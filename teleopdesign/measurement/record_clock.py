@@ -11,8 +11,8 @@ from ..errors import ExperimentError
 
 Array = NDArray[np.float64]
 RowNumbers = NDArray[np.intp]
-_SHORTEST = 1.0  # s: least duration of all segments of a record together
-_FEWEST = 64  # fewest samples of a record
+SHORTEST = 1.0  # s: least duration of all segments of a record together
+FEWEST = 64  # fewest samples of a record
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +74,12 @@ def counted_time(count: int, rate: float, where: str) -> tuple[Array, float]:
 
 
 def check_size(count: int, where: str) -> None:
-    if count < _FEWEST:
-        raise ExperimentError(f"{where}: found {count} rows, expected at least {_FEWEST}")
+    if count < FEWEST:
+        raise ExperimentError(f"{where}: found {count} rows, expected at least {FEWEST}")
 
 
 def check_duration(count: int, period: float, where: str) -> None:
-    if count * period < _SHORTEST * (1 - 1e-9):
+    if count * period < SHORTEST * (1 - 1e-9):
         raise ExperimentError(
-            f"{where}: found {count * period:.3g} s of samples, expected at least {_SHORTEST:g} s"
+            f"{where}: found {count * period:.3g} s of samples, expected at least {SHORTEST:g} s"
         )

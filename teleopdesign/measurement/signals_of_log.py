@@ -42,6 +42,7 @@ def signals_of_log(
     steps: list[ReadingStep] = []
     for key, conversion in conversions.items():
         channel = channels[key]
+        conversion.refuse_other_counts(columns.values, f"{file}: channels.{key}")
         wraps = conversion.wraps(columns.values)
         name = key.removeprefix("device.")
         if wraps:

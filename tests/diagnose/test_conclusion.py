@@ -16,7 +16,7 @@ from teleopdesign.diagnose.conclusion import (
     remove_doubtful_rung,
     with_last_corrected,
 )
-from teleopdesign.diagnose.diagnosis import SetAside
+from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside
 from teleopdesign.diagnose.fit import CommandError, Fit
 from teleopdesign.diagnose.ranking import REFUSALS, Ranking
 from teleopdesign.diagnose.rung import Rung
@@ -71,6 +71,7 @@ def concluded(monkeypatch):
         }
         for name, value in stubs.items():
             monkeypatch.setattr(module, name, value)
+        monkeypatch.setattr(Diagnosis, "tells_nothing", False)
         monkeypatch.setattr(module, "_evaluate_on_all", lambda fit, whole: on_whole(fit))
         search, windows = table.search(), object()
         search.prepared = windows if on_whole else None

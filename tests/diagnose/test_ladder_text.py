@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.diagnose import ladder_text
-from teleopdesign.diagnose.ladder_text import constant_force_line, say_floors
+from teleopdesign.diagnose import constant_force
+from teleopdesign.diagnose.constant_force import constant_force_line
+from teleopdesign.diagnose.ladder_text import say_floors
 from teleopdesign.report.words import _floors
 
 
@@ -24,7 +25,7 @@ def test_a_floor_next_to_zero_is_no_measure(left):
 @pytest.mark.parametrize(("varies", "message"), [(0.0, True), (0.009, True), (0.02, False)])
 def test_any_friction_explains_a_force_that_hardly_varies(monkeypatch, varies, message):
     """A motor that spun up under one torque left 0.00 % with an inertia of zero."""
-    monkeypatch.setattr(ladder_text, "measured_force", lambda s: s.force)
+    monkeypatch.setattr(constant_force, "measured_force", lambda s: s.force)
     sine = np.sqrt(2.0) * varies * np.sin(np.linspace(0.0, 20.0 * np.pi, 2000, endpoint=False))
     stretches = [SimpleNamespace(force=0.05 * (1.0 + s * sine)) for s in (1.0, 0.0)]
     line = constant_force_line(stretches)

@@ -106,3 +106,42 @@ def test_a_single_value_of_a_matlab_file_is_listed_with_its_number(tmp_path):
 def test_a_log_of_velocities_alone_says_what_to_add():
     with pytest.raises(ExperimentError, match="add a column with the integral of 'omega_rad_s'"):
         look({"t": T, "omega_rad_s": RATE, "tau_Nm": U})
+
+
+def test_a_voltage_is_no_position_beside_a_speed():
+    """ "voltage" and "rpm" gave a position in volts, and no word of the speed."""
+    columns = {"time": T, "voltage": 6.0 * np.sin(T), "rpm": 30.0 * np.cos(T)}
+    with pytest.raises(ExperimentError, match="found no position.*integral of 'rpm'"):
+        look(columns)
+
+
+def test_a_voltage_drives_a_motor_in_volts():
+    survey = look({"time": T, "angle_deg": np.sin(T), "voltage": np.cos(T)})
+    force = survey.channels["actuator_force"]
+    assert (force["column"], force["unit"]) == ("voltage", "V")
+    assert force["torque_constant"]["unit"] == "N*m/V"
+
+
+def test_a_brushless_motor_is_driven_by_its_current_and_turns():
+    """Of "Iq" and "Uq", which drives against the speed, the voltage was read, and mm and N."""
+    columns = {"Time": T, "Position": 20.0 * np.sin(6.0 * T), "Velocity": 120.0 * np.cos(6.0 * T)}
+    current = -0.4 * np.sin(6.0 * T) + 0.05 * np.sign(np.cos(6.0 * T))
+    survey = look({**columns, "Iq": current, "Uq": 2.5 * np.cos(6.0 * T) + 0.5 * current})
+    assert survey.axis == "revolute"
+    assert survey.channels["actuator_force"]["column"] == "Iq"
+    assert survey.channels["actuator_force"]["unit"] == "A"
+    assert "a second force" in survey.unused["Uq"]
+
+
+def test_a_position_named_like_a_force_is_proposed():
+    with pytest.raises(ExperimentError, match="if 'sensor' is the position: --position 'sensor'"):
+        look({"time": T, "sensor": np.sin(T), "action": 0.0 * T})
+
+
+def test_a_guessed_clock_is_stated_where_the_log_is_too_short():
+    """A column that numbers the rows was taken for ms, and the log for one of 0.249 s."""
+    columns = {"n": np.arange(250.0), "x": np.sin(np.arange(250.0)), "u": np.cos(np.arange(250.0))}
+    with pytest.raises(ExperimentError, match="'n' is read as the time: .*--sample-rate HZ"):
+        look(columns)
+    with pytest.raises(ExperimentError, match="at least 64$"):
+        look({name: values[:9] for name, values in columns.items()})

@@ -172,7 +172,7 @@ def test_samples_that_a_log_repeats_are_counted_among_those_in_motion():
 @pytest.mark.parametrize(
     ("quantity", "concern", "words"),
     [
-        ("actuator_force", "note", "the actuator drives nothing"),
+        ("actuator_force", "note", "the command does not change"),
         ("position", "warning", "the body never moves"),
         ("interaction_force", "warning", "not connected"),
     ],

@@ -180,3 +180,19 @@ def test_a_joint_is_written_in_units_of_turning(tmp_path):
     text = experiment_text(survey, [], title="t", inertia=None, first=None, effects=())
     assert "[guessed]" not in text.split("\n", 2)[2] and "in no channel" not in text
     assert "inertia" not in tomllib.loads(text)["model"]["device"]
+
+
+@pytest.mark.parametrize(("rows", "cut"), [(2400, 0.6), (150, 0.5), (127, None)])
+def test_a_log_is_cut_only_where_both_parts_are_long_enough(rows, cut, tmp_path):
+    """Of 153 rows at 10 Hz, 61 were left for the check record: too few, so nothing was written."""
+    log = write_log(tmp_path / "short.csv")
+    lines = log.read_text().splitlines()
+    step = len(lines) // rows
+    log.write_text("\n".join([lines[0], *lines[1::step][:rows]]) + "\n")
+    survey = survey_of(log)
+    records = written(make_folder(survey, [log], tmp_path / "made", title="short"))["records"]
+    assert [r["use"] for r in records] == (["fit", "check"] if cut else ["fit"])
+    if cut:
+        assert records[0]["span"][1] == pytest.approx(cut * survey.duration, rel=1e-3)
+    assert any("too short to be cut" in note for note in survey.notes) == (cut is None)
+    assert load_experiment(tmp_path / "made").fit_records

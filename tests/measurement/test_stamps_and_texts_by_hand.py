@@ -192,6 +192,12 @@ def test_the_true_step_is_the_largest_multiple_on_which_readings_lie():
     assert true_step(x[x <= 40.0], 1.0) == 2.0, "a tenth of the travel is no step"
 
 
+def test_rows_at_rest_lie_on_any_grid_and_tell_no_step():
+    """A servo that rested in 92 % of the rows was said to move in steps of 36 counts."""
+    strokes = np.array([65.0, 246.0, 377.0, 394.0, 329.0, 149.0, 17.0])
+    assert true_step(np.r_[np.zeros(90), strokes, np.zeros(90)], 1.0) == 1.0
+
+
 def test_a_number_may_have_an_exponent_of_fortran_and_a_text_may_have_100_points():
     for cell, number in (("1d3", 1e3), ("-1.5D-2", -0.015), ("1e3", 1e3), ("inf", math.inf)):
         assert number_of(cell) == number

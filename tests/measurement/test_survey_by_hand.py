@@ -108,21 +108,51 @@ SIGNED = np.round(400.0 * np.cos(2 * np.pi * 0.7 * T))
 
 
 @pytest.mark.parametrize(
-    ("readings", "is_signed"),
+    ("readings", "code"),
     [
-        (np.where(SIGNED < 0, 1024.0 - SIGNED, SIGNED), True),
-        (np.where(SIGNED < 0, 65536.0 + SIGNED, SIGNED), True),
-        (SIGNED, False),
-        (SIGNED + 512.0, False),
-        (np.abs(SIGNED), False),
+        (np.where(SIGNED < 0, 1024.0 - SIGNED, SIGNED), ("sign_bit", 10)),
+        (np.where(SIGNED < 0, 65536.0 + SIGNED, SIGNED), ("twos_complement", 16)),
+        (np.where(SIGNED < 0, 4096.0 + SIGNED, SIGNED), ("twos_complement", 12)),
+        (np.where(SIGNED < 0, 2.0**32 + SIGNED, SIGNED), ("twos_complement", 32)),
+        (SIGNED, None),
+        (SIGNED + 512.0, None),
+        (np.abs(SIGNED), None),
+        (np.where(SIGNED < 0, 0.0, 200.0), None),
+        (np.where(SIGNED < 0, 65535.0, 1.0), None),
     ],
 )
-def test_numbers_without_their_sign_are_remarked(readings, is_signed):
+def test_numbers_without_their_sign_are_decoded_as_a_guess(readings, code):
     survey = look({"t": T, "angle [rad]": Q, "torque": readings})
-    largest = f"({readings.max():.0f} for -400)"
-    notes = [note for note in survey.notes if "without their sign" in note]
-    assert bool(notes) == is_signed
-    assert all(largest in note or "65535 for -1" in note for note in notes)
+    entry = survey.channels["actuator_force"]
+    keys = {"sign_bit", "twos_complement"} & set(entry)
+    assert keys == ({code[0]} if code else set())
+    if code is not None:
+        assert entry[code[0]] == code[1]
+        why = survey.guesses[f"channels.actuator_force.{code[0]}"]
+        assert (
+            f"{readings.max() if code[0] == 'sign_bit' else 2.0 ** code[1] - 400:.0f} for -400"
+            in why
+        )
+        np.testing.assert_array_equal(survey.columns["torque"].readings, SIGNED)
+
+
+def test_a_bus_servo_is_read_by_the_signed_load_of_the_axis():
+    """Brackets count the axes; the current is a size, the load has its sign in a bit."""
+
+    def servo(k, phase):
+        at = 2 * np.pi * 0.7 * T + phase
+        load = np.round(100.0 * np.sign(np.cos(at)) - 60.0 * np.sin(at))
+        return {
+            f"pos ({k})": np.round(2000.0 + 200.0 * np.sin(at)),
+            f"load ({k})": np.where(load < 0, 1024.0 - load, load),
+            f"current ({k})": np.round(np.abs(load) / 10.0),
+        }
+
+    survey = look({"t": T, **servo(4, 0.0), **servo(5, 1.0)}, position="pos (5)")
+    assert survey.channels["actuator_force"]["column"] == "load (5)"
+    assert survey.channels["actuator_force"]["sign_bit"] == 10
+    assert "interaction_force" not in survey.channels
+    assert "of another axis" in survey.unused["load (4)"]
 
 
 def acted(wanted, measured):

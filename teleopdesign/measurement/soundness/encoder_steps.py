@@ -29,12 +29,16 @@ def measure_griddedness(x: Array, step: float) -> float:
 
 
 def true_step(x: Array, stated: float) -> float | None:
-    """The step of the readings: the stated one or a multiple of it; None: neither."""
+    """The step of the readings: the stated one or a multiple of it; None: neither.
+
+    Each place counts once: the rows of a body at rest lie on any grid.
+    """
     if measure_griddedness(x, stated) < ON_GRID:
         return None
     reached, ratio = float(np.ptp(x)), round(reading_step(x) / stated)
     multiples = [k for k in (*MULTIPLES, ratio) if k > 1 and k * stated < 0.1 * reached]
-    on = [k for k in multiples if measure_griddedness(x, k * stated) > ON_GRID]
+    places = np.unique(x)
+    on = [k for k in multiples if measure_griddedness(places, k * stated) > ON_GRID]
     return stated * max(on, default=1)
 
 

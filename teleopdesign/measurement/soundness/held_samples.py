@@ -23,7 +23,8 @@ def check_constant(signal: Signal) -> list[Finding]:
     value = float(signal.values[0])
     concern: Literal["note", "warning"] = "warning"
     if signal.channel.quantity == "actuator_force":
-        concern, why = "note", "the actuator drives nothing"
+        why = "the command does not change" if value else "the actuator drives nothing"
+        concern = "note"
     elif signal.channel.quantity == "position":
         why = "the body never moves, or the channel is stuck"
     else:

@@ -15,6 +15,7 @@ from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
 from ..column_names import as_unit
 from ..doors._log import Log, join_names
+from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
 from .axis_kind import axis_of
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
@@ -65,7 +66,11 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     time_name, unit = time_column(raw, log, choices, guesses, file)
     if time_name is not None:
         raw[time_name], _ = unwrap_stamps(raw[time_name])
-    time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
+    try:
+        time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
+    except ExperimentError as problem:
+        few = min(map(len, raw.values())) < FEWEST
+        raise ExperimentError(f"{problem}{'' if few else _guessed_clock(guesses)}") from None
     duration = duration_of(raw, time_name, unit, choices)
     survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
     if time_name is not None:
@@ -82,6 +87,14 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     survey.unused = unused_columns(log, raw, survey)
     survey.columns = columns
     return survey
+
+
+def _guessed_clock(guesses: Mapping[str, str]) -> str:
+    """What was guessed of the time, as the end of a message that the clock does not do."""
+    if not guesses:
+        return ""
+    option = "--time COLUMN, --unit COLUMN=UNIT or --sample-rate HZ states it"
+    return f"; {'; '.join(guesses.values())}: {option}"
 
 
 def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:

@@ -25,6 +25,8 @@ CURRENT = (
     "current", "curr", "cur", "strom", "courant", "corriente", "corrente", "i", "iq", "amps",
     "電流", "电流", "전류", "ток",
 )  # fmt: skip
+#: words of a voltage, which drives a motor against its speed
+VOLTAGES = frozenset(("voltage", "volts", "spannung", "uq", "vq"))
 #: words of a torque or force, which is no current
 TORQUE = (
     "torque", "moment", "drehmoment", "couple", "coppia", "force", "kraft", "fuerza", "forza",
@@ -64,6 +66,11 @@ def _is_current(column: SurveyedColumn) -> bool:
 def names_current(name: str) -> bool:
     """Whether a name suggests the current of a motor, whatever the unit."""
     return _has_word_of(name, CURRENT)
+
+
+def names_voltage(name: str) -> bool:
+    """Whether a name suggests the voltage of a motor, whatever the unit."""
+    return bool(VOLTAGES.intersection(words_of(name)))
 
 
 def names_torque(name: str) -> bool:

@@ -14,9 +14,10 @@ TURNING = IN_TURNS | set(
 #: words for parts that slide, in names without an angle: "torso_lift_joint" is a joint that slides
 SLIDING = frozenset("lift elevator slide slider prismatic linear rail carriage".split())
 ANGLES = frozenset("angle winkel theta phi".split())
-#: words of a force that turns
+#: words of a force that turns; "iq" is the current that makes the torque of a brushless motor
 TORQUES = frozenset(
-    "torque torques drehmoment moment couple coppia tau effort トルク 力矩 扭矩 토크 момент".split()
+    "torque torques drehmoment moment couple coppia tau effort iq "
+    "トルク 力矩 扭矩 토크 момент".split()
 )
 
 

@@ -13,6 +13,7 @@ from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
+from ..signed_numbers import sign_code_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
 from ..wrapped_stamps import seconds_since_first
@@ -189,7 +190,13 @@ def interpolate_columns(
         if fine.sum() < 2:
             continue
         column_unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
-        columns[name] = SurveyedColumn(
-            name, np.interp(clock.time, at[fine], x[fine]), x[fine], column_unit
-        )
+        code = None if _is_counter(name) else sign_code_of(x[fine])
+        readings = x[fine] if code is None else code.decode(x[fine])
+        grid = np.interp(clock.time, at[fine], readings)
+        columns[name] = SurveyedColumn(name, grid, readings, column_unit, code)
     return clock.time, columns
+
+
+def _is_counter(name: str) -> bool:
+    """Whether a name is surely that of a position: its counter wraps, which is the same."""
+    return likeness(name, "position") >= SURE_NAME and not is_wanted(name)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...quantity import is_unit, measures
 from ..first_guess import FirstGuess
+from ..signed_numbers import SignCode
 
 Array = NDArray[np.float64]
 
@@ -25,12 +26,16 @@ NONE = "none"
 
 @dataclass(frozen=True)
 class SurveyedColumn:
-    """One column: `values` (n,) on the even grid of the survey; `readings` (m,) as written."""
+    """One column: `values` (n,) on the even grid of the survey; `readings` (m,) as written.
+
+    code: how the log holds signed numbers, which are decoded here; None: as they are
+    """
 
     name: str
     values: Array
     readings: Array
     unit: str | None
+    code: SignCode | None = None
 
 
 @dataclass

@@ -10,8 +10,9 @@ import numpy as np
 from ...quantity import is_unit, measures, unit_of
 from ..column_names import unit_in_name, why_no_unit, words_of
 from ..conversion import conversion_of
+from ..signed_numbers import SIGN_BIT
 from ..toml_table import Table
-from .acting import names_current, names_torque
+from .acting import names_current, names_torque, names_voltage
 from .axis_kind import TORQUES
 from .content import Array, Choices, Survey
 from .remarks import torque_constant_in
@@ -26,11 +27,6 @@ PER_CENT = re.compile(r"[%‰]|per ?mill?e|\b0x60(?:71|74|77|78)\b", re.I)
 INPUT_BITS, NEAR_MIDDLE = (8, 10, 12, 14, 16), 0.1
 
 
-#: part of its changes from row to row that a column may keep where a bit of it is a sign: without
-#: the sign it leaps at each change of direction
-KEPT_CHANGES = 0.5
-
-
 def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
     """The channel table of a force: column, unit, and the motor constant of a current or the lever
     arm of a force beside an angle.
@@ -39,11 +35,7 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
     unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
     entry: dict[str, Any] = {"column": name}
-    if (signed := _unread_sign(survey.columns[name].readings)) is not None:
-        survey.notes.append(
-            f"{name!r} seems to hold signed numbers without their sign ({signed[0]:.0f} for "
-            f"{signed[1]:.0f}) and leaps at each change of sign; write signed numbers into the log"
-        )
+    entry |= describe_code(survey, name, key)
     if unit is None and (middle := _middle_of_input(survey.columns[name].readings)):
         entry["offset"] = -middle
         survey.guesses[f"channels.{key}.offset"] = (
@@ -56,6 +48,9 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     if unit is None and names_current(name):
         unit = "A"
         survey.guesses[f"channels.{key}.unit"] = f"A: the name {name!r} is that of a current"
+    if unit is None and names_voltage(name):
+        unit = "V"
+        survey.guesses[f"channels.{key}.unit"] = f"V: the name {name!r} is that of a voltage"
     if unit in ("A", "mA", "V"):
         entry["unit"] = unit
         base = "V" if unit == "V" else "A"
@@ -90,26 +85,21 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     return {**entry, "unit": unit}
 
 
-def _unread_sign(readings: Array) -> tuple[float, float] | None:
-    """The largest reading whose highest bit is a sign, and its value; None: no bit is one.
-
-    Servos on a bus report the size beside a bit for the sign, or a two's complement; a logger that
-    reads either as a count writes 1245 for -221, or 65315. Read with the sign, the column changes
-    less from row to row.
-    """
-    values = readings[np.isfinite(readings)]
-    if not len(values) or values.min() < 0 or values.max() >= 2**32:
-        return None
-    if not np.array_equal(values, np.round(values)) or values.max() < 2**7:
-        return None
-    bit = 2.0 ** np.floor(np.log2(values.max()))
-    largest = float(values.max())
-    for negative in (bit - values, values - 2.0 * bit):
-        signed = np.where(values >= bit, negative, values)
-        before, after = (float(np.sum(np.abs(np.diff(x)))) for x in (values, signed))
-        if after < KEPT_CHANGES * before:
-            return largest, float(signed[np.argmax(values)])
-    return None
+def describe_code(survey: Survey, name: str, key: str) -> dict[str, Any]:
+    """How a column holds signed numbers as in experiment.toml, as a guess; {}: as they are."""
+    code = survey.columns[name].code
+    if code is None:
+        return {}
+    numbers = survey.columns[name].readings
+    least = float(np.min(numbers))
+    count = 0.5 * code.end - least if code.key == SIGN_BIT else code.end + least
+    what = f"bit {code.bits} is a sign" if code.key == SIGN_BIT else f"it has {code.bits} bits"
+    survey.guesses[f"channels.{key}.{code.key}"] = (
+        f"{code.bits}: {name!r} holds signed numbers without their sign, {count:.0f} for "
+        f"{least:.0f}: it changes far less from row to row if {what}; else delete {code.key} from "
+        "experiment.toml"
+    )
+    return {code.key: code.bits}
 
 
 def _middle_of_input(readings: Array) -> float:

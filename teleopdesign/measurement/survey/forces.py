@@ -10,7 +10,7 @@ from ...quantity import is_unit, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
-from .acting import current_that_acted, names_current
+from .acting import current_that_acted, names_current, names_voltage
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
@@ -72,8 +72,10 @@ def describe_forces(
         n: c for n, c in free.items() if not (may_be_set_point(c) and has_numbers_of(c.values, x))
     }
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
+    sizes = _sizes_beside_signed(free, position, survey)
     scores = {
         n: _score_force(c, physics[n])
+        - OF_CURRENT * (n in sizes)
         + BESIDE * stand_together(n, position)
         - ANOTHER_AXIS * of_another_axis(n, position, survey.columns)
         + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
@@ -146,10 +148,26 @@ def _find_driving_force(
     return force, acted is not None
 
 
+def _sizes_beside_signed(
+    free: Mapping[str, SurveyedColumn], position: str, survey: Survey
+) -> set[str]:
+    """The columns without a negative reading beside one of the same axis whose sign is a bit.
+
+    Servos on a bus report the load of their motor with a sign, and only the size of its current.
+    """
+    if not any(
+        c.code and not of_another_axis(n, position, survey.columns) for n, c in free.items()
+    ):
+        return set()
+    return {n for n, c in free.items() if c.code is None and c.readings.min() >= 0}
+
+
 def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
-    score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
+    # the load that a servo on a bus reports is that of its motor
+    score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME and not column.code)
     score -= 0.7 * (likeness(column.name, "velocity") >= SURE_NAME)  # "commanded_velocity"
+    score -= 0.2 * names_voltage(column.name)  # beside a current, which is in proportion to torque
     # the command is preferred to the value that a drive reports as reached
     score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)

@@ -37,6 +37,7 @@ from .derivative import (
     wrap_of,
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
+from .force_entry import describe_code
 from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
@@ -89,7 +90,7 @@ def find_position(
         raise ExperimentError(
             f"{file}: found no position: no column changes without being a force or "
             f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
-            f"{_integral_of(moving)}{reasons(survey.unread)}"
+            f"{_integral_of(moving)}{_named_as_force(moving)}{reasons(survey.unread)}"
         )
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
@@ -154,6 +155,15 @@ def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
     return f"; add a column with the integral of {names[0]!r}" if names else ""
 
 
+def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
+    """How to choose a column that its name makes a force, for a message; not beside a velocity."""
+    if any(map(_is_velocity, moving.values())):
+        return ""
+    unsure = (n for n, c in moving.items() if c.unit is None)
+    names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
+    return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
+
+
 def _is_another(column: SurveyedColumn) -> bool:
     """Whether a column is a force or a velocity, by its unit or, without a unit, by its name."""
     if is_unit_of(column.unit, "position"):
@@ -193,7 +203,7 @@ def describe_position(
 ) -> None:
     """Set the channels of position and velocity: unit, wrap, resolution and gear ratio."""
     column, axis = survey.columns[position], survey.axis
-    entry: dict[str, Any] = {"column": position}
+    entry: dict[str, Any] = {"column": position, **describe_code(survey, position, "position")}
     unit = choices.units.get(position) or column.unit
     if unit is None and choices.counts_per_turn is not None:
         unit = "counts"
@@ -230,7 +240,10 @@ def describe_position(
     if velocity is not None:
         velocity_unit = choices.units.get(velocity) or survey.columns[velocity].unit
         if velocity_unit is not None and measures(velocity_unit, "velocity", axis):
-            more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
+            more: dict[str, Any] = (
+                {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
+            )
+            more |= describe_code(survey, velocity, "velocity")
             survey.channels["velocity"] = {"column": velocity, "unit": velocity_unit, **more}
             _hold_time_against(survey, column, velocity)
 

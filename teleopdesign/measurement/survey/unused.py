@@ -77,6 +77,8 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     if may_be_set_point(column) and follows(unwrap_column(x, jump), column.values):
         return f"a set point: {position!r} follows it"
     _, agree = derivative_factor(unwrap_column(x, jump), column.values, sample_time_of(survey))
+    if likeness(name, "actuator_force") >= SURE_NAME > likeness(name, "velocity"):
+        agree = 0.0  # a voltage is nearly in proportion to the speed
     if agree > DERIVATIVE and "velocity" in survey.channels:
         return f"a second velocity for {position!r}"
     if agree > DERIVATIVE:
