@@ -91,13 +91,14 @@ def estimate_from_starts(
     models = make_starts(model, prepared.scales)
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(e.corrections() and not e.linear for e in absent)
-    kept = PLAN.corrected_stepped if rugged else PLAN.curved_stepped
+    wide = rugged or any(len(e.parameters) >= PLAN.many_parameters for e in absent)
+    kept = PLAN.wide_stepped if wide else PLAN.curved_stepped
     if base is not None:
         curved = _with_strength(model) is None
         kept = kept if curved else PLAN.stepped
         if curved and stated is not None and has_moved(base.coarse, stated):
             models += [reset_to_stated(m, stated) for m in models]
-        most = PLAN.corrected_predicted if rugged else PLAN.curved_predicted
+        most = PLAN.wide_predicted if wide else PLAN.curved_predicted
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
         if not models:
             return keep_absent(model, base.fit)

@@ -35,8 +35,9 @@ class SearchPlan:
     together: int = 8
     #: relative difference of squares below which two effects do the same: what a search resolves
     same: float = 1e-6
-    #: parameters of an effect from which two simpler ones are held against it though it leaves only
-    #: noise. Five: `maxwell_slip`, which turns as a spring and a bristle do together
+    #: parameters of an effect from which it is searched from more starts, and two simpler ones are
+    #: held against it though it leaves only noise. Five: `maxwell_slip`, which turns as a spring
+    #: and a bristle do together
     many_parameters: int = 5
     #: part of the squares of an arm's joint that its first effect takes away where the links were
     #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
@@ -51,11 +52,12 @@ class SearchPlan:
     #: the same of an effect that is linear in no strength: one step says less of it
     curved_predicted: int = 4
     curved_stepped: int = 2
-    #: the same where hidden states are corrected: they may still fall out of step, and squares are
-    #: rugged. All are followed: the first steps from a good start may all fail (one search ended at
-    #: 43 % with three, at 4 % with six)
-    corrected_predicted: int = 6
-    corrected_stepped: int = 6
+    #: the same where hidden states are corrected, or parameters are many: states may still fall out
+    #: of step, and squares are rugged. All are followed: the first steps from a good start may all
+    #: fail (one search of a gap ended at 43 % with three, at 4 % with six; one of slipping springs
+    #: at 6.5 % with two, at 2.5 % with four)
+    wide_predicted: int = 6
+    wide_stepped: int = 6
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
     late_starts: tuple[float, ...] = (0.25, 0.7)
