@@ -59,6 +59,7 @@ def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
             rasterized=True,
         )
     ax.axhline(0, color="k", lw=0.5)
+    ax.locator_params(axis="x", nbins=5)  # two such axes side by side: labels of 0.00025 are long
     ax.set_xlabel(label_of(data, over))
     ax.set_ylabel(label_of(data, "residual"))
 
