@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any
 
@@ -53,8 +54,15 @@ def check_gpu() -> None:
         raise ModelError(
             "simulate_many: device \"cuda\" needs numba-cuda: pip install 'teleopdesign[cuda]'"
         )
-    from numba import cuda
-
+    try:
+        from numba import cuda
+    except Exception as error:  # a release that does not go with the installed numpy or numba
+        raise ModelError(
+            f'simulate_many: device "cuda": numba-cuda {version("numba-cuda")} cannot be imported '
+            f"beside numpy {version('numpy')} and numba {version('numba')} "
+            f"({type(error).__name__}: {error}): pip install 'teleopdesign[cuda]' installs "
+            "versions that go together"
+        ) from error
     if not cuda.is_available():
         why = " ".join(str(cuda.cuda_error() or "its driver lists none").split())
         raise ModelError(
