@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ..effects import SIGNALS, Effect, sort_by_action
+from ..effects import INERTIA, SIGNALS, Effect, sort_by_action
 from ..frozen import Frozen
 from .environment import contact_force
 
@@ -102,7 +102,7 @@ def actuation_of(effects: tuple[Effect, ...], s: sp.Symbol) -> tuple[sp.Expr, tu
 def body_symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
     """Parameter name -> sympy symbol: "coulomb.level" -> coulomb_level; "inertia" as well."""
     of_effects = {f"{e.name}.{n}": s for e in effects for n, s in e.symbols().items()}
-    return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
+    return {"inertia": INERTIA, **of_effects}
 
 
 @lru_cache(maxsize=256)

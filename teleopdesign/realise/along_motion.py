@@ -20,7 +20,14 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body
-from ..effects import SIGNALS, UNEXPLAINED, Effect, make_rubbing_structure, make_touching_structure
+from ..effects import (
+    INERTIA,
+    SIGNALS,
+    UNEXPLAINED,
+    Effect,
+    make_rubbing_structure,
+    make_touching_structure,
+)
 from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -48,6 +55,7 @@ _MEASURED = {
 }
 
 
+_INERTIAL_FORCE = INERTIA * SIGNALS["acceleration"]
 #: shift of the hand's force, in rows, for a numerical derivative of hidden states. Apart from a gap
 #: the states are linear in the shift: it is far below a row, and far above rounding
 DRIVE_STEP = 1e-3
@@ -83,7 +91,7 @@ def residual_along(
     interaction = along.signals[SIGNALS["interaction_force"]]
     acting = acting_along(body, motion, along)
     along = with_loads(body, motion, along, acting)
-    inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
+    inertia = along.evaluate(_INERTIAL_FORCE)
     forces = [_force(effect, along) for effect in along.present(body.effects, "force")]
     if motion.carried is not None:
         forces = [_force_of_links(motion, motion.carried, along), *forces]

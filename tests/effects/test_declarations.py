@@ -79,13 +79,13 @@ STARTS = {
     "load_dependent_friction.extra_at_rest": (0.0,),
     "load_dependent_friction.output_share": (0.0, 1.0),
     "load_dependent_friction.stribeck_velocity": (0.1,),
-    "maxwell_slip.level_2": (0.3,),
-    "maxwell_slip.level_3": (0.03,),
-    "maxwell_slip.level_4": (0.03,),
-    "maxwell_slip.stiffness_1": (10.0, 100.0, 1000.0),
-    "maxwell_slip.stiffness_2": (1.0, 10.0, 100.0),
-    "maxwell_slip.stiffness_3": (30.0,),
-    "maxwell_slip.stiffness_4": (0.3,),
+    "maxwell_slip.level_2": (0.25,),
+    "maxwell_slip.level_3": (0.25,),
+    "maxwell_slip.level_4": (0.25,),
+    "maxwell_slip.stiffness_1": (0.1, 0.3, 1.0, 3.0, 10.0),
+    "maxwell_slip.stiffness_2": (3.0, 10.0),
+    "maxwell_slip.stiffness_3": (3.0,),
+    "maxwell_slip.stiffness_4": (3.0,),
     "position_dependent_friction.amplitude": (0.05,),
     "position_dependent_friction.period": (3.0, *WAVES),
     "position_dependent_friction.phase": (0.0,),
@@ -134,6 +134,8 @@ CHOSEN = {
     "load_dependent_friction.output_share",
     "load_dependent_friction.stribeck_velocity",
 }
+#: parameters whose starts are multiples of another one's
+OF = {f"maxwell_slip.stiffness_{i}": f"stiffness_{i - 1}" for i in (2, 3, 4)}
 #: may be left out, and are zero then
 OPTIONAL = {
     "hardening_spring.neutral",
@@ -149,7 +151,7 @@ PARAMETERS = {f"{n}.{p}": q for n, e in KNOWN.items() for p, q in e.parameters.i
 
 
 def test_every_name_of_these_tables_is_a_parameter():
-    for names in (BOUNDS, STARTS, SCALES, WITHIN, CHOSEN, OPTIONAL):
+    for names in (BOUNDS, STARTS, SCALES, OF, WITHIN, CHOSEN, OPTIONAL):
         assert set(names) <= set(PARAMETERS)
 
 
@@ -161,6 +163,7 @@ def test_a_parameter_has_the_bounds_and_the_search_of_these_tables(name):
     search = declared.search
     assert np.allclose(search.starts, STARTS.get(name, (0.01, 0.1)), rtol=1e-12)
     assert declared.scale == SCALES.get(name, declared.quantity)
+    assert search.of == OF.get(name, "")
     assert search.within == WITHIN.get(name, inf)
     assert search.chosen == (name in CHOSEN)
     # without a gap a play is a compliance
