@@ -15,8 +15,8 @@ from ._facts import RecordFacts, slip_is_observable
 #: stiffness, because records do not determine its stiffness. A higher limit puts visible elements
 #: last, a lower one puts invisible elements first
 LITTLE = 0.02
-#: an element whose level is above this part of the friction level is compared with the travel; a
-#: smaller one does not matter, whatever stiffness a fit gives it
+#: an element whose force reaches this part of the friction level within the travel is compared with
+#: the travel; one with a smaller force does not matter, whatever values a fit gives it
 CARRIES = 0.05
 #: numbers of the further elements; the first element has the rest of the level
 MORE = (2, 3, 4)
@@ -45,7 +45,10 @@ def elements_slip(p: Any, facts: RecordFacts) -> str | None:
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
-    softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
+    reached = {i: slips[i] * min(1.0, facts.sweep / ways[i]) for i in ways}
+    softest = max(
+        (i for i in ways if reached[i] > CARRIES * level), key=ways.__getitem__, default=0
+    )
     if softest and 2.0 * ways[softest] > facts.sweep:
         stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
         seldom = "never slips" if ways[softest] > facts.sweep else "slips in one direction only"

@@ -70,3 +70,13 @@ def test_what_slips_within_no_stretch_of_a_record_is_a_spring_though_two_records
     soft["stiffness_1"] = 0.1  # 4 rad: beside others that slip, this one is a spring
     sentence = plausible(SimpleNamespace(**soft, level_2=0.1, level_3=0.0, level_4=0.0), facts())
     assert sentence is not None and "never slips within the travel of 1 rad" in sentence
+
+
+def test_an_element_that_reaches_next_to_no_force_within_the_travel_does_not_matter():
+    """Beside three springs that slip, a fit of four elements left a fourth without a force."""
+    stiffness = {"stiffness_1": 0.01, "stiffness_2": 5.0, "stiffness_3": 50.0, "stiffness_4": 500.0}
+    values = SimpleNamespace(**stiffness, level_2=0.1, level_3=0.1, level_4=0.1)
+    plausible = EFFECTS["maxwell_slip"].plausible
+    assert plausible(values, facts()) is None, "0.01 N m at most, beside a friction of 0.5 N m"
+    values.stiffness_1 = 0.1
+    assert "never slips" in plausible(values, facts())
