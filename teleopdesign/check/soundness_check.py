@@ -7,12 +7,12 @@ from typing import Literal
 import numpy as np
 
 from ..diagnose.constant_force import tells_nothing
-from ..diagnose.criteria import CRITERIA
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
 from ..errors import ExperimentError
 from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
+from ..measurement.first_guess import VARIES
 from ..measurement.soundness import check_signals
 from ..model import Model
 from .bandwidth_check import check_bandwidth
@@ -89,7 +89,7 @@ def _constant_force() -> Finding:
     return Finding(
         "constant force",
         "warning",
-        f"the force varies by less than {100 * CRITERIA.varies:g} %: a constant friction explains "
+        f"the force varies by less than {100 * VARIES:g} %: a constant friction explains "
         "it along any motion, so that no inertia, no damping and no effect can be told. Record a "
         "motion under a force that varies, or one that also coasts; or state the inertia, with "
         "fixed = true.",

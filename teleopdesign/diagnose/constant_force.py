@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..measurement.first_guess import VARIES, hardly_varies
 from ..model import Model
-from .criteria import CRITERIA
 from .prepare import Stretch, measured_force
 
 
@@ -20,7 +20,7 @@ def is_constant(stretches: Sequence[Stretch]) -> bool:
     """Whether the measured force hardly varies in any stretch, and has one size in all of them."""
     forces = [measured_force(s) for s in stretches]
     sizes = np.concatenate([np.abs(f) for f in forces])
-    return not any(map(_varies, (*forces, sizes)))
+    return all(map(hardly_varies, (*forces, sizes)))
 
 
 def tells_nothing(stretches: Sequence[Stretch], model: Model) -> bool:
@@ -34,7 +34,7 @@ def constant_force_line(stretches: Sequence[Stretch]) -> str | None:
     if not is_constant(stretches):
         return None
     return (
-        f"records: the measured force varies by less than {100 * CRITERIA.varies:g} %: a constant "
+        f"records: the measured force varies by less than {100 * VARIES:g} %: a constant "
         "friction explains it along any motion, and its error says nothing of the inertia or of "
         "friction that varies. Record a motion under a force that varies, or one that also coasts"
     )
@@ -43,7 +43,3 @@ def constant_force_line(stretches: Sequence[Stretch]) -> str | None:
 def describe_constant_force() -> str:
     """The end of a verdict where nothing can be told."""
     return "The force is constant, so that these records tell no effect and no inertia."
-
-
-def _varies(force: np.typing.NDArray[np.float64]) -> bool:
-    return bool(np.std(force) > CRITERIA.varies * np.sqrt(np.mean(force**2)))

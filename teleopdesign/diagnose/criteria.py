@@ -121,10 +121,6 @@ class Criteria:
     #: no noise of the force is stated, while real logs have noise. Lower: hides large errors;
     #: higher: a number without meaning
     countable: float = 1000.0
-    #: part of its size (rms) by which a measured force must vary: below, a constant explains more
-    #: of it than any model of a real machine. Lower: a motor that spins up under one torque passes
-    #: for one that tells its inertia; higher: said of true small forces beside gravity
-    varies: float = 0.01
     #: probability from which an effect is said to be missing: less likely than not is not named
     named: float = 0.5
 

@@ -34,8 +34,10 @@ _SURELY = 3.0
 #: a motion is in one direction if its direction or speed varies by less than this part of its rms:
 #: noise and the ends of the low-pass make about as much variation
 _ONE_WAY = 0.05
-#: part of its rms by which a force must vary to tell a sign: any motion explains a constant one
-_VARIES = 0.01
+#: part of its size (rms) by which a force must vary: below, a constant explains more of it than any
+#: model of a real machine. Lower: a motor that spins up under one torque passes for one that tells
+#: its inertia; higher: said of true small forces beside gravity
+VARIES = 0.01
 #: a force that depends on position counts only if it leaves less than this part of the squares
 _MOSTLY = 0.5
 
@@ -115,7 +117,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     force.
     """
     stretch = _stretch((force, position), position, sample_time)
-    if stretch is None or _is_constant(force, sample_time):
+    if stretch is None or hardly_varies(force[_inner(sample_time)]):
         return False
     (acceleration, direction, velocity, _), (target, place) = stretch
     place = place - place.mean()
@@ -172,11 +174,10 @@ def _inner(sample_time: float) -> slice:
     return slice(trim, -trim)
 
 
-def _is_constant(force: Array, sample_time: float) -> bool:
-    """Whether a force (n,) hardly varies between the ends: such a force tells no sign."""
-    inner = force[_inner(sample_time)]
+def hardly_varies(force: Array) -> bool:
+    """Whether a force (n,) is constant but for `VARIES` of it: any motion explains such a force."""
     with np.errstate(over="ignore", invalid="ignore"):  # values beyond 1e150
-        return bool(np.std(inner) <= _VARIES * np.sqrt(np.mean(inner**2)))
+        return bool(np.std(force) <= VARIES * np.sqrt(np.mean(force**2)))
 
 
 def _stretch(

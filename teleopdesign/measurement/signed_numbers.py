@@ -25,7 +25,7 @@ MOST_BITS = 53
 KEPT_CHANGES = 0.5
 #: least range of readings that are looked at, and least number of values with either sign: a
 #: command that is on or off has two values, and may be 0 and 200 by choice
-SHORTEST, EACH_SIGN = 2**7, 3
+LEAST_RANGE, EACH_SIGN = 2**7, 3
 #: least size of the smaller sign in that of the larger one: a force that drives to both sides
 COMPARABLE = 0.1
 
@@ -84,7 +84,7 @@ def sign_code_of(readings: Array) -> SignCode | None:
     The highest bit is then the sign, both signs occur with several values, and their sizes compare.
     """
     counts = readings[np.isfinite(readings)]
-    if not len(counts) or counts.min() < 0 or not SHORTEST <= counts.max() < 2.0**MOST_BITS / 2:
+    if not len(counts) or counts.min() < 0 or not LEAST_RANGE <= counts.max() < 2.0**MOST_BITS / 2:
         return None
     if not np.array_equal(counts, np.round(counts)):
         return None
