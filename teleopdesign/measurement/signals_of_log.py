@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from .resample import (
     interpolate_by_rule,
     resample_on_grid,
 )
+from .spikes import filled_spikes
 from .tables import LogColumns
 
 Array = NDArray[np.float64]
@@ -39,36 +40,97 @@ def signals_of_log(
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """The signals (n,) by channel, and the reading steps that made them."""
     signals: dict[str, Array] = {}
-    steps: list[ReadingStep] = []
+    readings, steps = _readings_of_log(columns, channels, conversions, clock, file)
     for key, conversion in conversions.items():
         channel = channels[key]
-        conversion.refuse_other_counts(columns.values, f"{file}: channels.{key}")
-        wraps = conversion.wraps(columns.values)
-        name = key.removeprefix("device.")
-        if wraps:
-            steps.append(
-                ReadingStep(file, f"{name} wraps {count_of(wraps, 'time')}", "unwrapped", "none")
-            )
-        if conversion.delay:
-            text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
-            steps.append(ReadingStep(file, text, "moved back", "none"))
         if conversion.columns[0] in columns.stamps:
-            signals[key], step = _resample_by_stamps(columns, key, channel, conversion, clock, file)
-            steps.append(step)
+            signals[key], more = _resample_by_stamps(columns, key, channel, conversion, clock, file)
+            steps += more
             continue
-        rows = clock.clock.rows
-        values = conversion.signal({c: columns.values[c][rows] for c in conversion.columns})
-        phase = None
+        values, phase = readings[key], None
         if clock.stamped and channel.quantity == "actuator_force" and not conversion.delay:
             phase = command_phase(values, clock.clock)
         if phase is None:
             signals[key] = _resample_channel(values, channel, conversion, clock)
             continue
+        name = key.removeprefix("device.")
         signals[key], missing = commands_on_clock(values, clock.clock, phase)
         steps.append(_describe_signal_clock(values, clock, phase, missing, file, name))
     if clock.clock.lost:
-        steps.append(_describe_lost_rows(columns, channels, conversions, clock, file))
+        steps.append(_describe_lost_rows(readings, channels, clock, file))
     return signals, steps
+
+
+def _readings_of_log(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    conversions: Mapping[str, Conversion],
+    clock: LogClock,
+    file: str,
+) -> tuple[dict[str, Array], list[ReadingStep]]:
+    """Readings in SI at the clock's rows, of the channels on this clock, with spikes filled."""
+    readings: dict[str, Array] = {}
+    steps: list[ReadingStep] = []
+    for key, conversion in conversions.items():
+        conversion.refuse_other_counts(columns.values, f"{file}: channels.{key}")
+        name = key.removeprefix("device.")
+        if wraps := conversion.wraps(columns.values):
+            text = f"{name} wraps {count_of(wraps, 'time')}"
+            steps.append(ReadingStep(file, text, "unwrapped", "none"))
+        if conversion.delay:
+            text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
+            steps.append(ReadingStep(file, text, "moved back", "none"))
+        if conversion.columns[0] not in columns.stamps:
+            rows = clock.clock.rows
+            values = {c: columns.values[c][rows] for c in conversion.columns}
+            readings[key] = conversion.signal(values)
+    for key in sorted(readings, key=lambda k: channels[k].quantity != "position"):
+        position = readings.get(f"{channels[key].body}.position")
+        readings[key], more = _fill_spikes(
+            readings[key], key, channels[key], clock.clock.of_rows, position, file
+        )
+        steps += more
+    return readings, steps
+
+
+def _fill_spikes(
+    values: Array,
+    key: str,
+    channel: Channel,
+    parts: Sequence[slice],
+    position: Array | None,
+    file: str,
+) -> tuple[Array, list[ReadingStep]]:
+    """The readings of a measured channel with their spikes filled, and the step that says so.
+
+    parts: uninterrupted stretches
+    position: of the same body in the same rows; a force is compared with it, if there is one
+    """
+    is_force = channel.quantity in ("actuator_force", "interaction_force")
+    if channel.quantity == "velocity" or (
+        channel.quantity == "actuator_force" and not channel.measured
+    ):
+        return values, []  # a command may have any value; a velocity is only compared
+    step = reading_step(values)
+    filled, spikes = filled_spikes(values, step, parts, position if is_force else None)
+    if not spikes.any():
+        return values, []
+    filled = _restore_steps(
+        filled, values[~spikes], channel, encoder_step(channel, values[~spikes])
+    )
+    count, off = int(spikes.sum()), np.abs(filled - values)
+    worst = float(off.max())
+    name = key.removeprefix("device.")
+    done = ReadingStep(
+        file,
+        f"{name}: {count_of(count, 'reading')} far off the course of the others, "
+        f"{float(f'{worst / np.std(filled):.2g}'):g} standard deviations at most",
+        "read as lost, filled by the curve through their neighbours",
+        f"{100 * count / len(values):.2g} % of the readings",
+        topic="outliers",
+        numbers=(("count", float(count)), ("row", float(np.argmax(off)) + 1.0), ("size", worst)),
+    )
+    return filled, [done]
 
 
 def _describe_signal_clock(
@@ -139,8 +201,8 @@ def _resample_by_stamps(
     conversion: Conversion,
     clock: LogClock,
     file: str,
-) -> tuple[Array, ReadingStep]:
-    """A channel with separate time stamps, as those of a bag's topic, and its reading step."""
+) -> tuple[Array, list[ReadingStep]]:
+    """A channel with separate time stamps, as those of a bag's topic, and its reading steps."""
     stamps = columns.stamps[conversion.columns[0]] - conversion.delay
     values = conversion.signal({c: columns.values[c] for c in conversion.columns})
     fine = np.isfinite(values) & np.isfinite(stamps)
@@ -148,6 +210,7 @@ def _resample_by_stamps(
     at, values = stamps[fine][order], values[fine][order]
     once = np.r_[True, np.diff(at) > 0]
     at, values = at[once], values[once]
+    values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
     h = clock.clock.sample_time
     rule, step = rule_of(channel, values), encoder_step(channel, values)
     out = np.concatenate(
@@ -175,26 +238,27 @@ def _resample_by_stamps(
         interpolates=rule == "position",
         channel=key,
     )
-    return _restore_steps(out, values, channel, step), done
+    return _restore_steps(out, values, channel, step), [*spikes, done]
 
 
 def _describe_lost_rows(
-    columns: LogColumns,
+    readings: Mapping[str, Array],
     channels: Mapping[str, Channel],
-    conversions: Mapping[str, Conversion],
     clock: LogClock,
     file: str,
 ) -> ReadingStep:
-    """Reading step for lost rows: their number, the filling, its error where it can be tested."""
-    lost, rows = clock.clock.lost, clock.clock.rows
+    """Reading step for lost rows: their number, the filling, its error where it can be tested.
+
+    readings: of the channels on this clock, at its rows
+    """
+    lost = clock.clock.lost
     part = lost / len(clock.clock.time)
     error = force = 0.0
     positions = []
-    for key, conversion in conversions.items():
+    for key, values in readings.items():
         channel = channels[key]
-        if conversion.columns[0] in columns.stamps or channel.quantity == "velocity":
+        if channel.quantity == "velocity":
             continue
-        values = conversion.signal({c: columns.values[c][rows] for c in conversion.columns})
         step = encoder_step(channel, values)
         wrong = filling_error(values, clock.clock, rule_of(channel, values), step=step)
         if channel.quantity == "position":

@@ -26,7 +26,6 @@ from teleopdesign.measurement.signals_of_log import (
     rule_of,
 )
 from teleopdesign.measurement.soundness import check_signals
-from teleopdesign.measurement.tables import LogColumns
 
 
 def made_clock(off, **more):
@@ -128,18 +127,6 @@ def test_a_filled_position_keeps_the_steps_of_its_readings():
     assert _restore_steps(values, values, known, 0.5) is values
 
 
-class Plain:
-    """A conversion of one column by a factor."""
-
-    delay = 0.0
-
-    def __init__(self, column, factor=1.0):
-        self.columns, self.factor = (column,), factor
-
-    def signal(self, values):
-        return self.factor * values[self.columns[0]]
-
-
 def test_lost_rows_say_how_far_positions_and_forces_err():
     """Filled as if each known row were lost: by the cubic (x-term) and by the line between."""
     n = 41
@@ -152,9 +139,8 @@ def test_lost_rows_say_how_far_positions_and_forces_err():
         "device.velocity": Channel("velocity", "device", "v", "m/s", None, None),
         "device.actuator_force": Channel("actuator_force", "device", "f", "N", None, None),
     }
-    conversions = {k: Plain(c.column) for k, c in channels.items()}
-    columns = LogColumns({"x": x, "v": v, "f": f})
-    step = _describe_lost_rows(columns, channels, conversions, made, "a.csv")
+    readings = {"device.position": x, "device.velocity": v, "device.actuator_force": f}
+    step = _describe_lost_rows(readings, channels, made, "a.csv")
     inner = np.arange(2, n - 2)
     cubic = (-x[inner - 2] + 4 * x[inner - 1] + 4 * x[inner + 1] - x[inner + 2]) / 6
     slow = x[inner + 1] - x[inner - 1] <= 2 * 2.5 * 0.5  # 2.5 steps a row
@@ -166,10 +152,8 @@ def test_lost_rows_say_how_far_positions_and_forces_err():
     assert step.effect.startswith(f"adds at most {100 * size:.2g} % of the force;")
     assert step.effect.endswith(f"positions there err by {float(f'{wrong / 0.5:.2g}'):g} steps")
     assert dict(step.numbers) == pytest.approx({"lost": 3, "part": 3 / n, "force_error": size})
-    beside = LogColumns(columns.values, {"f": np.arange(n)})
-    assert np.isnan(
-        dict(_describe_lost_rows(beside, channels, conversions, made, "a").numbers)["force_error"]
-    )
+    beside = {"device.position": x}  # the force has stamps of its own
+    assert np.isnan(dict(_describe_lost_rows(beside, channels, made, "a").numbers)["force_error"])
     assert filling_error(x[:4], made_clock(np.zeros(4)), "line", step=0.0) != 0.0
 
 

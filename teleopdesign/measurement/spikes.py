@@ -1,0 +1,125 @@
+"""Spikes: lone readings far off the course of all others, as of a disturbed bus or encoder.
+
+No body and no sensor makes such a reading: it is read as lost, and filled by the curve through its
+neighbours. Readings are spikes only if the least of them is `GAP` times as far off as every other
+reading of the stretch. Steps, impacts of several rows and chatter are therefore none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from .repeated_rows import runs_of
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: rows whose median is the course of a reading: of seven, three may be spikes
+NEAR = 7
+#: a spike is at least so many times as far off the course as any reading that is none
+GAP = 4.0
+#: most of the readings that are spikes: of more, seven rows hold four too often
+MOST = 0.05
+#: most successive spikes: an impact or a stretch without signal lasts longer
+LONGEST = 2
+#: fewest readings that show what is usual
+FEWEST = 64
+#: part of its distance by which level and slope on both sides of a spike may differ at most: at
+#: the peak of a triangle the slopes differ by more than the peak is off
+BESIDE = 0.5
+#: share of the rows with the largest changes of velocity. If half of the spikes of a force lie at
+#: such rows, they are contacts of less than a row
+ABRUPT = 0.1
+
+
+def filled_spikes(
+    values: Array, step: float, parts: Sequence[slice], position: Array | None = None
+) -> tuple[Array, Mask]:
+    """Readings (n,) with their spikes filled, and the mask (n,) of these.
+
+    parts: uninterrupted stretches;  position: of the body (n,), where the readings are a force
+    """
+    out, spikes = values.copy(), np.zeros(len(values), dtype=bool)
+    for part in parts:
+        x = values[part]
+        odd = find_spikes(x, step)
+        if not odd.any() or (position is not None and are_contacts(odd, position[part])):
+            continue
+        out[part], spikes[part] = fill_spikes(x, odd), odd
+    return (out, spikes) if spikes.any() else (values, spikes)
+
+
+def find_spikes(x: Array, step: float) -> Mask:
+    """Mask (n,) of the spikes among successive readings of one channel.
+
+    step: smallest step between readings
+    """
+    none = np.zeros(len(x), dtype=bool)
+    if len(x) < FEWEST:
+        return none
+    off = np.abs(x - median_filter(x, NEAR, mode="nearest"))
+    order = np.argsort(-off, kind="stable")[: int(MOST * len(x)) + 1]
+    size = np.maximum(off[order], max(step, np.finfo(float).tiny))
+    for last in np.flatnonzero(size[:-1] >= GAP * size[1:])[::-1]:
+        spikes = none.copy()
+        spikes[order[: last + 1]] = True
+        if _are_lone(x, spikes):
+            return spikes
+    return none
+
+
+def are_contacts(spikes: Mask, position: Array) -> bool:
+    """Whether the spikes of a force (n,) lie where the velocity of the body (n,) changes most."""
+    first, past = runs_of(spikes)
+    inner = (first >= 3) & (past <= len(position) - 3)
+    if not inner.any():
+        return False
+    rows = np.arange(3, len(position) - 3)
+    usual = np.quantile(_change_of_slope(position, rows, rows + 1), 1.0 - ABRUPT)
+    return float(np.mean(_change_of_slope(position, first[inner], past[inner]) > usual)) >= 0.5
+
+
+def fill_spikes(x: Array, spikes: Mask) -> Array:
+    """The readings (n,) with each spike on the cubic through the four nearest other readings."""
+    good, out = np.flatnonzero(~spikes), x.copy()
+    for row in np.flatnonzero(spikes):
+        right = int(np.searchsorted(good, row))
+        first = min(max(right - 2, 0), len(good) - 4)
+        nodes = good[first : first + 4]
+        out[row] = _lagrange(nodes - row, x[nodes])
+    return out
+
+
+def _lagrange(nodes: NDArray[np.intp], values: Array) -> float:
+    """Value at 0 of the polynomial through these points."""
+    weights = [np.prod([n / (n - m) for n in np.delete(nodes, i)]) for i, m in enumerate(nodes)]
+    return float(np.dot(weights, values))
+
+
+def _are_lone(x: Array, spikes: Mask) -> bool:
+    """Whether each run of spikes is short, and the readings beside it go on as if without it."""
+    first, past = runs_of(spikes)
+    if (past - first > LONGEST).any():
+        return False
+    y = fill_spikes(x, spikes)
+    # beside the ends of the record only the size counts
+    inner = (first >= 3) & (past <= len(x) - 3)
+    first, past = first[inner], past[inner]
+    size = np.minimum(np.abs(x - y)[first], np.abs(x - y)[past - 1])
+    before, after = _slopes(y, first, past)
+    level = y[past] - y[first - 1] - 0.5 * (past - first + 1) * (before + after)
+    return bool((np.maximum(np.abs(level), np.abs(after - before)) <= BESIDE * size).all())
+
+
+def _slopes(x: Array, first: NDArray[np.intp], past: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Change of x in a row, before row `first` and from row `past` on."""
+    return 0.5 * (x[first - 1] - x[first - 3]), 0.5 * (x[past + 2] - x[past])
+
+
+def _change_of_slope(x: Array, first: NDArray[np.intp], past: NDArray[np.intp]) -> Array:
+    before, after = _slopes(x, first, past)
+    return np.abs(after - before)
