@@ -24,8 +24,9 @@ NEAR = 7
 GAP = 4.0
 #: most of the readings that are spikes: of more, seven rows hold four too often
 MOST = 0.05
-#: most successive spikes: an impact or a stretch without signal lasts longer
-LONGEST = 2
+#: most successive spikes: an impact or a stretch without signal lasts longer. Of many spikes,
+#: three follow one another by chance; then so do as many as are expected in `BY_CHANCE` records
+LONGEST, BY_CHANCE = 2, 0.01
 #: fewest readings that show what is usual
 FEWEST = 64
 #: part of its distance by which level and slope on both sides of a spike may differ at most: at
@@ -61,7 +62,7 @@ def find_spikes(x: Array, step: float) -> Mask:
     none = np.zeros(len(x), dtype=bool)
     if len(x) < FEWEST:
         return none
-    off = np.abs(x - median_filter(x, NEAR, mode="nearest"))
+    off = np.abs(x - _course(x))
     order = np.argsort(-off, kind="stable")[: int(MOST * len(x)) + 1]
     size = np.maximum(off[order], max(step, np.finfo(float).tiny))
     for last in np.flatnonzero(size[:-1] >= GAP * size[1:])[::-1]:
@@ -100,15 +101,28 @@ def _lagrange(nodes: NDArray[np.intp], values: Array) -> float:
     return float(np.dot(weights, values))
 
 
+def _course(x: Array) -> Array:
+    """The median of the rows about each reading (n,); at the ends the parabola through medians."""
+    course, half = median_filter(x, NEAR), NEAR // 2
+    nodes = half + NEAR * np.arange(3)
+    for row in range(half):
+        first, last = course[nodes], course[-1 - nodes]
+        course[row], course[-1 - row] = _lagrange(nodes - row, first), _lagrange(nodes - row, last)
+    return course
+
+
 def _are_lone(x: Array, spikes: Mask) -> bool:
     """Whether each run of spikes is short, and the readings beside it go on as if without it."""
     first, past = runs_of(spikes)
-    if (past - first > LONGEST).any():
+    longest = int((past - first).max())
+    if longest > LONGEST and len(x) * float(spikes.mean()) ** longest < BY_CHANCE:
         return False
     y = fill_spikes(x, spikes)
-    # beside the ends of the record only the size counts
+    # beside the ends of the record only the size counts: a first reading alone may be a step
     inner = (first >= 3) & (past <= len(x) - 3)
     first, past = first[inner], past[inner]
+    if not len(first):
+        return False
     size = np.minimum(np.abs(x - y)[first], np.abs(x - y)[past - 1])
     before, after = _slopes(y, first, past)
     level = y[past] - y[first - 1] - 0.5 * (past - first + 1) * (before + after)
