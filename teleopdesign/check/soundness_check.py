@@ -6,9 +6,10 @@ from typing import Literal
 
 import numpy as np
 
-from ..diagnose.constant_force import tells_nothing
+from ..diagnose.constant_force import lacks_scale
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
+from ..diagnose.silent_records import why_silent
 from ..errors import ExperimentError
 from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
@@ -56,8 +57,10 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
         prepared = prepare(part)
     except ExperimentError as problem:
         return (*findings, _report_skipped(str(problem), "warning"))
-    if tells_nothing(prepared.stretches, model):
+    if lacks_scale(prepared.stretches, model):
         return (*findings, _constant_force())
+    if silent := why_silent(prepared, model):
+        return (*findings, _report_skipped(silent.rstrip("."), "warning"))
     mixed = list(check_mixed_columns(part))
     if mixed:
         return (*findings, *mixed, _report_skipped("first make the columns agree", "note"))

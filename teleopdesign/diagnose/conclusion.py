@@ -91,7 +91,7 @@ def conclude(
         set_aside=_select_left_out(set_aside, rungs),
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
     )
-    if diagnosis.tells_nothing:
+    if diagnosis.why_silent:
         return replace(diagnosis, verdict="undecided")
     named = probable(diagnosis, criteria=criteria)
     diagnosis = replace(diagnosis, rungs=tuple(_leave_unnamed(r, named) for r in rungs))

@@ -23,7 +23,7 @@ def is_constant(stretches: Sequence[Stretch]) -> bool:
     return all(map(hardly_varies, (*forces, sizes)))
 
 
-def tells_nothing(stretches: Sequence[Stretch], model: Model) -> bool:
+def lacks_scale(stretches: Sequence[Stretch], model: Model) -> bool:
     """Whether a constant force is all that is known: then no effect can be told from friction."""
     inertias = [v for name, v in model.parameters.items() if name.endswith(".inertia")]
     return not any(v.fixed and v.value > 0.0 for v in inertias) and is_constant(stretches)

@@ -34,6 +34,12 @@ class Criteria:
     #: beside each other: by more, what is left in floors must not rise. Higher: true effects are
     #: refused; lower: a tip that moves less at high frequencies is named
     weakened: float = 0.8
+    #: part of the squares of a measured acceleration from which jitter of the clock leaves nothing
+    #: to tell: an estimated inertia is smaller by this part. Of simulated devices jitter makes 0.01
+    #: to 0.20 of them where it is a tenth of a row, 0.17 to 0.73 where it is half a row; 0.003 at
+    #: most on eight recordings of real machines. Higher: tips are named that weaken the jitter;
+    #: lower: effects are missed that its floor leaves visible
+    jitter: float = 0.25
     #: part of the squares before from which a gain counts: less is no answer to where a model fails
     relevant: float = 0.03
     #: standard deviations of a difference below which two fits explain the records equally well.

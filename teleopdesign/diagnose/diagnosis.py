@@ -11,7 +11,6 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate, list_look_alikes
-from .constant_force import tells_nothing
 from .decision import verdict
 from .fit import Fit
 from .ladder_text import ladder_html, ladder_text, sentence
@@ -21,6 +20,7 @@ from .one_moment import Moment
 from .prepare import Prepared
 from .ranking import Ranking
 from .rung import Rung
+from .silent_records import why_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -135,9 +135,9 @@ class Diagnosis(ByValue):
         return self.named if self.verdict == "effects_missing" else ()
 
     @property
-    def tells_nothing(self) -> bool:
-        """Whether the force is constant and no inertia is known: no effect was a candidate."""
-        return tells_nothing(self.prepared.stretches, self.rungs[0].fit.model)
+    def why_silent(self) -> str:
+        """Why the records tell no effect, so that none was a candidate; "": they may tell one."""
+        return why_silent(self.prepared, self.rungs[0].fit.model)
 
     def reason_set_aside(self, key: tuple[str, str]) -> str:
         """Why an effect (name, place) was accepted and removed again; "" for all other effects."""

@@ -13,7 +13,6 @@ from ..model import Model
 from .adequacy import Floors, allowed_floor, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
-from .constant_force import tells_nothing
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .diagnosis import SetAside
@@ -26,6 +25,7 @@ from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
+from .silent_records import why_silent
 from .stated_fit import estimate_stated
 
 
@@ -171,7 +171,7 @@ def search_for(
     """
     whole = prepare(experiment)
     stated = model or Model.from_experiment(experiment)
-    if tells_nothing(whole.stretches, stated):
+    if why_silent(whole, stated):
         stated = restrict_candidates((), stated)
     return LadderSearch(
         experiment=experiment,

@@ -11,7 +11,7 @@ from ..notebook import html_table
 from ..quantity import unit_after_number, unit_of
 from ..standard_error import with_standard_error
 from .adequacy import records_differ
-from .constant_force import constant_force_line, describe_constant_force
+from .constant_force import constant_force_line
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
@@ -270,8 +270,8 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
         return f"verdict: undecided, {names}: these records do not decide.{rest}"
-    if diagnosis.tells_nothing:
-        return f"verdict: undecided. {describe_constant_force()}"
+    if silent := diagnosis.why_silent:
+        return f"verdict: undecided. {silent}"
     return (
         f"verdict: undecided. No candidate effect explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"

@@ -6,8 +6,9 @@ changes these values may seem to explain the error. So the model is estimated on
 together, with the effect and without it. The effect must still leave surely less of the check
 records.
 
-Noise of the readings: a structure transmits less of the noise in an acceleration. The error may
-    then be smaller, and yet be more noise floors of the new model.
+Errors of the readings: a structure transmits less of the noise in an acceleration. The error may
+    then be smaller, and yet be more noise floors of the new model. In a record with few events (a
+    motor that sticks and slips under a coarse encoder) a lag may follow the errors themselves.
 """
 
 from __future__ import annotations
@@ -79,14 +80,22 @@ def stands_in_for_readings(
 
     before, after: the noise floors of the two models, as drawn
     Where the readings alone explain the error of the base, an effect that weakens their error must
-    leave surely fewer noise floors.
+    leave surely fewer noise floors, and no effect may leave less than the readings alone would:
+    such an effect follows their errors.
     returns: None where the effect leaves fewer noise floors too, or only noise of a base that
         leaves more
     """
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    if is_of_readings(left, criteria) and after.drawn < criteria.weakened * before.drawn:
+    of_readings = is_of_readings(left, criteria)
+    if of_readings and leaves < criteria.weakened:
+        reason = (
+            f"leaves {leaves:.2g} noise floors, less than the readings alone would leave: it only "
+            f"follows their errors ({left:.2g} floors are left without it)"
+        )
+        return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
+    if of_readings and after.drawn < criteria.weakened * before.drawn:
         explains = leaves <= criteria.weakened * left
     else:
         explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left

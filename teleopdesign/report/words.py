@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 
-from ..diagnose.constant_force import describe_constant_force
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.ladder_text import floors_apart
@@ -147,8 +146,8 @@ def verdict(diagnosis: Diagnosis) -> str:
         others = f" {join_names(less)} {helps} less likely than not." if less else ""
         added_words = "this effect" if len(added) == 1 else "all added effects"
         return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
-    if diagnosis.tells_nothing:
-        return f"Undecided. {describe_constant_force()}"
+    if silent := diagnosis.why_silent:
+        return f"Undecided. {silent}"
     if not added:
         return (
             "Undecided: something is missing, but no candidate effect explains the remaining "

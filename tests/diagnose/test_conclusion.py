@@ -71,7 +71,7 @@ def concluded(monkeypatch):
         }
         for name, value in stubs.items():
             monkeypatch.setattr(module, name, value)
-        monkeypatch.setattr(Diagnosis, "tells_nothing", False)
+        monkeypatch.setattr(Diagnosis, "why_silent", "")
         monkeypatch.setattr(module, "_evaluate_on_all", lambda fit, whole: on_whole(fit))
         search, windows = table.search(), object()
         search.prepared = windows if on_whole else None

@@ -7,13 +7,17 @@ import pytest
 from diagnose.made_records import jittered
 from diagnose.simulated_cases import write_simulated
 
-from teleopdesign import load_experiment
+from teleopdesign import check_experiment, find_missing, load_experiment
+from teleopdesign.diagnose import jitter
 from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import objection
+from teleopdesign.diagnose.jitter import jitter_share
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranked
 from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.diagnose.silent_records import why_silent
 from teleopdesign.effects import find_effect
 from teleopdesign.measurement.encoder import sampling_jitter
 from teleopdesign.model import Model
@@ -56,3 +60,32 @@ def test_a_fast_motion_without_jitter_shows_none(share):
     t = np.arange(8000.0)
     x = np.sin(2 * np.pi * 0.0008 * t) * np.sin(2 * np.pi * share * t)
     assert sampling_jitter(x, 1e-6, 1.0) < 0.01
+
+
+@pytest.mark.parametrize("rows", [0.1, 0.3])
+def test_the_share_of_jitter_is_what_newly_drawn_readings_add_to_the_acceleration(adequate, rows):
+    """`jitter_share` is computed from gains; here the readings are drawn again."""
+    jitters = jittered(adequate, rows)
+    prepared, still = prepare(jitters), prepare(adequate)
+    pairs = zip(prepared.of("fit"), still.of("fit"), strict=True)
+    added = whole = 0.0
+    for late, exact in pairs:
+        ours, true = (s.motion.lowpassed(s.motion.acceleration, s.keep) for s in (late, exact))
+        added, whole = added + np.sum((ours - true) ** 2), whole + np.sum(ours**2)
+    assert jitter_share(prepared.of("fit"), jitters) == pytest.approx(added / whole, rel=0.5)
+    assert jitter_share(still.of("fit"), adequate) == 0.0
+
+
+def test_records_with_much_jitter_tell_no_effect(adequate, monkeypatch):
+    """At half a row of jitter and 500 Hz a tip behind a spring was named, which weakens it."""
+    late = jittered(adequate, 0.3)
+    share = jitter_share(prepare(late).of("fit"), late)
+    monkeypatch.setattr(jitter, "CRITERIA", replace(CRITERIA, jitter=0.99 * share))
+    diagnosis = find_missing(late)
+    assert diagnosis.verdict == "undecided" and not diagnosis.missing
+    assert len(diagnosis.last.ranked) == 0
+    assert "taken at other moments than their rows say" in str(diagnosis)
+    warning = [f for f in check_experiment(late) if "taken at other moments" in f.sentence]
+    assert [f.concern for f in warning] == ["warning"]
+    monkeypatch.setattr(jitter, "CRITERIA", replace(CRITERIA, jitter=1.01 * share))
+    assert why_silent(prepare(late), Model.from_experiment(late)) == ""
