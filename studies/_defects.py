@@ -51,14 +51,16 @@ def _lost(table: Table, rng: Any, strength: float) -> Table:
 
 
 def _repeated(table: Table, rng: Any, strength: float) -> Table:
-    """A row is the one before it, under its own time."""
-    again = np.flatnonzero(rng.random(len(table["t"])) < strength)
-    again = again[again > 0]
-    out = {name: y.copy() for name, y in table.items()}
-    for name in out:
-        if name != "t":
-            out[name][again] = table[name][again - 1]
-    return out
+    """A row is the one logged before it, under its own time."""
+    again = rng.random(len(table["t"])) < strength
+    again[0] = False
+    return _held(table, again)
+
+
+def _held(table: Table, rows: np.ndarray) -> Table:
+    """Rows that hold the last row before them, under their own times."""
+    last = np.maximum.accumulate(np.where(rows, 0, np.arange(len(rows))))
+    return {name: y if name == "t" else y[last] for name, y in table.items()}
 
 
 def _jittered(table: Table, rng: Any, strength: float) -> Table:
@@ -91,9 +93,7 @@ def _clipped(table: Table, rng: Any, strength: float) -> Table:
 
 
 def _dead(table: Table, rng: Any, strength: float) -> Table:
-    dead = _spans(rng, len(table["t"]), strength)
-    held = np.maximum.accumulate(np.where(dead, 0, np.arange(len(dead))))
-    return {name: y if name == "t" else y[held] for name, y in table.items()}
+    return _held(table, _spans(rng, len(table["t"]), strength))
 
 
 def _humming(table: Table, rng: Any, strength: float) -> Table:

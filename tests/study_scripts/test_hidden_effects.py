@@ -10,7 +10,7 @@ import hidden_effects
 import numpy as np
 import pytest
 from _campaign import plan, run_campaign, write_plan
-from _defects import log_as_loggers_do
+from _defects import DEFECTS, log_as_loggers_do
 from _recovery_tables import Campaign, collect, main_table, row_of
 from _scoring import (
     Answer,
@@ -351,3 +351,12 @@ def test_half_of_a_campaign_with_loggers_is_logged_so():
     assert len(shifts) == 100 and min(shifts) >= -1 and shifts.count(1.0) >= 30
     bare = plan(200, seed=3)
     assert [replace(c, logger=None) for c in cases] == bare
+
+
+def test_a_repeated_row_holds_the_row_logged_before_it():
+    table = {"t": np.arange(400.0), "x": np.arange(400.0)}
+    (spoil,) = [d.spoil for d in DEFECTS if d.name == "repeated samples"]
+    x = spoil(table, np.random.default_rng(0), 0.3)["x"]
+    again = x != table["x"]
+    assert np.array_equal(x[1:][again[1:]], x[:-1][again[1:]])
+    assert 90 < again.sum() < 150 and (again[1:] & again[:-1]).any()
