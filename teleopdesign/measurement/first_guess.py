@@ -58,6 +58,18 @@ class FirstGuess:
     errors: tuple[float, float, float]
     left: float = 0.0
 
+    @property
+    def start_of_inertia(self) -> float:
+        """A positive inertia from which a search may begin; 0 where the estimate is none.
+
+        Where friction makes nearly all of the force, an estimate may come out negative. If it is
+        not surely so, the search begins at its standard error.
+        """
+        if self.inertia > 0.0:
+            return self.inertia
+        error = self.errors[0]
+        return error if np.isfinite(error) and self.inertia + _SURELY * error > 0.0 else 0.0
+
 
 _NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
 

@@ -183,12 +183,12 @@ def build_experiment(
 def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:
     """The body, with inertia and first friction values from its records if it has no inertia.
 
-    raises ExperimentError: the motion does not show a positive inertia
+    raises ExperimentError: the motion shows a negative inertia, or none
     """
     if body.inertia is not None:
         return body
     guess = guess_from(records, body.name)
-    if not guess.inertia > 0:
+    if not guess.start_of_inertia > 0:
         raise ExperimentError(
             f"{_WHERE}: the motion tells no inertia of {body.name} ({guess.inertia:.3g} "
             f"{unit_of('inertia', body.axis)}): give inertia, or look at signs and units of "
@@ -204,7 +204,7 @@ def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyD
         if name in effects and not effects[name] and number > 0:
             effects[name] = {parameter: value(number, f"effects.{name}.{parameter}")}
     return BodyDescription(
-        body.name, body.axis, value(guess.inertia, "inertia"), effects, body.where
+        body.name, body.axis, value(guess.start_of_inertia, "inertia"), effects, body.where
     )
 
 

@@ -69,7 +69,9 @@ def make_folder(
     first = _first_values(survey, folder, records) if inertia is None else None
     if first is not None and not first.inertia > 0:
         survey.guesses["model.device.inertia"] = (
-            "the motion tells no inertia: look at signs and units of position and force"
+            "the motion hardly tells the inertia: a start of the size of its error"
+            if first.start_of_inertia > 0
+            else "the motion tells no inertia: look at signs and units of position and force"
         )
     text = experiment_text(
         survey, records, title=title, inertia=inertia, first=first, effects=effects
@@ -192,7 +194,7 @@ def experiment_text(
     if inertia is not None:
         lines.append(f'inertia = {{ value = {inertia!r}, unit = "{mass}", fixed = true }}')
     elif first is not None:
-        value = _round(first.inertia) if first.inertia > 0 else 1.0
+        value = _round(first.start_of_inertia) if first.start_of_inertia > 0 else 1.0
         lines.append(
             f'inertia = {{ value = {value!r}, unit = "{mass}" }}'.ljust(60)
             + "# a start, from the log; fixed = true if you know it"

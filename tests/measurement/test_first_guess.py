@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+import teleopdesign as td
 from teleopdesign.measurement.first_guess import (
+    FirstGuess,
     balance_factor,
     explain_force,
     explain_forces,
@@ -181,3 +183,35 @@ def test_each_value_has_the_error_by_which_it_scatters():
     wide = np.array(explain_force(clean + noise, 2 * SWING, H).errors)
     assert twice / one == pytest.approx([2.0] * 3, rel=0.1)
     assert wide / one == pytest.approx([0.5, 1.0, 0.5], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("inertia", "error", "start"),
+    [
+        (0.2, 0.5, 0.2),
+        (-0.1, 0.04, 0.04),
+        (-0.1, 0.03, 0.0),
+        (0.0, np.inf, 0.0),
+        (-1.0, np.inf, 0.0),
+    ],
+)
+def test_a_search_begins_at_the_error_of_an_inertia_that_is_not_surely_negative(
+    inertia, error, start
+):
+    guess = FirstGuess(inertia, 1.0, 1.0, 0.9, (error, 0.1, 0.1))
+    assert guess.start_of_inertia == start
+
+
+def test_a_slow_motor_with_much_friction_gets_a_start_of_its_inertia():
+    """Friction of 1 N m over 1 mN m of inertia: the estimate may come out negative."""
+    t = np.arange(4000) / 200.0
+    x = np.sin(0.5 * t)
+    noise = 0.1 * np.random.default_rng(8).standard_normal(len(t))
+    starts = []
+    for sign in (1.0, -1.0):  # of the noise: one of the two estimates is too small
+        u = np.tanh(50 * np.cos(0.5 * t)) - 4e-3 * 0.25 * x + sign * noise
+        table = {"t": t, "x": x, "u": u}
+        names = {"time": "t", "position": "x", "actuator_force": "u"}
+        made = td.experiment(table, axis="revolute", **names)
+        starts.append(made.bodies["device"].inertia.value)
+    assert min(starts) > 0.0 and max(starts) < 1.0
