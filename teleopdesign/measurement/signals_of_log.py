@@ -123,8 +123,8 @@ def _fill_spikes(
     name = key.removeprefix("device.")
     done = ReadingStep(
         file,
-        f"{name}: {count_of(count, 'reading')} far off the course of the others, "
-        f"{float(f'{worst / np.std(filled):.2g}'):g} standard deviations at most",
+        f"{name}: {count_of(count, 'reading')} far off the course of the others, the worst by "
+        f"{float(f'{worst / np.std(filled):.2g}'):g} standard deviations",
         "read as lost, filled by the curve through their neighbours",
         f"{100 * count / len(values):.2g} % of the readings",
         topic="outliers",
