@@ -32,6 +32,8 @@ MAKER = Path(__file__).resolve().parents[1] / "tests" / "hidden"
 ROWS = (-1.0, -0.3, 0.0, 0.3, 1.0)
 #: effects that are missing in the other half
 EFFECTS = ("stribeck", "presliding", "cogging", "spring", "coulomb_asymmetry")
+#: among which a quick run searches: what a late log was once mistaken for, and what is missing
+QUICK_EFFECTS = ("stribeck", "transmission_compliance")
 #: cases with an adequate model, and seed of the first
 ADEQUATE, SEED = 50, 5000
 
@@ -72,11 +74,11 @@ def drawn(folder: Path, effect: str, seed: int) -> td.Experiment | None:
 
 def run(quick: bool = False) -> xr.Dataset:
     """A row a case: what is missing, what was named, shift written and estimated (rows)."""
-    count, rows = (2, ROWS[-1:]) if quick else (ADEQUATE, ROWS)
+    count, rows = (1, ROWS[-1:]) if quick else (ADEQUATE, ROWS)
+    among = QUICK_EFFECTS if quick else None
     plan = [("", SEED + k, rows[k % len(rows)]) for k in range(count)]
     plan += [
-        (EFFECTS[k % len(EFFECTS)], SEED + count + k, rows[k % len(rows)])
-        for k in range(1 if quick else count)
+        (EFFECTS[k % len(EFFECTS)], SEED + count + k, rows[k % len(rows)]) for k in range(count)
     ]
     cases = []
     with tempfile.TemporaryDirectory() as folder:
@@ -84,7 +86,7 @@ def run(quick: bool = False) -> xr.Dataset:
             experiment = drawn(Path(folder) / str(k), effect, seed)
             if experiment is None:
                 continue
-            diagnosis = td.find_missing(logged(experiment, shift))
+            diagnosis = td.find_missing(logged(experiment, shift), among=among)
             (late,) = diagnosis.model.record_shift.values()
             named = "+".join(c.effect.name for c in diagnosis.missing)
             estimated = late.value / experiment.records[0].sample_time
@@ -124,4 +126,4 @@ def plot(data: xr.Dataset) -> Figure:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__ or "", run, quick="three cases", plot=plot)
+    write_study(__file__, __doc__ or "", run, quick="two cases, among few effects", plot=plot)

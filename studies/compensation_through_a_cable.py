@@ -115,9 +115,9 @@ def presliding_map(softness: np.ndarray, levels: np.ndarray) -> np.ndarray:
 def run(*, quick: bool = False) -> xarray.Dataset:
     """Limits over sigma_D, and the map with presliding; quick: fewer points, a coarser grid."""
     fine = np.geomspace(0.3, 30.0, 120)
-    softness = np.geomspace(0.3, 30.0, 5 if quick else 13)
-    across = np.geomspace(0.3, 30.0, 8 if quick else 28)
-    levels = np.linspace(0.1, 3.5, 8 if quick else 35)
+    softness = np.geomspace(0.3, 30.0, 3 if quick else 13)
+    across = np.geomspace(0.3, 30.0, 4 if quick else 28)
+    levels = np.linspace(0.1, 3.5, 4 if quick else 35)
     steps, points = (5, 25) if quick else (9, 41)
     limits = np.array([limit_by_cycles(CABLE * s, steps=steps) for s in softness])
     stored = np.array([limit_by_storage(CABLE * s, steps=steps, points=points) for s in softness])

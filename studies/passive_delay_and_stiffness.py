@@ -147,8 +147,8 @@ def limit(kind: str, late: float) -> float:
 
 
 def run(*, quick: bool = False) -> xarray.Dataset:
-    """Both maps with both simulated onsets; quick: 5 x 5 claims, 4 delays."""
-    n, m, steps = (5, 4, 7) if quick else (16, 12, 10)
+    """Both maps with both simulated onsets; quick: 4 x 4 claims, 2 delays."""
+    n, m, steps = (4, 2, 7) if quick else (16, 12, 10)
     stiffness = np.geomspace(30.0, 30000.0, n)
     data: dict[str, object] = {}
     statuses, contradictions, nearest = [], 0, []

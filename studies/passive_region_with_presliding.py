@@ -71,8 +71,8 @@ def gives_out(softness: float, share: float, tested: list[Strokes]) -> bool:
 
 
 def run(*, quick: bool = False) -> xarray.Dataset:
-    """Both verdicts over the map; quick: 9 x 9 points."""
-    n = 9 if quick else 31
+    """Both verdicts over the map; quick: 5 x 5 points."""
+    n = 5 if quick else 31
     softness, share = np.linspace(0.05, 1.25, n), np.linspace(0.05, 1.25, n)
     proofs = region(claim, softness, share)
     tested = motions(5 if quick else 8)

@@ -123,8 +123,8 @@ def onset(late: int, period: float, *, free: bool, steps: int) -> float:
 
 
 def run(*, quick: bool = False) -> xarray.Dataset:
-    """Both maps with the simulated onsets; quick: 6 x 6 claims, 3 periods."""
-    n, m, steps = (6, 3, 7) if quick else (50, 14, 10)
+    """Both maps with the simulated onsets; quick: 4 x 4 claims, 2 periods."""
+    n, m, steps = (4, 2, 7) if quick else (50, 14, 10)
     period, stiffness = np.geomspace(1e-4, 1e-2, n), np.geomspace(100.0, 3e4, n)
     simulated = np.geomspace(1e-4, 1e-2, m)
     status, limits, onsets = [], [], np.full((2, len(LATE), m), np.nan)

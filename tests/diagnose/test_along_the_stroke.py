@@ -106,5 +106,5 @@ def test_of_one_sine_no_gain_over_the_place_is_named(tmp_path):
         tmp_path, {"fit": [(12.0, sine)], "check": [(8.0, sine)]}, force, effects=FRICTION,
         step=2e-5, noise=2e-3, bandwidth=60, inertia=INERTIA, rate=1000, fixed=False,
     )  # fmt: skip
-    diagnosis = td.find_missing(td.load_experiment(tmp_path))
+    diagnosis = td.find_missing(td.load_experiment(tmp_path), among=CANDIDATES)
     assert "position_dependent_gain" not in named(diagnosis)

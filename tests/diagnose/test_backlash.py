@@ -155,12 +155,12 @@ def test_a_gap_is_detected_with_its_width(case):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("effect", ["transmission_compliance", "spring", None])
+@pytest.mark.parametrize("effect", ["transmission_compliance", None])
 def test_no_gap_is_named_where_there_is_none(effect, tmp_path):
     """Beside noise a gap may look determined; what counts is that no record supports it."""
     experiment = load_experiment(write_simulated(tmp_path / "case", effect, seed=5))
     stated = Model.from_experiment(experiment)
-    known = {n: EFFECTS[n] for n in ("backlash", "transmission_compliance", "spring")}
+    known = {n: EFFECTS[n] for n in ("backlash", "transmission_compliance")}
     known |= {n: EFFECTS[n] for n, _ in stated.effects}
     diagnosis = find_missing(experiment, Model.from_experiment(experiment, known))
     assert [c.effect.name for c in diagnosis.missing] == [effect] * (effect is not None)

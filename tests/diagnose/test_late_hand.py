@@ -23,6 +23,8 @@ from teleopdesign.effects import EFFECTS
 HAND = name_of_hand("device")
 #: the first one whose device is held by a hand of measured force
 SEED = 1
+#: what a late force resembles, and what it does not
+LATE = ("actuator_lag", "actuation_delay", "added_inertia", "stribeck", "viscous")
 #: a late force of the hand was named one of these
 KNOWN = {n: EFFECTS[n] for n in (*FEW, "actuator_lag", "actuation_delay")}
 
@@ -128,6 +130,6 @@ def test_what_is_missing_keeps_its_name_beside_a_hand_in_time_or_late(tmp_path, 
     """A lag of the command is no lag of the sensor: the motion tells which force is late."""
     experiment = td.load_experiment(write_simulated(tmp_path / "case", effect, seed=SEED))
     for logged in (experiment, filtered(experiment, 5e-3)):
-        diagnosis = td.find_missing(logged, td.Model.from_experiment(logged, KNOWN))
+        diagnosis = td.find_missing(logged, among=LATE)
         assert [c.effect.name for c in diagnosis.missing] == [effect]
         assert (HAND in diagnosis.model.record_shift) == (logged is not experiment)

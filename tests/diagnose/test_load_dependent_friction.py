@@ -69,6 +69,11 @@ def test_a_search_leaves_its_direction_to_the_actuators_gain():
     assert held == set(EFFECT.parameters) - {"coefficient"}
 
 
+#: friction that grows with something, and a command that does not arrive whole
+ALIKE = (
+    "load_dependent_friction", "actuator_gain", "position_dependent_friction", "stribeck",
+    "coulomb_asymmetry", "quadratic_drag", "spring", "bias",
+)  # fmt: skip
 #: N m s/rad; back-EMF of a motor that is driven by a voltage
 BACK_EMF = 1.2
 
@@ -91,7 +96,7 @@ def test_a_motor_driven_by_a_voltage_has_load_dependent_friction_at_its_output(t
         tmp_path / "servo", records, needed_by_voltage, effects=user, step=1e-5, noise=0.005,
         inertia=INERTIA, rate=200,
     )  # fmt: skip
-    answer = td.diagnose(load_experiment(tmp_path / "servo"))
+    answer = td.diagnose(load_experiment(tmp_path / "servo"), among=ALIKE)
     assert [(c.effect.name, c.at) for c in answer.named] == [(EFFECT.name, "device")]
     p = answer.model.parameters
     assert p[f"device.{EFFECT.name}.output_share"].value == 1.0

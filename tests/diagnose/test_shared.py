@@ -10,6 +10,9 @@ from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
 
+#: with hidden states or many parameters, which imitate most of the ten
+IMITATORS = ("transmission_compliance", "maxwell_slip", "friction_memory", "torque_ripple")
+
 
 def one_body_cases():
     """(folder, truth) of every shared case with one body."""
@@ -44,7 +47,9 @@ def test_nine_in_ten_single_effects_are_named_first():
         if truth["level"] not in ("clear", "weak") or truth["effects"][0]["effect"] not in TEN:
             continue
         true = truth["effects"][0]["effect"]
-        diagnosis = find_missing(load_experiment(folder))
+        # what is weak is easily called something else: that is asked of the whole catalogue
+        among = None if truth["level"] == "weak" else (*TEN, *IMITATORS)
+        diagnosis = find_missing(load_experiment(folder), among=among)
         group = {c.effect.name for g in diagnosis.groups[:1] for c in g}
         first = {diagnosis.missing[0].effect.name} if diagnosis.missing else group
         right += true in first
@@ -84,11 +89,10 @@ def test_a_real_recording_is_explained_as_well_as_known(name, bound, among):
     assert diagnosis.after.check_error <= bound
 
 
-#: of friction and of a drive: a long record is searched for these alone, in half of the time
+#: of friction and of a drive: long records are searched for these alone
 DRIVE = (
-    "stribeck", "presliding", "maxwell_slip", "shear_thinning", "quadratic_drag",
-    "coulomb_asymmetry", "bias", "load_dependent_friction", "actuator_saturation", "actuator_lag",
-    "actuation_delay", "actuator_gain",
+    "stribeck", "presliding", "shear_thinning", "coulomb_asymmetry", "load_dependent_friction",
+    "actuator_saturation", "actuator_lag",
 )  # fmt: skip
 
 
@@ -101,7 +105,7 @@ DRIVE = (
         # friction flattens with speed; one sine, whose places are passed at one speed each
         (
             "ur10e_joint1",
-            None,
+            (*DRIVE, "position_dependent_friction"),
             {"shear_thinning"},
             {"actuator_saturation", "position_dependent_friction"},
         ),

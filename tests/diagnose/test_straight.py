@@ -45,9 +45,7 @@ def test_bends_and_lines_are_recognised_by_their_laws():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("stiffness", "neutral"), [(0.6, 0.35), (1.4, -0.5), (0.8, 3.2), (0.8, -3.2)]
-)
+@pytest.mark.parametrize(("stiffness", "neutral"), [(0.6, 0.35), (0.8, -3.2)])
 def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
     diagnosis = diagnosed(tmp_path / "line", lambda x: stiffness * (x - neutral))
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
@@ -58,10 +56,9 @@ def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stif
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("neutral", [2.0, -2.0])
-def test_a_spring_on_a_slide_whose_zero_is_far_away_is_a_spring_and_a_constant(tmp_path, neutral):
+def test_a_spring_on_a_slide_whose_zero_is_far_away_is_a_spring_and_a_constant(tmp_path):
     """An absolute encoder: the position never comes near the zero of its log."""
-    diagnosis = diagnosed(tmp_path, lambda x: 0.6 * (x - neutral), prismatic=True)
+    diagnosis = diagnosed(tmp_path, lambda x: 0.6 * (x - 2.0), prismatic=True)
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
     assert diagnosis.rungs[-1].fit.check_error < 0.05
 

@@ -62,7 +62,7 @@ def fails_at(rng, shape, values, box, claim):
 
 
 @pytest.mark.slow
-@attacked(1, 25)
+@attacked(1, 10)
 def test_no_box_is_proved_in_which_a_mode_grows_or_energy_comes_out(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):

@@ -154,7 +154,7 @@ def judged(rng):
     return outcomes
 
 
-@attacked(0, 100)
+@attacked(0, 20)
 def test_no_motion_beats_a_claim_that_is_extended_to_a_device(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

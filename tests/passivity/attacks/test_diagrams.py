@@ -161,7 +161,7 @@ def chained(rng, system):
     return exact.rank() != (exact * exact).rank()
 
 
-@attacked(2, 40)
+@attacked(2, 15)
 def test_no_mode_grows_in_a_diagram_that_is_proved_at_all_its_ports(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()

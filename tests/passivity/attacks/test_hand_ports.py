@@ -95,7 +95,7 @@ def random_port(rng):
     return diagram, z, {f"Z_M.{n}" for n in bent}
 
 
-@attacked(4, 100)
+@attacked(4, 40)
 def test_a_hand_feels_the_impedance_that_the_equations_have(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

@@ -87,7 +87,7 @@ def random_box(rng, values):
 
 
 @pytest.mark.slow
-@attacked(4, 12)
+@attacked(4, 8)
 def test_no_box_with_dead_times_is_proved_stable_in_which_a_mode_grows(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

@@ -133,7 +133,7 @@ def gives_out(wave):
     return float(-(power @ weight) @ half)
 
 
-@attacked(12, 120)
+@attacked(12, 50)
 def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
@@ -158,7 +158,7 @@ def test_the_attacker_sees_a_residue_that_is_tilted_by_a_hair(tilt, square):
     assert active_point(rng, level) is None
 
 
-@attacked(2, 40)
+@attacked(2, 15)
 def test_no_port_that_gives_out_energy_has_a_storage_function(seed, number):
     pytest.importorskip("cvxpy", reason="the extra `lmi` is not installed")
     rng = np.random.default_rng(seed)

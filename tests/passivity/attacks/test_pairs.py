@@ -158,7 +158,7 @@ def alone(pair, compensated, acting):
     return acting[compensated] == 1 and acting[1 - compensated] == 0
 
 
-@attacked(8, 200)
+@attacked(8, 80)
 def test_no_motion_of_two_bodies_beats_friction_that_is_proved_with_its_cancellation(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

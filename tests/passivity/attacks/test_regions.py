@@ -63,7 +63,7 @@ def low_passes(rng):
     return region(claim, dampings, pushes), dampings, pushes, beaten
 
 
-@attacked(0, 200)
+@attacked(0, 80)
 def test_no_point_of_a_region_is_beaten_where_it_is_proved(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     while sum(counts.values()) < number:

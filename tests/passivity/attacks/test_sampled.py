@@ -154,7 +154,7 @@ def judged(rng, kind):
     return claim.status, value < -1e-11
 
 
-@attacked(0, 120)
+@attacked(0, 50)
 def test_no_motion_takes_energy_out_of_a_sampled_body_that_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
@@ -165,7 +165,7 @@ def test_no_motion_takes_energy_out_of_a_sampled_body_that_is_proved_passive(see
     assert counts["refuted", True] > 2 * counts["refuted", False]
 
 
-@attacked(2, 50)
+@attacked(2, 20)
 def test_no_two_motions_take_energy_out_of_a_sampled_coupling_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()
@@ -188,7 +188,7 @@ def test_no_two_motions_take_energy_out_of_a_sampled_coupling_that_is_proved(see
     assert counts["proved", False] > number / 8 and counts["refuted", True] > number / 8
 
 
-@attacked(2, 20)
+@attacked(2, 10)
 def test_walls_within_a_z_width_are_passive_and_walls_beyond_it_are_not(seed, number):
     rng = np.random.default_rng(seed)
     for _ in range(number):
@@ -214,7 +214,7 @@ def best_round(k, step, b, left, positions):
     return float(np.diag(best).max())
 
 
-@attacked(15, 400)
+@attacked(15, 160)
 def test_no_round_takes_energy_out_of_a_quantised_spring_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()

@@ -78,7 +78,7 @@ def fastest(rng, system):
     return worst
 
 
-@attacked(0, 25)
+@attacked(0, 10)
 def test_no_pole_grows_where_rods_with_a_shared_controller_are_proved(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):

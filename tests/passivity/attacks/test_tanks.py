@@ -56,7 +56,7 @@ def claimed(claim):
     return float(re.search(r"at most (\S+) J more", claim.statement).group(1))
 
 
-@attacked(6, 100)
+@attacked(6, 40)
 def test_no_channel_makes_tanks_give_out_more_than_the_claim_says(seed, number):
     rng, shares = np.random.default_rng(seed), []
     for k in range(number):

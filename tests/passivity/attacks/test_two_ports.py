@@ -289,7 +289,7 @@ def judged(rng, kind):
     return is_passive.status, stable.status, against is not None, unstable is not None
 
 
-@attacked(2, 40)
+@attacked(2, 15)
 def test_nothing_beats_a_two_port_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
@@ -304,7 +304,7 @@ def test_nothing_beats_a_two_port_that_is_proved(seed, number):
         assert of[k]["refuted", True] >= 3 * of[k]["refuted", False], of[k]
 
 
-@attacked(3, 50)
+@attacked(3, 20)
 def test_no_terminations_beat_a_delayed_spring_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()
