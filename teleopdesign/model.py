@@ -225,9 +225,10 @@ class Model:
         for place, body in self.bodies.items():
             numbers = {n: v.value for n, v in body.parameters.items()}
             for effect in body.effects:
-                if effect.order is None or effect.is_absent(body.numbers()):
-                    continue
                 ours = {p: numbers[f"{effect.name}.{p}"] for p in effect.parameters}
+                fixed = any(body.parameters[f"{effect.name}.{p}"].fixed for p in ours)
+                if effect.order is None or fixed or effect.is_absent(body.numbers()):
+                    continue
                 values |= {
                     f"{place}.{effect.name}.{p}": v
                     for p, v in effect.order(ours, numbers).items()

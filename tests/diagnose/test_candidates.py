@@ -123,6 +123,9 @@ def test_elements_that_may_change_places_go_softest_first(model, prepared):
     assert there["level_2"] == pytest.approx(0.2 * level)
     assert there["level_3"] == pytest.approx(0.29 * level), "what the others left of the level"
     assert ordered.in_order() is ordered
+    name = "device.maxwell_slip.stiffness_1"
+    held = mixed.with_values({name: replace(mixed.parameters[name], fixed=True)})
+    assert held.in_order() is held, "a value that a user holds stays where it is"
     errors = [force_error(one, prepared.of("fit")) for one in (mixed, ordered)]
     # the same law: only the order of its sum differs
     assert errors[0] == pytest.approx(errors[1], rel=1e-9)

@@ -9,6 +9,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagnose.corrected_fit import correct_fit
+from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
@@ -266,6 +267,34 @@ def test_a_correction_that_leaves_clearly_more_is_not_taken(rod, monkeypatch, ti
     floor = noise_floor(rod_fit.model, prepared, np.random.default_rng(0))
     correct_fit(search, rod_fit, floor)
     assert calls == [is_taken]
+
+
+@pytest.mark.parametrize("falls", [False, True])
+def test_the_final_fit_has_its_interchangeable_parts_in_order(rod, monkeypatch, falls):
+    """Slipping springs, softest first: a fit of all samples may have changed their order.
+
+    Where friction falls with the speed, the first of them falls, and they are not interchangeable.
+    """
+    rod_fit, prepared = rod
+    model = rod_fit.model if falls else rod_fit.model.without_effect("stribeck")
+    level = model.parameters["device.coulomb.level"].value
+    values = {f"stiffness_{i}": k for i, k in enumerate((4e4, 1e4, 2e4, 8e4), 1)}
+    values |= {f"level_{i}": part * level for i, part in ((2, 0.4), (3, 0.2), (4, 0.2))}
+    mixed = estimate(
+        model.with_effect("maxwell_slip", values=values), prepared, effort=EFFORTS.stay
+    )
+    module = import_module("teleopdesign.diagnose.corrected_fit")
+    monkeypatch.setattr(module, "with_reading_error", lambda fit, *_, **__: fit)
+    search = LadderSearch(prepared.experiment, prepared, prepared, mixed.model)
+    last = correct_fit(search, mixed, noise_floor(model, prepared, np.random.default_rng(0)))
+    names = [f"device.maxwell_slip.stiffness_{i}" for i in (1, 2, 3, 4)]
+    before, after = ([f.model.parameters[n] for n in names] for f in (mixed, last))
+    order = [0, 1, 2, 3] if falls else [1, 2, 0, 3]
+    assert [v.value for v in after] == pytest.approx([before[i].value for i in order])
+    # an element keeps its error; that of the first one depends on the others through the level
+    errors = [before[i].stderr for i in order]
+    assert [v.stderr for v in after] == pytest.approx(errors, rel=0.1)
+    assert last.fit_error == pytest.approx(mixed.fit_error, rel=1e-9)
 
 
 def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
