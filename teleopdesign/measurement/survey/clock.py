@@ -21,6 +21,9 @@ from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
+#: times as uneven as another column that a first column without a name may rise. Two: the stamps of
+#: a logger spread by a third of a step at most, the angle of a motor at ripple by its whole step
+FAR_LESS_EVEN = 2.0
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
 FEWEST_CHANGES = 3
 
@@ -101,10 +104,8 @@ def time_column(
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
         if scores[name] == 0.0:
-            name = next(iter(rising))
-            guesses["channels.time.column"] = (
-                f"{name!r} is read as the time: it is the first column that always rises"
-            )
+            name, why = _clock_without_name(rising)
+            guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
     if unit is None and _is_unit_of_time(name):
         unit = unit_of_text(bare_name(name))
@@ -113,6 +114,31 @@ def time_column(
         if why:
             guesses["channels.time.unit"] = why
     return name, unit
+
+
+def _clock_without_name(rising: Mapping[str, Array]) -> tuple[str, str]:
+    """The time among columns that always rise, where no name tells it, and why it is the time.
+
+    The first one, unless it rises far less evenly than another: the angle of a motor that turns one
+    way rises, too. A column that counts rows is the time only as the first one.
+    """
+    first, *others = rising
+    uneven = {n: _unevenness(rising[n]) for n in others if not _counts_rows(rising[n])}
+    even = min(uneven, key=lambda n: uneven[n], default=first)
+    if even != first and FAR_LESS_EVEN * uneven[even] < _unevenness(rising[first]):
+        return even, "the column that rises most evenly"
+    return first, "the first column that always rises"
+
+
+def _unevenness(x: Array) -> float:
+    """Median deviation of a column's steps from their median, over it; inf where that is zero."""
+    steps = np.diff(x[np.isfinite(x)])
+    usual = float(np.median(steps))
+    return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else float("inf")
+
+
+def _counts_rows(x: Array) -> bool:
+    return bool(np.all(np.diff(x[np.isfinite(x)]) == 1.0))
 
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:

@@ -60,7 +60,7 @@ def describe_forces(
     free = {
         n: c
         for n, c in survey.columns.items()
-        if n not in used and moves(c) and not rises(c.values)
+        if n not in used and moves(c) and not rises(c.readings)
     }
     free = {
         n: c
