@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import look
 
-from teleopdesign.measurement.survey.axes import of_another_axis
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.survey.axes import of_another_axis, same_but_axis
 from teleopdesign.measurement.survey.derivative import DERIVATIVE, is_mean_rate, rate_agreement
 
 RNG = np.random.default_rng(3)
@@ -63,6 +64,7 @@ def test_a_speed_about_its_mean_is_that_of_a_motion_one_way():
         ("column 2", "column 3", False),
         ("(2)", "(3)", False),
         ("CH1", "CH2", False),
+        ("signal_1", "signal_2", False),
         ("1", "2", False),
         ("q(2)", "tau(3)", True),
         ("joint1", "joint2", True),
@@ -72,3 +74,17 @@ def test_a_speed_about_its_mean_is_that_of_a_motion_one_way():
 )
 def test_numbers_of_columns_count_no_axes(one, other, apart):
     assert of_another_axis(one, other) == apart
+
+
+@pytest.mark.parametrize(("one", "other"), [("joint1", "joint2"), ("q_2 (rad)", "q_1 (rad)")])
+def test_the_position_of_another_joint_is_no_force(one, other):
+    """Two joints that move together explain each other's motion."""
+    t = 0.01 * np.arange(900)
+    q = np.sin(3.0 * t) + 0.2 * np.sin(8.0 * t)
+    twice = {"t": t, one: q, other: 0.1 * np.sign(np.cos(3.0 * t)) + 0.02 * q}
+    with pytest.raises(ExperimentError, match="found no column that could be a force"):
+        look(twice)
+    assert used(look({**twice, "tau": twice[other]}))["actuator_force"] == "tau"
+    # numbered columns of a logger may be anything
+    assert used(look({"t": t, "CH1": q, "CH2": 0.1 * np.gradient(np.gradient(q, t), t)}))
+    assert not same_but_axis("joint1", "joint1") and not same_but_axis("q1", "tau2")

@@ -24,7 +24,22 @@ _LETTERS = (("m", "s"), ("l", "f"), ("l", "r"))
 _STEM = re.compile(r"(?:^|[./])[^./]*$")
 _NUMBERS = re.compile(r"\d+")
 #: words of names that tell columns apart by their number only
-_COLUMNS = frozenset(("column", "col", "channel", "chan", "ch", "var", "spalte", "kanal"))
+_COLUMNS = frozenset(
+    (
+        "column",
+        "col",
+        "channel",
+        "chan",
+        "ch",
+        "var",
+        "signal",
+        "data",
+        "value",
+        "spalte",
+        "kanal",
+        "wert",
+    )
+)
 
 
 def stand_together(one: str, other: str) -> bool:
@@ -44,6 +59,13 @@ def _axis_numbers(name: str) -> tuple[str, ...]:
     if _COLUMNS.issuperset(words_of(name)):
         return ()
     return tuple(_NUMBERS.findall(bare_name(name)))
+
+
+def same_but_axis(one: str, other: str) -> bool:
+    """Whether two names differ in the number of their axis only, "joint1" and "joint2"."""
+    numbers = {_axis_numbers(name) for name in (one, other)}
+    stems = {_NUMBERS.sub("#", bare_name(name)) for name in (one, other)}
+    return len(numbers) == 2 and () not in numbers and len(stems) == 1
 
 
 def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
