@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from measurement.columns_by_hand import look
 
 from teleopdesign.measurement.tables import open_log, read_columns
 from teleopdesign.measurement.wrapped_stamps import unwrap_stamps
@@ -63,6 +64,18 @@ def test_seconds_that_turn_late_beside_midnight_and_rows_without_a_stamp():
         "the second turns late in 4 rows",
         "the time of day begins anew at midnight",
     ]
+
+
+def test_a_clock_with_late_seconds_is_the_time_beside_a_counter():
+    """Of rows each 20 ms a fiftieth goes back in time, where no time may."""
+    _, shown, _ = clock(1.0, 24.7)
+    rows = np.sort(np.r_[np.arange(0, 1000, 4), np.flatnonzero(np.diff(shown) < 0) + 1])
+    rows = np.unique(rows)
+    t = SINCE[rows]
+    columns = {"Timestamp": shown[rows], "Step": 1e3 * t, "theta": np.sin(9.0 * t)}
+    survey = look({**columns, "torque": np.sign(np.cos(9.0 * t)) + np.sin(9.0 * t)})
+    assert survey.channels["time"]["column"] == "Timestamp"
+    assert survey.duration == pytest.approx(SINCE[rows[-1]] - SINCE[0])
 
 
 def test_times_of_day_in_a_file_are_read_so(tmp_path):

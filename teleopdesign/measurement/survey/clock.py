@@ -16,7 +16,7 @@ from ..numbers_in_cells import holds_dates, numbers_of
 from ..signed_numbers import sign_code_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
-from ..wrapped_stamps import seconds_since_first
+from ..wrapped_stamps import seconds_since_first, unwrap_stamps
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
@@ -89,7 +89,7 @@ def time_column(
     """The name of the time column, None if there is none, and its unit."""
     if choices.sample_rate is not None:
         return None, "s"
-    rising = {n: x for n, x in raw.items() if rises(x)}
+    rising = {n: x for n, x in raw.items() if rises(x) or _rises_as_clock(n, x, log)}
     rising = rising or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
     if choices.time is not None:
         name = choices.time
@@ -139,6 +139,13 @@ def _unevenness(x: Array) -> float:
 
 def _counts_rows(x: Array) -> bool:
     return bool(np.all(np.diff(x[np.isfinite(x)]) == 1.0))
+
+
+def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
+    """Whether a time by its name or unit rises once its wraps and late seconds are mended."""
+    unit = log.units.get(name)
+    timed = unit is not None and unit != "counts" and measures(unit, "time")
+    return (timed or likeness(name, "time") > 0) and rises(unwrap_stamps(values)[0])
 
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
