@@ -49,6 +49,10 @@ class Criteria:
     #: relative difference of two check errors below which they may be equal (with `close`): what a
     #: reader sees as the same figure
     near: float = 0.02
+    #: independent values for each free parameter, at which the smaller model fails, from which a
+    #: larger one counts: as many again are left to contradict it. Lower: chance is named; higher:
+    #: short records say nothing
+    for_each: float = 2.0
     #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
     #: left open: a right model's error lies between one and about one and a half floors
     open: float = 1.0

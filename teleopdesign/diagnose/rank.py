@@ -15,6 +15,7 @@ from .candidates import Candidate, bodies_with_measured_force, candidates
 from .criteria import CRITERIA, Criteria
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
 from .evidence import check_score, check_squares, whole_score
+from .few_values import explain_few_values
 from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
 from .order import rank_key
@@ -218,7 +219,9 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     if candidate.key in stands_for:
         return stands_for[candidate.key]
     new = _select_new(stands_for, base, prepared)
-    return next((f"with it, {key[0]} is implausible: {reason}" for key, reason in new.items()), "")
+    for (name, _), reason in new.items():
+        return f"with it, {name} is implausible: {reason}"
+    return explain_few_values(base, fit, prepared)
 
 
 def _select_new(

@@ -38,6 +38,12 @@ _ONE_WAY = 0.05
 #: model of a real machine. Lower: a motor that spins up under one torque passes for one that tells
 #: its inertia; higher: said of true small forces beside gravity
 VARIES = 0.01
+#: part of the motion that each direction must have where both are said to look alike
+_BOTH_WAYS = 0.1
+#: part of what the motion leaves of a force, below which the size of the motion surely explains
+#: more: 0.5 to 0.8 for sizes of simulated forces, 0.5 for the supply current of a servo; 0.99 of a
+#: constant force with noise. Sizes of dry friction alone are constant in motion, and reach 0.9
+_BY_SIZE = 0.8
 #: a force that depends on position counts only if it leaves less than this part of the squares
 _MOSTLY = 0.5
 
@@ -152,6 +158,30 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
             inertia.append((size, float(solution[0])))
     sizes = [*(p[:2] for p in sorted(parts, key=lambda p: p[2])[:1]), *inertia[:1]]
     return bool(sizes) and max(sizes)[1] < 0.0
+
+
+def is_size(force: Array, position: Array, sample_time: float) -> bool:
+    """Whether a force (n,) that is never negative is the size of a force that takes both signs.
+
+    A servo's supply current rises in motion, whatever the direction. So the size of the motion
+    explains it where the motion itself does not. A load that depends on the place, such as that of
+    a pendulum which is fastest where its load is largest, is left out of both.
+    """
+    stretch = _stretch((force, position), position, sample_time)
+    if stretch is None or np.min(force) < 0.0:
+        return False
+    motion, (target, place) = stretch
+    place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
+    each = [float(np.mean(s * motion[1] > 0.5)) for s in (1.0, -1.0)]
+    if min(each) < _BOTH_WAYS * sum(each):
+        return False
+    left = []
+    for columns in (motion, np.abs(motion)):
+        fit = _least_squares(np.vstack([columns, place, place**2]), target, sample_time)
+        if fit is None:
+            return False
+        left.append(fit[2])
+    return left[1] < _BY_SIZE * left[0]
 
 
 def balance_factor(

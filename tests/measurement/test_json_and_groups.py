@@ -10,6 +10,7 @@ from scipy.io import savemat
 
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.numbers_in_cells import numbers_of
+from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = 0.01 * np.arange(90)
@@ -44,6 +45,53 @@ def test_lists_of_json_and_records_without_a_key(tmp_path):
     assert np.array_equal(column(path, "joint.q"), Q)
     path.write_text('[{"q": 1}, {"t": 1}, {"q": 3, "t": 2}]')
     assert np.array_equal(column(path, "q"), [1, np.nan, 3], equal_nan=True)
+
+
+def spun(begin, push, rows=400):
+    """(time, voltage, position, speed) of a motor that speeds up, as a logger of trials."""
+    t = 0.005 * np.arange(rows)
+    speed = push(t) * 8.0 * (1 - np.exp(-t / 0.3))
+    place = np.cumsum(speed) * 0.005
+    voltage = push(t) + 0.03 * np.gradient(speed, 0.005)
+    return np.column_stack([begin + t, voltage, place, speed]).round(6).tolist()
+
+
+def test_lists_of_records_with_the_same_fields_are_trials_in_the_order_of_their_times(tmp_path):
+    path = tmp_path / "log.json"
+    content = {
+        "fast-backward": spun(30.0, lambda t: -6.0 + 0.0 * t),
+        "fast-forward": spun(20.0, lambda t: 6.0 + 0.0 * t),
+        "slow-forward": spun(10.0, lambda t: 0.2 + t, rows=600),
+        "events": [{"at": 3, "what": "start"}, {"at": 9, "what": "end"}],
+        "one": [[1.0, 2.0, 3.0, 4.0]],
+        "units": "Radians",
+    }
+    path.write_text(json.dumps(content))
+    log = open_log(path, "log.json")
+    assert log.names == ("(1)", "(2)", "(3)", "(4)", "trial")
+    assert log.notes == (
+        '3 trials, \'trial\' numbers them: "slow-forward", "fast-forward", "fast-backward"',
+    )
+    assert np.array_equal(column(path, "trial"), np.repeat([1, 2, 3], [600, 400, 400]))
+    assert np.all(np.diff(column(path, "(1)")) > 0)
+    # the longest trial only rises in all columns, and physics is looked at in it
+    survey = survey_log(log, "log.json", Choices())
+    used = {key: entry["column"] for key, entry in survey.channels.items()}
+    assert used == {
+        **{"time": "(1)", "segment": "trial", "position": "(3)"},
+        "actuator_force": "(2)",
+    }
+    assert survey.unused["(4)"].startswith("the velocity of '(3)'")
+
+
+def test_lists_without_times_or_with_other_fields_stay_as_written(tmp_path):
+    path = tmp_path / "log.json"
+    path.write_text(json.dumps({"b": [{"n": "x", "q": 1}] * 2, "a": [{"n": "y", "q": 2}] * 3}))
+    assert np.array_equal(column(path, "q"), [1, 1, 2, 2, 2])
+    path.write_text(json.dumps({"b": [{"q": 1}] * 2, "a": [{"q": 2, "u": 1}] * 3}))
+    assert open_log(path, "log.json").names == ("q", "u"), "the longest list is the log"
+    path.write_text(json.dumps({"b": [{"q": 1, "trial": 7}] * 2, "a": [{"q": 2, "trial": 8}] * 3}))
+    assert np.array_equal(column(path, "trial"), [8, 8, 8])
 
 
 @pytest.mark.parametrize("text", ["[]", "3", '{"a": 1}', "[" * 100_000, "left\nright\n", "\0", ""])

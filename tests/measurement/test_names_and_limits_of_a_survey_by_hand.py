@@ -17,12 +17,12 @@ from teleopdesign.measurement.survey import (
 )
 from teleopdesign.measurement.survey.axes import of_another_axis, stand_together
 from teleopdesign.measurement.survey.axis_kind import axis_of
+from teleopdesign.measurement.survey.derivative import may_be_position
 from teleopdesign.measurement.survey.force_entry import _middle_of_input
 from teleopdesign.measurement.survey.position import (
     _is_another,
     _is_force,
     _is_velocity,
-    _may_be_position,
     _step_of_readings,
 )
 from teleopdesign.measurement.survey.trials import longest_trial, name_trials, trial_column
@@ -100,8 +100,8 @@ def test_only_a_stated_position_may_always_rise():
     rising, falling = np.arange(200.0), -np.arange(200.0)
     for name, unit, may in (("q", None, True), ("foo", None, False), ("foo", "deg", True),
                             ("position", "s", False), ("foo", "s", False)):  # fmt: skip
-        assert _may_be_position(column(name, rising, unit)) == may
-        assert _may_be_position(column(name, falling, unit))
+        assert may_be_position(name, {name: column(name, rising, unit)}, 0.01) == may
+        assert may_be_position(name, {name: column(name, falling, unit)}, 0.01)
 
 
 @pytest.mark.parametrize(("changes", "step"), [(8, 0.0), (9, 2.0)])

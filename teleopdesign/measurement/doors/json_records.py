@@ -1,7 +1,8 @@
 """JSON: one record per line, a list of records, or a list of numbers for each column.
 
 Nested keys become columns such as "joint.pos". The numbers of a list become "q(1)", "q(2)", or
-"elbow.q" where the record names its joints in a list `name`.
+"elbow.q" where the record names its joints in a list `name`. Several lists of records with the same
+fields are trials of one log.
 """
 
 from __future__ import annotations
@@ -13,12 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, quote
 from ._dialect import open_bytes
 from ._log import MOST_BYTES, Log, refuse_size
 
 #: deepest nesting of records that is read, and most numbers of one list that become columns
 DEPTH, MOST_FIELDS = 6, 200
+#: column that numbers the lists of records with the same fields
+TRIAL = "trial"
 #: most lines that are no records, as a number and as a part of all lines, that are left out
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
 
@@ -38,7 +41,7 @@ def open_json(path: Path, file: str) -> Log:
             content, strays = _records_of_lines(text, file)
     except RecursionError:
         raise ExperimentError(f"{file}: found JSON that is nested too deep") from None
-    columns = _columns(content if isinstance(content, list | dict) else [])
+    columns, names = _columns(content if isinstance(content, list | dict) else [])
     if not columns:
         raise ExperimentError(
             f"{file}: found JSON without records, expected one record a line, a list of records, "
@@ -46,7 +49,9 @@ def open_json(path: Path, file: str) -> Log:
         )
     refuse_size(max(map(len, columns.values())), file)
     lines = "a line that is no record" if strays == 1 else f"{strays} lines that are no records"
-    notes = (f"{lines}: left out",) if strays else ()
+    notes: tuple[str, ...] = (f"{lines}: left out",) if strays else ()
+    if names:
+        notes += (f"{len(names)} trials, {TRIAL!r} numbers them: {', '.join(map(quote, names))}",)
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {name: np.array(columns[name], dtype=object) for name in wanted}
@@ -70,14 +75,45 @@ def _records_of_lines(text: str, file: str) -> tuple[list[Any], int]:
     return records, strays
 
 
-def _columns(content: list[Any] | dict[str, Any]) -> dict[str, list[Any]]:
-    """Columns of records, None where a record lacks a key; or the columns of a record of lists."""
-    if isinstance(content, dict):
-        within = [v for v in content.values() if isinstance(v, list) and v]
-        lists = _lists("", content, 0)
-        if lists:
-            return lists
-        content = max(within, key=len, default=[])
+def _columns(content: list[Any] | dict[str, Any]) -> tuple[dict[str, list[Any]], tuple[str, ...]]:
+    """Columns of records, None where a record lacks a key; or the columns of a record of lists.
+
+    returns: the columns, and the names of the trials, if there are several
+    """
+    if isinstance(content, list):
+        return _columns_of_records(content), ()
+    if lists := _lists("", content, 0):
+        return lists, ()
+    tables = {
+        name: _columns_of_records(records)
+        for name, records in content.items()
+        if isinstance(records, list) and records
+    }
+    if not tables:
+        return {}, ()
+    longest = max(tables.values(), key=_rows)
+    alike = {n: t for n, t in tables.items() if _rows(t) > 1 and list(t) == list(longest)}
+    if len(alike) < 2 or TRIAL in longest:
+        return longest, ()
+    order = sorted(alike, key=lambda n: _start(alike[n]))  # as written, where no start is a number
+    joined = {column: [v for n in order for v in alike[n][column]] for column in longest}
+    joined[TRIAL] = [k for k, n in enumerate(order, start=1) for _ in range(_rows(alike[n]))]
+    return joined, tuple(order)
+
+
+def _rows(table: Mapping[str, list[Any]]) -> int:
+    """Number of rows of a table; 0 for one without columns."""
+    return max(map(len, table.values()), default=0)
+
+
+def _start(table: Mapping[str, list[Any]]) -> float:
+    """The first number of the first column, by which trials with stamps are put into order."""
+    first = next(iter(table.values()))[0]
+    return float(first) if isinstance(first, int | float) else 0.0
+
+
+def _columns_of_records(content: list[Any]) -> dict[str, list[Any]]:
+    """Columns of a list of records, None where a record lacks a key."""
     columns: dict[str, list[Any]] = {}
     for row, record in enumerate(content):
         for name, value in _fields("", record, 0).items():

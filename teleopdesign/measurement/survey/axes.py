@@ -23,6 +23,23 @@ _LETTERS = (("m", "s"), ("l", "f"), ("l", "r"))
 #: the field of a struct or joint, or a whole name without one; and the numbers of axes ("J2_pos")
 _STEM = re.compile(r"(?:^|[./])[^./]*$")
 _NUMBERS = re.compile(r"\d+")
+#: words of names that tell columns apart by their number only
+_COLUMNS = frozenset(
+    (
+        "column",
+        "col",
+        "channel",
+        "chan",
+        "ch",
+        "var",
+        "signal",
+        "data",
+        "value",
+        "spalte",
+        "kanal",
+        "wert",
+    )
+)
 
 
 def stand_together(one: str, other: str) -> bool:
@@ -35,8 +52,20 @@ def stand_together(one: str, other: str) -> bool:
 
 
 def _axis_numbers(name: str) -> tuple[str, ...]:
-    """Numbers in a name, "J2_pos" -> 2: such numbers count axes."""
+    """Numbers in a name, "J2_pos" -> 2: such numbers count axes.
+
+    Where the name says no more, "column 2", they count columns.
+    """
+    if _COLUMNS.issuperset(words_of(name)):
+        return ()
     return tuple(_NUMBERS.findall(bare_name(name)))
+
+
+def same_but_axis(one: str, other: str) -> bool:
+    """Whether two names differ in the number of their axis only, "joint1" and "joint2"."""
+    numbers = {_axis_numbers(name) for name in (one, other)}
+    stems = {_NUMBERS.sub("#", bare_name(name)) for name in (one, other)}
+    return len(numbers) == 2 and () not in numbers and len(stems) == 1
 
 
 def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:

@@ -16,11 +16,14 @@ from ..numbers_in_cells import holds_dates, numbers_of
 from ..signed_numbers import sign_code_of
 from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
-from ..wrapped_stamps import seconds_since_first
+from ..wrapped_stamps import seconds_since_first, unwrap_stamps
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
+#: times as uneven as another column that a first column without a name may rise. Two: the stamps of
+#: a logger spread by a third of a step at most, the angle of a motor at ripple by its whole step
+FAR_LESS_EVEN = 2.0
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
 FEWEST_CHANGES = 3
 
@@ -86,7 +89,7 @@ def time_column(
     """The name of the time column, None if there is none, and its unit."""
     if choices.sample_rate is not None:
         return None, "s"
-    rising = {n: x for n, x in raw.items() if rises(x)}
+    rising = {n: x for n, x in raw.items() if rises(x) or _rises_as_clock(n, x, log)}
     rising = rising or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
     if choices.time is not None:
         name = choices.time
@@ -101,10 +104,8 @@ def time_column(
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
         if scores[name] == 0.0:
-            name = next(iter(rising))
-            guesses["channels.time.column"] = (
-                f"{name!r} is read as the time: it is the first column that always rises"
-            )
+            name, why = _clock_without_name(rising)
+            guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
     if unit is None and _is_unit_of_time(name):
         unit = unit_of_text(bare_name(name))
@@ -113,6 +114,38 @@ def time_column(
         if why:
             guesses["channels.time.unit"] = why
     return name, unit
+
+
+def _clock_without_name(rising: Mapping[str, Array]) -> tuple[str, str]:
+    """The time among columns that always rise, where no name tells it, and why it is the time.
+
+    The first one, unless it rises far less evenly than another: the angle of a motor that turns one
+    way rises, too. A column that counts rows is the time only as the first one.
+    """
+    first, *others = rising
+    uneven = {n: _unevenness(rising[n]) for n in others if not _counts_rows(rising[n])}
+    even = min(uneven, key=lambda n: uneven[n], default=first)
+    if even != first and FAR_LESS_EVEN * uneven[even] < _unevenness(rising[first]):
+        return even, "the column that rises most evenly"
+    return first, "the first column that always rises"
+
+
+def _unevenness(x: Array) -> float:
+    """Median deviation of a column's steps from their median, over it; inf where that is zero."""
+    steps = np.diff(x[np.isfinite(x)])
+    usual = float(np.median(steps))
+    return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else float("inf")
+
+
+def _counts_rows(x: Array) -> bool:
+    return bool(np.all(np.diff(x[np.isfinite(x)]) == 1.0))
+
+
+def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
+    """Whether a time by its name or unit rises once its wraps and late seconds are mended."""
+    unit = log.units.get(name)
+    timed = unit is not None and unit != "counts" and measures(unit, "time")
+    return (timed or likeness(name, "time") > 0) and rises(unwrap_stamps(values)[0])
 
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
+from ..column_names import likeness
 from ..filtering import spectrum
 from ..first_guess import motion_columns
-from .content import Array
+from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
+#: part of its path that a motion one way goes forward, noise of the readings included; times its
+#: spread that the mean of a speed is, from which its noise says little; and part by which the mean
+#: of a speed may differ from the motion: filters and a start from rest
+ONE_WAY, STEADY, AT_MEAN = 0.9, 3.0, 0.1
+#: units of a speed over those of the derivative: the same, and revolutions a minute of turns, rad
+#: and deg
+RATES = (1.0, 1 / 60.0, 2 * math.pi / 60.0, 6.0)
 #: counts that encoders have in a turn, and the part by which an estimate may miss one of them:
 #: 4000 and 4096 differ by 0.023
 USUAL_COUNTS = tuple(
@@ -71,6 +80,43 @@ def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, fl
     if power <= 0 or float(b @ b) <= 0:
         return 0.0, 0.0
     return float(a @ b) / power, float(a @ b) / math.sqrt(power * float(b @ b))
+
+
+def may_be_position(name: str, columns: Mapping[str, SurveyedColumn], sample_time: float) -> bool:
+    """Whether a column of a log is no second clock: the angle of a wheel may only rise, too.
+
+    Then its name or unit says so, or it rises at the speed in another column.
+    """
+    column = columns[name]
+    if not rises(column.readings):
+        return True
+    if likeness(name, "position") >= SURE_NAME or is_unit_of(column.unit, "position"):
+        return not is_unit_of(column.unit, "time")
+    steps = np.diff(column.readings[np.isfinite(column.readings)])
+    if column.unit is not None or likeness(name, "time") > 0 or np.all(steps == steps[0]):
+        return False
+    speeds = (c for n, c in columns.items() if n != name and not rises(c.readings))
+    return any(is_mean_rate(column.values, c.values, sample_time) for c in speeds)
+
+
+def rate_agreement(x: Array, v: Array, sample_time: float) -> float:
+    """How surely a column v is the derivative of x, up to 1: from `DERIVATIVE` on, it is."""
+    _, agree = derivative_factor(x, v, sample_time)
+    return 1.0 if agree <= DERIVATIVE and is_mean_rate(x, v, sample_time) else agree
+
+
+def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:
+    """Whether x moves one way at the mean of v, which hardly varies: a motor at a stated speed.
+
+    Such a speed varies by little more than its noise, and stamps of another clock leave nothing of
+    these variations in the derivative of x.
+    """
+    total, path = float(x[-1] - x[0]), float(np.sum(np.abs(np.diff(x))))
+    mean = float(np.mean(v))
+    if not abs(total) > ONE_WAY * path or not abs(mean) > STEADY * float(np.std(v)):
+        return False
+    factor = total / (sample_time * (len(x) - 1)) / mean
+    return any(abs(factor / usual - 1.0) < AT_MEAN for usual in RATES)
 
 
 def follows_direction(x: Array, v: Array, sample_time: float) -> bool:

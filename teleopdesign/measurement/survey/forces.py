@@ -9,9 +9,9 @@ from ...errors import ExperimentError
 from ...quantity import is_unit, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
-from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
+from ..first_guess import FirstGuess, explain_force, is_size, is_turned, left_by_motion
 from .acting import current_that_acted, names_current, names_voltage
-from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
+from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, same_but_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
     NONE,
@@ -57,20 +57,7 @@ def describe_forces(
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
     used = {position, velocity, time_name}
-    free = {
-        n: c
-        for n, c in survey.columns.items()
-        if n not in used and moves(c) and not rises(c.values)
-    }
-    free = {
-        n: c
-        for n, c in free.items()
-        if not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit)
-    }
-    # a set point of the position is no force
-    free = {
-        n: c for n, c in free.items() if not (may_be_set_point(c) and has_numbers_of(c.values, x))
-    }
+    free = _possible_forces(survey, position, used, x)
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     sizes = _sizes_beside_signed(free, position, survey)
     scores = {
@@ -83,6 +70,7 @@ def describe_forces(
     }
     force, measured = _find_driving_force(survey, free, physics, scores, choices, file)
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
+    _warn_of_size(survey, force, x, h)
     if measured:
         survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
@@ -101,6 +89,34 @@ def describe_forces(
     # now in SI, and behind the guessed gear
     _choose_signs(survey, (x * _position_to_si(survey), h), force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
+
+
+def _possible_forces(
+    survey: Survey, position: str, used: set[str | None], x: Array
+) -> dict[str, SurveyedColumn]:
+    """The columns that may be a force beside a position, whose values are x (n,)."""
+    free = {
+        n: c
+        for n, c in survey.columns.items()
+        if n not in used and moves(c) and not rises(c.readings)
+    }
+    free = {
+        n: c
+        for n, c in free.items()
+        if not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit)
+    }
+    # "joint1" beside the position "joint2" is the position of another axis
+    free = {
+        n: c
+        for n, c in free.items()
+        if likeness(n, "actuator_force") > 0
+        or is_unit_of(c.unit, "force")
+        or not same_but_axis(n, position)
+    }
+    # a set point of the position is no force
+    return {
+        n: c for n, c in free.items() if not (may_be_set_point(c) and has_numbers_of(c.values, x))
+    }
 
 
 def _find_driving_force(
@@ -146,6 +162,18 @@ def _find_driving_force(
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
+
+
+def _warn_of_size(survey: Survey, force: str, x: Array, h: float) -> None:
+    """Say where the chosen column seems to hold the size of a force that takes both signs."""
+    if not is_size(survey.columns[force].values, x, h):
+        return
+    key = "channels.actuator_force.column"
+    why = (
+        f"{force!r} seems to hold the size of a force without its sign: it is never negative, and "
+        "rises with the speed in both directions; no answer is right without the sign"
+    )
+    survey.guesses[key] = "; ".join(filter(None, (survey.guesses.get(key), why)))
 
 
 def _sizes_beside_signed(

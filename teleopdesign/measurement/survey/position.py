@@ -26,13 +26,14 @@ from .content import (
     is_unit_of,
     moves,
     reasons,
-    rises,
     sample_time_of,
 )
 from .derivative import (
     DERIVATIVE,
     derivative_factor,
     follows_direction,
+    may_be_position,
+    rate_agreement,
     unwrap_column,
     wrap_of,
 )
@@ -54,7 +55,11 @@ def find_position(
 ) -> tuple[str, str | None]:
     """The column of the position, and that of its velocity or None."""
     h = sample_time_of(survey)
-    moving = {n: c for n, c in survey.columns.items() if moves(c) and _may_be_position(c)}
+    moving = {
+        n: c
+        for n, c in survey.columns.items()
+        if moves(c) and may_be_position(n, survey.columns, h)
+    }
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
     followed = followed_columns(_without_names(moving, flat))
     derivative: dict[str, tuple[str, float]] = {}
@@ -69,7 +74,7 @@ def find_position(
             # friction, and the pressure against it, resemble a velocity
             if other == name or _is_force(column_2) or is_another_quantity(other):
                 continue
-            _, agree = derivative_factor(flat[name], column_2.values, h)
+            agree = rate_agreement(flat[name], column_2.values, h)
             if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
             sure = agree + BY_NAME * likeness(other, "velocity")
@@ -172,16 +177,6 @@ def _is_another(column: SurveyedColumn) -> bool:
         others = ("velocity", "actuator_force", "interaction_force")
         return max(likeness(column.name, other) for other in others) >= SURE_NAME
     return any(is_unit_of(column.unit, kind) for kind in ("velocity", "force"))
-
-
-def _may_be_position(column: SurveyedColumn) -> bool:
-    """Whether a moving column is not a second clock: the angle of a wheel may only rise, too."""
-    if not rises(column.values):
-        return True
-    is_stated = likeness(column.name, "position") >= SURE_NAME or is_unit_of(
-        column.unit, "position"
-    )
-    return is_stated and not is_unit_of(column.unit, "time")
 
 
 def _is_velocity(column: SurveyedColumn) -> bool:

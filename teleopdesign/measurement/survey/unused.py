@@ -21,7 +21,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .derivative import DERIVATIVE, derivative_factor, unwrap_column, wrap_of
+from .derivative import DERIVATIVE, rate_agreement, unwrap_column, wrap_of
 from .set_point import follows, may_be_set_point
 
 
@@ -51,7 +51,7 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
         return f"has {len(raw[name])} rows, another number than the time"
     if not moves(column):
         return "does not change"
-    if rises(column.values):
+    if rises(column.readings):
         return "only rises, as a second clock or a counter does"
     return _explain_no_channel(column, survey)
 
@@ -76,7 +76,7 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     jump = wrap_of(x)
     if may_be_set_point(column) and follows(unwrap_column(x, jump), column.values):
         return f"a set point: {position!r} follows it"
-    _, agree = derivative_factor(unwrap_column(x, jump), column.values, sample_time_of(survey))
+    agree = rate_agreement(unwrap_column(x, jump), column.values, sample_time_of(survey))
     if likeness(name, "actuator_force") >= SURE_NAME > likeness(name, "velocity"):
         agree = 0.0  # a voltage is nearly in proportion to the speed
     if agree > DERIVATIVE and "velocity" in survey.channels:
