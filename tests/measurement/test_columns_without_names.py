@@ -5,7 +5,12 @@ import pytest
 from measurement.columns_by_hand import look
 
 from teleopdesign.errors import ExperimentError
-from teleopdesign.measurement.survey.axes import of_another_axis, same_but_axis
+from teleopdesign.measurement.survey.axes import (
+    axis_that_moves,
+    has_sibling,
+    of_another_axis,
+    same_but_axis,
+)
 from teleopdesign.measurement.survey.derivative import DERIVATIVE, is_mean_rate, rate_agreement
 
 RNG = np.random.default_rng(3)
@@ -88,3 +93,33 @@ def test_the_position_of_another_joint_is_no_force(one, other):
     # numbered columns of a logger may be anything
     assert used(look({"t": t, "CH1": q, "CH2": 0.1 * np.gradient(np.gradient(q, t), t)}))
     assert not same_but_axis("joint1", "joint1") and not same_but_axis("q1", "tau2")
+
+
+def test_of_several_motors_the_one_that_moves_is_read():
+    """Four winches: one lifts a load, three hold their places within their encoders' noise."""
+    t = np.arange(600) / 100.0
+    noise = np.random.default_rng(2).standard_normal((9, len(t)))
+    lifts = np.sin(2.0 * t) ** 2
+    table = {"time": t}
+    for k in range(4):
+        table[f"Drive{k}Position"] = 1.0 + 1e-5 * noise[k] if k != 2 else lifts
+    for k in range(4):
+        moves = np.gradient(table[f"Drive{k}Position"], t)
+        table[f"Drive{k}Velocity"] = moves + 1e-4 * noise[k + 4]
+    for k in range(4):
+        table[f"Drive{k}Current"] = 0.2 + 0.0 * t if k != 2 else 3.0 + np.sign(np.sin(4.0 * t))
+    survey = look(table)
+    chosen = {k: survey.channels[k]["column"] for k in ("position", "actuator_force")}
+    assert chosen == {"position": "Drive2Position", "actuator_force": "Drive2Current"}
+    assert survey.notes == ["'Drive2Velocity' is the derivative of 'Drive2Position'"]
+
+
+def test_a_joint_rests_beside_one_that_travels_thirty_times_as_far():
+    travels = {"q1": 1.0, "q2": 29.0, "q3": 31.0, "x9": 1e3}
+    assert axis_that_moves("q1", ["q2"], travels) == "q1"
+    assert axis_that_moves("q1", ["q2", "q3"], travels) == "q3"
+    assert axis_that_moves("q1", ["x9"], travels) == "q1", "another quantity"
+    names = ["J1_pos", "J1_vel", "J2_pos", "J2_vel"]
+    assert has_sibling("J1_pos", "J2_vel", names)
+    assert not has_sibling("J1_pos", "J1_vel", names)
+    assert not has_sibling("x1", "x2", ["x1", "x2"]), "a position and its rate, numbered"

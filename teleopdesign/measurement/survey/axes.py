@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from ..column_names import bare_name, words_of
 
@@ -25,21 +25,13 @@ _STEM = re.compile(r"(?:^|[./])[^./]*$")
 _NUMBERS = re.compile(r"\d+")
 #: words of names that tell columns apart by their number only
 _COLUMNS = frozenset(
-    (
-        "column",
-        "col",
-        "channel",
-        "chan",
-        "ch",
-        "var",
-        "signal",
-        "data",
-        "value",
-        "spalte",
-        "kanal",
-        "wert",
-    )
+    ("column", "col", "channel", "chan", "ch", "var", "signal", "data", "value")
+    + ("spalte", "kanal", "wert")
 )
+#: times the travel of a joint from which another joint of the log moves, and this one rests: a
+#: motor that only holds its place gives way by a hundredth of a motion. Lower: another of several
+#: joints that all move is taken
+MOVES = 30.0
 
 
 def stand_together(one: str, other: str) -> bool:
@@ -66,6 +58,26 @@ def same_but_axis(one: str, other: str) -> bool:
     numbers = {_axis_numbers(name) for name in (one, other)}
     stems = {_NUMBERS.sub("#", bare_name(name)) for name in (one, other)}
     return len(numbers) == 2 and () not in numbers and len(stems) == 1
+
+
+def has_sibling(name: str, other: str, names: Collection[str]) -> bool:
+    """Whether a column of another axis has a counterpart at the axis of `name` among the names.
+
+    For "J1_pos", "J2_vel" has the counterpart "J1_vel".
+    """
+    return of_another_axis(name, other) and any(
+        n != name and same_but_axis(n, other) and stand_together(n, name) for n in names
+    )
+
+
+def axis_that_moves(name: str, others: Collection[str], travels: Mapping[str, float]) -> str:
+    """The column, or that of the others which is the same at another axis, if it rests beside it.
+
+    travels: column -> range of its values
+    """
+    alike = [name, *(n for n in others if same_but_axis(n, name))]
+    most = max(alike, key=lambda n: travels[n])
+    return most if travels[most] > MOVES * travels[name] else name
 
 
 def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:

@@ -14,6 +14,7 @@ from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from ..first_guess import explain_force
+from .axes import axis_that_moves, has_sibling
 from .axis_kind import IN_TURNS
 from .content import (
     SURE_NAME,
@@ -74,6 +75,8 @@ def find_position(
             # friction, and the pressure against it, resemble a velocity
             if other == name or _is_force(column_2) or is_another_quantity(other):
                 continue
+            if has_sibling(name, other, moving):
+                continue
             agree = rate_agreement(flat[name], column_2.values, h)
             if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
@@ -90,6 +93,8 @@ def find_position(
         best = max(scores, key=lambda n: scores[n])
         if likeness(best, "position") == 0:
             best = _most_explained([best, *as_likely(scores, best)], flat, h)
+        travels = {n: float(np.ptp(x)) for n, x in flat.items()}
+        best = axis_that_moves(best, as_likely(scores, best), travels)
         _note_choice(survey, best, scores, derivative, followed)
     else:
         raise ExperimentError(
