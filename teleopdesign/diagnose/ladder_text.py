@@ -272,8 +272,9 @@ def sentence(diagnosis: Diagnosis) -> str:
         return f"verdict: undecided, {names}: these records do not decide.{rest}"
     if silent := diagnosis.why_silent:
         return f"verdict: undecided. {silent}"
+    which = "effect that may be named" if refused_lines(diagnosis) else "candidate effect"
     return (
-        f"verdict: undecided. No candidate effect explains the {left} noise floors that are left."
+        f"verdict: undecided. No {which} explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"
     )
 

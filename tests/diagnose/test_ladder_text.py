@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.diagnose import constant_force
+from teleopdesign.diagnose import constant_force, ladder_text
 from teleopdesign.diagnose.constant_force import constant_force_line
 from teleopdesign.diagnose.ladder_text import say_floors
 from teleopdesign.report.words import _floors
@@ -32,3 +32,23 @@ def test_any_friction_explains_a_force_that_hardly_varies(monkeypatch, varies, m
     assert (line is not None) == message
     if message:
         assert "a constant friction explains it along any motion" in line
+
+
+@pytest.mark.parametrize(
+    ("refused", "words"),
+    [
+        ([], "No candidate effect"),
+        (["refused: x"], "No effect that may be named"),
+    ],
+)
+def test_where_effects_are_refused_no_effect_that_may_be_named_explains_the_rest(
+    monkeypatch, refused, words
+):
+    """The sentence stood below a list of refused effects that would explain all of it."""
+    monkeypatch.setattr(ladder_text, "refused_lines", lambda diagnosis: refused)
+    monkeypatch.setattr(ladder_text, "_nearest", lambda diagnosis: "")
+    diagnosis = SimpleNamespace(
+        verdict="undecided", left=8.0, more_is_missing=True, may_be_noise=False, moment=None,
+        unlikely=False, rungs=[None], groups=(), why_silent="",
+    )  # fmt: skip
+    assert f"{words} explains the 8.0 noise floors" in ladder_text.sentence(diagnosis)
