@@ -105,9 +105,7 @@ wheel:  ## wheel and sdist into dist
 	@build/wheel/bin/python -m build --outdir dist .
 
 studies: $(VENV)/installed-studies  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
-	@printf '%s\n' studies/[!_]*.py | xargs -P $(JOBS) -I {} sh -c \
-		'said=$$($(BIN)/python {} $(STUDY_ARGS) --output "$(STUDY_OUTPUT)" 2>&1); status=$$?; \
-		printf "== %s\n%s\n" {} "$$said"; exit $$status'
+	@$(BIN)/python studies/_all.py --jobs $(JOBS) $(STUDY_ARGS) --output "$(STUDY_OUTPUT)"
 
 ci:  ## everything that must hold, in the order of .ci/run
 	@.ci/run
