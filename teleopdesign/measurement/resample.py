@@ -157,7 +157,9 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
     left = right - 1
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
     nearer = np.where(part <= 0.5, values[left], values[right])
-    smooth = _cubic(values, at, grid, left) if len(at) > 3 else np.interp(grid, at, values)
+    smooth = (
+        cubic_through_four(values, at, grid, left) if len(at) > 3 else np.interp(grid, at, values)
+    )
     # beyond the ends the last reading is kept
     smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
@@ -174,7 +176,11 @@ def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: 
     return left + step * np.rint(part * (right - left) / step)
 
 
-def _cubic(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Array:
+def cubic_through_four(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Array:
+    """The cubic through four values (m,) at `at`, two on each side where they are, at `grid` (n,).
+
+    left: index of the last value before each point of the grid
+    """
     first = np.clip(left - 1, 0, len(at) - 4)
     nodes = [at[first + k] for k in range(4)]
     total = np.zeros(len(grid))

@@ -104,13 +104,15 @@ def _fill_spikes(
     """The readings of a measured channel with their spikes filled, and the step that says so.
 
     parts: uninterrupted stretches
-    position: of the same body in the same rows; a force is compared with it, if there is one
+    position: of the same body in the same rows; without one a force stays as it is
     """
     is_force = channel.quantity in ("actuator_force", "interaction_force")
     if channel.quantity == "velocity" or (
         channel.quantity == "actuator_force" and not channel.measured
     ):
         return values, []  # a command may have any value; a velocity is only compared
+    if is_force and position is None:
+        return values, []  # a hit shows in the motion of the same rows only
     step = reading_step(values)
     filled, spikes = filled_spikes(values, step, parts, position if is_force else None)
     if not spikes.any():

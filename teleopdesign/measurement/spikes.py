@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from .repeated_rows import runs_of
+from .resample import cubic_through_four
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -86,28 +87,19 @@ def are_contacts(spikes: Mask, position: Array) -> bool:
 
 def fill_spikes(x: Array, spikes: Mask) -> Array:
     """The readings (n,) with each spike on the cubic through the four nearest other readings."""
-    good, out = np.flatnonzero(~spikes), x.copy()
-    for row in np.flatnonzero(spikes):
-        right = int(np.searchsorted(good, row))
-        first = min(max(right - 2, 0), len(good) - 4)
-        nodes = good[first : first + 4]
-        out[row] = _lagrange(nodes - row, x[nodes])
+    good, odd, out = np.flatnonzero(~spikes), np.flatnonzero(spikes), x.copy()
+    left = np.searchsorted(good, odd) - 1
+    out[odd] = cubic_through_four(x[good], good.astype(float), odd.astype(float), left)
     return out
-
-
-def _lagrange(nodes: NDArray[np.intp], values: Array) -> float:
-    """Value at 0 of the polynomial through these points."""
-    weights = [np.prod([n / (n - m) for n in np.delete(nodes, i)]) for i, m in enumerate(nodes)]
-    return float(np.dot(weights, values))
 
 
 def _course(x: Array) -> Array:
     """The median of the rows about each reading (n,); at the ends the parabola through medians."""
     course, half = median_filter(x, NEAR), NEAR // 2
     nodes = half + NEAR * np.arange(3)
-    for row in range(half):
-        first, last = course[nodes], course[-1 - nodes]
-        course[row], course[-1 - row] = _lagrange(nodes - row, first), _lagrange(nodes - row, last)
+    for side in (course, course[::-1]):
+        parabola = np.polyfit(nodes, side[nodes], 2)
+        side[:half] = np.polyval(parabola, np.arange(half))
     return course
 
 

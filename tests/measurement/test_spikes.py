@@ -6,6 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.signals_of_log import _fill_spikes
 from teleopdesign.measurement.spikes import are_contacts, fill_spikes, find_spikes
 
 T = np.arange(3000) / 500.0
@@ -158,3 +160,12 @@ def test_of_many_spikes_the_search_marks_three_in_a_row_and_the_first_and_last()
     first = motion()
     first[0] += 0.5  # alone it may be a step
     assert not find_spikes(first, 1e-5).any()
+
+
+def test_a_force_without_a_position_in_its_rows_stays(spoilt):
+    """A hit of one row cannot be told from a spike there."""
+    _, bad, rows = spoilt
+    force = Channel("interaction_force", "device", "f", "N", None, None)
+    for position, count in ((None, 0), (motion(), len(rows["f"]))):
+        filled, steps = _fill_spikes(bad["f"], "device.f", force, [slice(None)], position, "a")
+        assert (filled != bad["f"]).sum() == count and len(steps) == (count > 0)
