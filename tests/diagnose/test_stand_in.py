@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose import stand_ins
 from diagnose.made_records import write_made
 
 import teleopdesign as td
@@ -95,8 +96,11 @@ def test_all_records_are_estimated_on_and_the_check_records_compared_on(tmp_path
     assert together.of("check") == prepared.of("check")
 
 
-def sentence_on_readings(left, leaves, before=0.1, after=0.01):
-    base, fit = (SimpleNamespace(check_error=x) for x in (left * before, leaves * after))
+def sentence_on_readings(left, leaves, before=0.1, after=0.01, moments=40):
+    """moments: of 40, those at which the effect changes the residual"""
+    base, fit = (stand_ins.fit(x) for x in (left * before, leaves * after))
+    at_all = stand_ins.BLOCKS < moments
+    fit.check_residual = np.where(at_all, fit.check_residual, base.check_residual)
     rung = SimpleNamespace(added=Candidate(EFFECTS["viscous"], "device"), fit=fit)
     floors = [NoiseFloor(x, "made", x) for x in (before, after)]
     return stands_in_for_readings(base, floors[0], rung, floors[1])
@@ -125,11 +129,13 @@ def test_where_the_readings_explain_what_is_left_an_effect_does_not_explain_it_b
 
 def test_an_effect_that_leaves_less_than_the_readings_alone_would_follows_their_errors():
     """A lag left half of what a coarse encoder makes of a motor that sticks and slips."""
-    sentence = sentence_on_readings(1.3, 0.5, before=0.005, after=0.005)
+    same = dict(before=0.005, after=0.005)
+    sentence = sentence_on_readings(1.3, 0.5, **same, moments=7)
     assert sentence is not None and sentence.of_readings
     assert "leaves 0.5 noise floors" in sentence.reason and "(1.3 floors" in sentence.reason
-    assert sentence_on_readings(1.3, 0.81, before=0.005, after=0.005) is None, "known to a fifth"
-    assert sentence_on_readings(1.9, 0.5, before=0.005, after=0.005) is None, "more than readings"
+    assert sentence_on_readings(1.3, 0.81, **same, moments=7) is None, "known to a fifth"
+    assert sentence_on_readings(1.9, 0.5, **same, moments=7) is None, "more than readings"
+    assert sentence_on_readings(1.3, 0.5, **same, moments=12) is None, "acts again and again"
 
 
 @pytest.mark.slow

@@ -81,5 +81,6 @@ def test_sinusoids_at_half_the_sample_rate_grow_from_pi_squared_over_eight_on():
     result = stiffest.run(quick=True)
     assert result.attrs["contradictions"] == 0
     over = result["over"].sel(late=1, ends="worst hand").values
+    assert len(over) >= 2
     # the last interval of seven bisections is 1.1 %
-    assert over == pytest.approx(np.full(3, np.pi**2 / 8), rel=0.012)
+    assert over == pytest.approx(np.full(len(over), np.pi**2 / 8), rel=0.012)
