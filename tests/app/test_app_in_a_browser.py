@@ -7,6 +7,7 @@ import urllib.request
 import numpy as np
 import pytest
 from app.browser import CHROMIUM, WHY, opened, picture, press
+from few_effects import FEW
 
 from teleopdesign import example, load_experiment
 
@@ -88,6 +89,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("served", [["--only", *FEW]], indirect=True)  # all: 75 s
 @pytest.mark.skipif(CHROMIUM is None, reason=WHY)
 def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
     address, folder = served

@@ -207,6 +207,18 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     assert replace_by_pair(search, before) is None
 
 
+def test_where_no_effect_is_supported_alone_the_ladder_goes_on_by_a_pair(ladder, monkeypatch):
+    search, state = ladder
+    moved = climbing.make_next_move(search, replace(state, supported=()))
+    assert set(added(moved)) == {"spring", "bias"}
+    assert moved.rungs == add_pair(search, state).rungs
+    for before in ("straighten", "compare_alternatives", "compare_look_alikes", "exchange"):
+        monkeypatch.setattr(climbing, before, lambda *_: None)
+    stand_in = replace(with_stand_in(search, state), supported=())
+    moved = climbing.make_next_move(search, stand_in)
+    assert set(added(moved)) == {"spring", "bias"} and not moved.together
+
+
 @pytest.mark.slow
 def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
     search, state = ladder
