@@ -44,7 +44,7 @@ def test_what_the_independent_simulator_hides_is_reported(tmp_path, effect):
 
 @pytest.mark.slow
 def test_where_the_independent_simulator_hides_nothing_nothing_is_reported(tmp_path):
-    for seed in range(1000, 1012):
+    for seed in range(1000, 1006):
         folder = write_simulated(tmp_path / str(seed), None, seed=seed)
         prepared = prepare(load_experiment(folder))
         fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
@@ -52,7 +52,7 @@ def test_where_the_independent_simulator_hides_nothing_nothing_is_reported(tmp_p
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_a_force_outside_the_catalogue_is_described_written_and_named(tmp_path, seed):
     folder = write_simulated(tmp_path / "case", None, seed=300 + seed, level="outside")
     experiment = load_experiment(folder)
@@ -61,9 +61,9 @@ def test_a_force_outside_the_catalogue_is_described_written_and_named(tmp_path, 
     effect = written(
         tmp_path, "found", describe_residual(estimate(model, prepared), prepared), prepared
     )
-    # two among all of the catalogue, which takes long; the others among ten and the model's own
+    # one among all of the catalogue, which takes long; the others among ten and the model's own
     few = FEW | {name: model.known[name] for name, _ in model.effects}
-    known = {**(model.known if seed < 2 else few), "found": effect}
+    known = {**(model.known if seed < 1 else few), "found": effect}
     diagnosis = find_missing(experiment, replace(model, known=known))
     assert "found" in [c.effect.name for c in diagnosis.missing]
     # within half of the true model's error; a hum's form is exact, others to the floor's spread
