@@ -42,6 +42,9 @@ class Product:
 def product_of(fit: Fit, effect: str) -> Product | None:
     """The product of an effect's parameters with the least error; None: fewer than two take part.
 
+    There is none either where a change of one parameter is the same as a change of others: then the
+    error of each alone is that of a sum, and tells nothing of their product.
+
     Parameters that are zero, at a bound or without standard error, and angles, have no part in a
     product.
 
@@ -61,7 +64,10 @@ def product_of(fit: Fit, effect: str) -> Product | None:
         return None
     values = np.array([abs(model.parameters[n].value) for n in names])
     errors = np.array([model.parameters[n].stderr for n in names]) / values
-    powers, known = best_product(_relative_columns(fit, names, values), errors)
+    columns = _relative_columns(fit, names, values)
+    if are_dependent(columns):
+        return None
+    powers, known = best_product(columns, errors)
     counting = [i for i, p in enumerate(powers) if abs(p) >= POWER]
     if len(counting) < 2:
         return None
@@ -71,6 +77,19 @@ def product_of(fit: Fit, effect: str) -> Product | None:
         tuple(float(errors[i]) for i in counting),
         known,
     )
+
+
+def are_dependent(columns: Array) -> bool:
+    """Whether columns (rows, k) are linearly dependent, whatever their lengths; zero ones are.
+
+    A part of one that lies outside of the others, and is lost in the squares, counts as nothing:
+    `best_product` works with squares.
+    """
+    lengths = np.linalg.norm(columns, axis=0)
+    if not lengths.all():
+        return True
+    sizes = np.linalg.svd(columns / lengths, compute_uv=False)
+    return bool((sizes[-1] / sizes[0]) ** 2 <= 1e-12)
 
 
 def best_product(columns: Array, errors: Array) -> tuple[Array, float]:

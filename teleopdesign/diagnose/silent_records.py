@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..measurement.encoder import rests
 from ..model import Model
 from .constant_force import describe_constant_force, lacks_scale
 from .jitter import describe_jitter, is_much_jitter
@@ -17,5 +18,16 @@ def why_silent(prepared: Prepared, model: Model) -> str:
         return describe_constant_force()
     if prepared.is_of_an_arm:  # its accelerations come from all joints together
         return ""
+    if rests_throughout_check(prepared):
+        return (
+            "The body rests throughout the check records, where any friction explains the force: "
+            "they cannot check a model."
+        )
     much = is_much_jitter(prepared.of("fit"), prepared.experiment)
     return describe_jitter() if much else ""
+
+
+def rests_throughout_check(prepared: Prepared) -> bool:
+    """Whether no body moves by more than one step of its readings in any check record."""
+    motions = [s.motion for s in prepared.of("check")]
+    return bool(motions) and all(rests(m.position, m.step) for m in motions)

@@ -27,6 +27,13 @@ PIECE, PIECES = 64, 8
 #: order of the difference that separates scatter from motion. Of a motion at a tenth of the sample
 #: rate, the fourth difference leaves as much as a jitter of 2 % of a row, the eighth only 0.03 %
 DIFFERENCE = 8
+#: steps within which the readings of a body at rest lie: between two values, it shows both
+AT_REST = 1.5
+
+
+def rests(position: Array, step: float) -> bool:
+    """Whether readings of this step show no motion."""
+    return float(np.ptp(position)) <= AT_REST * step
 
 
 def reading_noise(position: Array) -> float:

@@ -11,6 +11,7 @@ from ..errors import ExperimentError
 from ..plain_data import write_beside, write_text
 from .channel import channels_from, sample_rate_from
 from .description import bodies_from
+from .encoder import reading_step, rests
 from .first_guess import FirstGuess, guess_from
 from .record import read_record
 from .record_clock import FEWEST, SHORTEST
@@ -115,23 +116,31 @@ def _records(
 ) -> list[dict[str, Any]]:
     if len(names) > 1:
         return [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
-    if spans is None and not _may_be_cut(survey):
+    fit, check = _usual_spans(survey) if spans is None else spans
+    if spans is None and (why := _why_whole(survey, (fit, check))):
         survey.notes.append(
-            "too short to be cut into a fit and a check record: errors are computed on blocks that "
-            "are left out of the fit in turn"
+            f"{why} a fit and a check record: errors are computed on blocks that are left out of "
+            "the fit in turn"
         )
         return [{"file": names[0], "use": "fit"}]
-    fit, check = _usual_spans(survey) if spans is None else spans
     return [
         {"file": names[0], "use": "fit", "span": fit},
         {"file": names[0], "use": "check", "span": check},
     ]
 
 
-def _may_be_cut(survey: Survey) -> bool:
-    """Whether both halves of a log are long enough for a record."""
-    rows = survey.duration / sample_time_of(survey)
-    return rows >= 2 * FEWEST and survey.duration >= 2 * SHORTEST
+def _why_whole(survey: Survey, parts: FitAndCheck) -> str:
+    """Why a log is not cut into these parts; "" where it may be: both are long enough and move."""
+    if survey.duration < 2 * max(FEWEST * sample_time_of(survey), SHORTEST):
+        return "too short to be cut into"
+    x = survey.columns[survey.channels["position"]["column"]].values
+    step = reading_step(x)
+    for begin, end in parts:
+        part = x[(survey.time >= begin) & (survey.time < end)]
+        if len(part) and rests(part, step):
+            rest = f"from {begin:g} to {min(end, survey.duration):.4g} s"
+            return f"the body rests {rest}, so that the log is not cut into"
+    return ""
 
 
 def _usual_spans(survey: Survey) -> FitAndCheck:

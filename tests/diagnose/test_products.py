@@ -79,3 +79,13 @@ def test_what_other_parameters_make_up_for_tells_no_product():
     """Where coulomb's level does what both do, the speed alone is told by what is left."""
     assert product_of(valley(little=0.3, **OPEN), "device.stribeck") is not None
     assert product_of(valley(little=0.3, also=1e6, **OPEN), "device.stribeck") is None
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (5.0, 1e3, 1e-3)])
+@pytest.mark.parametrize(("little", "is_known"), [(0.0, False), (1e-9, False), (1e-4, True)])
+def test_two_parameters_of_one_change_tell_no_product(little, is_known, scale):
+    """A pseudo-inverse called the open combination known: level * speed^-0.5 within 1e-8."""
+    product = product_of(valley(little=little, scale=scale, **OPEN), "device.stribeck")
+    assert (product is not None) == is_known
+    if is_known:
+        assert product.powers == pytest.approx((1.0, 0.5), rel=0.02)

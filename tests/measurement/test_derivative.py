@@ -13,6 +13,7 @@ from teleopdesign.measurement.first_guess import (
 from teleopdesign.measurement.survey.derivative import (
     derivative_factor,
     follows_direction,
+    rate_agreement,
     unwrap_column,
     wrap_of,
 )
@@ -142,3 +143,12 @@ def test_the_columns_of_a_motion_are_its_rates_and_its_direction():
     assert direction[inner][away] == pytest.approx(np.sign(v[inner])[away], abs=0.3)
     for none in motion_columns(np.ones(400), H):
         assert np.abs(none).max() < 1e-9
+
+
+def test_dry_friction_beside_a_large_force_is_no_velocity():
+    """It follows the direction of a motion at constant speed, but it does not change its sign."""
+    h, rows = 0.01, 600
+    x = 30.0 * np.abs(h * np.arange(rows) % 4.0 / 2.0 - 1.0)
+    friction = 9.0 * np.sign(np.gradient(x))
+    assert rate_agreement(x, friction + 100.0, h) == 0.0
+    assert rate_agreement(x, friction, h) > 0.9

@@ -184,3 +184,40 @@ def test_a_matrix_of_hdf5_is_its_columns_and_itself_whichever_way_it_lies(tmp_pa
     assert np.array_equal(read["both"], both)
     for name in ("both(:,2)", "row", "tall"):
         assert np.array_equal(np.ravel(read[name]), Q)
+
+
+def swings(count, rows):
+    """Records of a servo's tests: set point and reading as lists, beside a word and a rate."""
+    return [
+        {
+            "type": "sine",
+            "rate": 50.0,
+            "goal": [round((1 - k) * 0.3 * np.sin(0.1 * n) - 0.1 * k, 4) for n in range(rows)],
+            "sensor": [
+                round((1 - k) * 0.2 * np.sin(0.1 * n - 0.3) - 0.1 * k, 4) for n in range(rows)
+            ],
+        }
+        for k in range(count)
+    ]
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_records_that_hold_long_lists_are_trials_in_the_order_of_the_file(inside, tmp_path):
+    """The limits in the settings were the log ("found 2 rows"), or each number was a column."""
+    tests = swings(3, 120)
+    content = {"config": {"limits": [-0.6, 0.6]}, "data": tests} if inside else tests
+    (tmp_path / "log.json").write_text(json.dumps(content))
+    log = open_log(tmp_path / "log.json", "log.json")
+    assert set(log.names) == {"goal", "sensor", "trial"}
+    assert list(column(tmp_path / "log.json", "goal")[:120]) == tests[0]["goal"]
+    assert set(column(tmp_path / "log.json", "trial")) == {1.0, 2.0, 3.0}
+    assert "3 trials" in log.notes[0]
+
+
+def test_the_joints_of_a_robot_are_no_trials(tmp_path):
+    states = [{"q": [0.1 * k, 0.2, 0.3], "tau": [1.0 * k, 2.0, 3.0]} for k in range(90)]
+    (tmp_path / "log.json").write_text(json.dumps(states))
+    assert set(open_log(tmp_path / "log.json", "log.json").names) == {
+        *(f"q({k})" for k in (1, 2, 3)),
+        *(f"tau({k})" for k in (1, 2, 3)),
+    }

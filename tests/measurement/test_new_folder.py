@@ -196,3 +196,17 @@ def test_a_log_is_cut_only_where_both_parts_are_long_enough(rows, cut, tmp_path)
         assert records[0]["span"][1] == pytest.approx(cut * survey.duration, rel=1e-3)
     assert any("too short to be cut" in note for note in survey.notes) == (cut is None)
     assert load_experiment(tmp_path / "made").fit_records
+
+
+@pytest.mark.parametrize("dither", [0.0, 0.01])
+def test_a_log_is_not_cut_where_the_body_rests_in_a_part(dither, tmp_path):
+    """A servo that reached its place after half of a log: any friction agrees with the rest."""
+    t = 0.01 * np.arange(600)
+    angle = np.where(t < 3.0, np.sin(2.0 * np.pi * t), 0.0) + dither * (np.arange(600) % 7 == 0)
+    rows = np.column_stack([t, np.round(angle, 2), np.where(t < 3.0, np.cos(6.0 * t), 0.1)])
+    log = tmp_path / "arrived.csv"
+    np.savetxt(log, rows, delimiter=",", header="t_s,angle_rad,torque_Nm", comments="")
+    survey = survey_of(log)
+    records = written(make_folder(survey, [log], tmp_path / "made", title="arrived"))["records"]
+    assert [r["use"] for r in records] == ["fit"]
+    assert any("the body rests from 3.594 to 5.99 s" in note for note in survey.notes)

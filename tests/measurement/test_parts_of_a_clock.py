@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from measurement.columns_by_hand import look
+from measurement.columns_by_hand import Q, U, look
 
 from teleopdesign.measurement.tables import open_log, read_columns
 from teleopdesign.measurement.wrapped_stamps import unwrap_stamps
@@ -90,3 +90,27 @@ def test_times_of_day_in_a_file_are_read_so(tmp_path):
     columns = read_columns(tmp_path / "log.csv", "log.csv", {"time": "channels.time"})
     assert np.diff(columns.values["time"]) == pytest.approx(0.005)
     assert columns.notes == ("the second turns late in 3 rows: read a second later",)
+
+
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [
+        ("dt [us]", 2000.0),
+        ("timestep__us", 2000.0),
+        ("dt", 0.002),
+        ("dt_ms", 2.0),
+        ("Δt (s)", 0.002),
+    ],
+)
+def test_a_column_of_time_steps_tells_the_rate(name, step):
+    """The rate was assumed to be 1000 Hz beside "dt [us]" of 2000."""
+    late = 1.0 + 0.02 * np.random.default_rng(1).standard_normal(len(Q))
+    result = look({name: step * late, "angle_rad": Q, "torque_Nm": U})
+    assert result.channels["sample_rate"]["value"] == pytest.approx(500.0, rel=0.01)
+    assert name in result.guesses["sample_rate"]
+
+
+def test_a_step_that_is_far_from_even_tells_no_rate():
+    steps = np.random.default_rng(1).exponential(0.01, len(Q)) ** 2
+    result = look({"dt": steps, "angle_rad": Q, "torque_Nm": U})
+    assert result.channels["sample_rate"]["value"] == 1000.0

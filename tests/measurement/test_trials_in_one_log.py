@@ -95,3 +95,15 @@ def test_a_trial_of_five_hundred_rows_tells_enough_by_itself(rows, alone):
     columns = {"t_s": t, "trial": trial, "angle_rad": Q[: len(t)], "tau_Nm": U[: len(t)]}
     columns = longest_trial(look(columns))
     assert len(columns["angle_rad"].values) == (rows if alone else len(t))
+
+
+@pytest.mark.parametrize(("leap", "rows"), [(150.0, 300), (0.0, 600)])
+def test_short_trials_count_alone_where_a_position_leaps_between_them(leap, rows):
+    """The velocity was "not that of" its position, whose derivative held the leap."""
+    t = H * np.arange(600)
+    second = np.arange(600) >= 300
+    q, v = Q[:600] + leap * second, np.gradient(Q[:600], H) + 0.5 * leap * second * (leap > 0)
+    columns = {"t_s": t, "trial": 1.0 + second, "angle_rad": q, "tau_Nm": U[:600], "w": v}
+    result = look(columns)
+    assert len(longest_trial(result)["angle_rad"].values) == rows
+    assert result.channels["position"]["column"] == "angle_rad"

@@ -2,13 +2,14 @@
 
 Nested keys become columns such as "joint.pos". The numbers of a list become "q(1)", "q(2)", or
 "elbow.q" where the record names its joints in a list `name`. Several lists of records with the same
-fields are trials of one log.
+fields are trials of one log, and so are a few records that hold long lists of numbers.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -81,21 +82,53 @@ def _columns(content: list[Any] | dict[str, Any]) -> tuple[dict[str, list[Any]],
     returns: the columns, and the names of the trials, if there are several
     """
     if isinstance(content, list):
-        return _columns_of_records(content), ()
-    if lists := _lists("", content, 0):
+        return _join(_tables("record", content))
+    lists = _lists("", content, 0)
+    tables: dict[str, dict[str, list[Any]]] = {}
+    for name, records in content.items():
+        if isinstance(records, list) and records:
+            tables |= _tables(name, records)
+    # beside a table, short lists such as limits are settings
+    if lists and _rows(lists) >= max(map(_rows, tables.values()), default=0):
         return lists, ()
-    tables = {
-        name: _columns_of_records(records)
-        for name, records in content.items()
-        if isinstance(records, list) and records
-    }
+    return _join(tables)
+
+
+def _tables(name: str, records: list[Any]) -> dict[str, dict[str, list[Any]]]:
+    """The table of a list of records, or one of each record that holds the lists of a trial."""
+    trials = [_lists("", r, 0) if isinstance(r, dict) else {} for r in records]
+    if all(_is_trial(trial, len(records)) for trial in trials):
+        whole = [{n: v for n, v in t.items() if len(v) == _rows(t)} for t in trials]
+        return {f"{name}({k})": t for k, t in enumerate(whole, start=1)}
+    return {name: _columns_of_records(records)}
+
+
+def _is_trial(lists: Mapping[str, list[Any]], records: int) -> bool:
+    """Whether lists of one record are columns: two of a length, which exceeds that of all records.
+
+    The lists of a robot's joints are shorter than its log.
+    """
+    rows = _rows(lists)
+    return rows > records and [len(v) for v in lists.values()].count(rows) > 1
+
+
+def _join(
+    tables: Mapping[str, dict[str, list[Any]]],
+) -> tuple[dict[str, list[Any]], tuple[str, ...]]:
+    """The longest table; with those that have the same columns, as trials of one log.
+
+    returns: the columns, and the names of the trials, if there are several
+    """
     if not tables:
         return {}, ()
     longest = max(tables.values(), key=_rows)
     alike = {n: t for n, t in tables.items() if _rows(t) > 1 and list(t) == list(longest)}
     if len(alike) < 2 or TRIAL in longest:
         return longest, ()
-    order = sorted(alike, key=lambda n: _start(alike[n]))  # as written, where no start is a number
+    starts = {n: _start(t) for n, t in alike.items()}
+    order = (
+        list(alike) if None in starts.values() else sorted(alike, key=lambda n: starts[n] or 0.0)
+    )
     joined = {column: [v for n in order for v in alike[n][column]] for column in longest}
     joined[TRIAL] = [k for k, n in enumerate(order, start=1) for _ in range(_rows(alike[n]))]
     return joined, tuple(order)
@@ -106,10 +139,15 @@ def _rows(table: Mapping[str, list[Any]]) -> int:
     return max(map(len, table.values()), default=0)
 
 
-def _start(table: Mapping[str, list[Any]]) -> float:
-    """The first number of the first column, by which trials with stamps are put into order."""
-    first = next(iter(table.values()))[0]
-    return float(first) if isinstance(first, int | float) else 0.0
+def _start(table: Mapping[str, list[Any]]) -> float | None:
+    """The first stamp, by which trials are put into order; None: the first column holds no stamps.
+
+    Stamps never fall. A set point may begin at any value, whichever trial came first.
+    """
+    first = next(iter(table.values()))
+    if not all(isinstance(v, int | float) for v in first):
+        return None
+    return float(first[0]) if all(a <= b for a, b in pairwise(first)) else None
 
 
 def _columns_of_records(content: list[Any]) -> dict[str, list[Any]]:

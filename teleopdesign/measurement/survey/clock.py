@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import ExperimentError, quote
 from ...quantity import measures, si_factor
-from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text
+from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
@@ -26,6 +26,9 @@ MOST = 60_000
 FAR_LESS_EVEN = 2.0
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
 FEWEST_CHANGES = 3
+#: names of a column that holds the time from one row to the next, and the part of their median by
+#: which such times may differ: more uneven ones are no clock
+STEPS, UNEVEN = frozenset(("dt", "timestep", "deltat", "δt")), 0.5
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
@@ -114,6 +117,22 @@ def time_column(
         if why:
             guesses["channels.time.unit"] = why
     return name, unit
+
+
+def rate_of_steps(raw: Mapping[str, Array], log: Log, choices: Choices) -> tuple[str, float] | None:
+    """A column that holds the time from one row to the next, and the rate that it tells (Hz)."""
+    for name, values in raw.items():
+        steps = values[np.isfinite(values)]
+        if not STEPS.intersection(words_of(name)) or len(steps) < 2 or steps.min() < 0:
+            continue
+        usual = float(np.median(steps))
+        if not usual > 0 or float(np.median(np.abs(steps - usual))) > UNEVEN * usual:
+            continue
+        unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+        if unit is None or not measures(unit, "time"):
+            unit, _ = unit_of_steps(np.cumsum(steps))
+        return name, float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
+    return None
 
 
 def _clock_without_name(rising: Mapping[str, Array]) -> tuple[str, str]:

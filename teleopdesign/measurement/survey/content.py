@@ -94,6 +94,11 @@ def moves(column: SurveyedColumn) -> bool:
     return bool(np.ptp(column.values) > 0)
 
 
+def columns_in_use(survey: Survey) -> set[str]:
+    """The columns that are in a channel already, such as that which numbers trials."""
+    return {entry["column"] for entry in survey.channels.values() if "column" in entry}
+
+
 def is_unit_of(unit: str | None, quantity: str) -> bool:
     """Whether a unit fits a quantity on either axis; for a force, also A, mA, V and %."""
     if unit is None:

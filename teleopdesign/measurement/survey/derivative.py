@@ -102,7 +102,22 @@ def may_be_position(name: str, columns: Mapping[str, SurveyedColumn], sample_tim
 def rate_agreement(x: Array, v: Array, sample_time: float) -> float:
     """How surely a column v is the derivative of x, up to 1: from `DERIVATIVE` on, it is."""
     _, agree = derivative_factor(x, v, sample_time)
-    return 1.0 if agree <= DERIVATIVE and is_mean_rate(x, v, sample_time) else agree
+    if agree > DERIVATIVE:
+        return agree if has_both_signs(x, v, sample_time) else 0.0
+    return 1.0 if is_mean_rate(x, v, sample_time) else agree
+
+
+def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
+    """Whether v changes its sign with the direction of x, as a velocity does; True for one way.
+
+    Dry friction beside a large constant force follows the direction, too, but keeps its sign.
+    """
+    direction = motion_columns(x, sample_time)[2]
+    inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
+    forward, backward = (v[inner][way * direction[inner] > 0] for way in (1, -1))
+    if min(len(forward), len(backward)) < (1.0 - ONE_WAY) * len(v):
+        return True
+    return float(forward.mean() * backward.mean()) <= 0.0
 
 
 def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:

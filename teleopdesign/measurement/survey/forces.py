@@ -21,6 +21,7 @@ from .content import (
     Survey,
     SurveyedColumn,
     as_likely,
+    columns_in_use,
     explain_ambiguity,
     is_unit_of,
     moves,
@@ -28,6 +29,7 @@ from .content import (
     rises,
     sample_time_of,
 )
+from .copies import is_copy
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si
 from .set_point import has_numbers_of, may_be_set_point
@@ -56,7 +58,7 @@ def describe_forces(
     h = sample_time_of(survey)
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
-    used = {position, velocity, time_name}
+    used = {position, velocity, time_name, *columns_in_use(survey)}
     free = _possible_forces(survey, position, used, x)
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     sizes = _sizes_beside_signed(free, position, survey)
@@ -112,6 +114,14 @@ def _possible_forces(
         if likeness(n, "actuator_force") > 0
         or is_unit_of(c.unit, "force")
         or not same_but_axis(n, position)
+    }
+    # the error of a controller is the position once more
+    free = {
+        n: c
+        for n, c in free.items()
+        if is_unit_of(c.unit, "force")
+        or max(likeness(n, f"{whose}_force") for whose in ("actuator", "interaction")) > 0
+        or not is_copy(c.values, x)
     }
     # a set point of the position is no force
     return {

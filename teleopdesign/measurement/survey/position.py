@@ -13,7 +13,6 @@ from ...quantity import measures, si_factor
 from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
-from ..first_guess import explain_force
 from .axes import axis_that_moves, has_sibling
 from .axis_kind import IN_TURNS
 from .content import (
@@ -23,12 +22,14 @@ from .content import (
     Survey,
     SurveyedColumn,
     as_likely,
+    columns_in_use,
     explain_ambiguity,
     is_unit_of,
     moves,
     reasons,
     sample_time_of,
 )
+from .copies import most_explained
 from .derivative import (
     DERIVATIVE,
     derivative_factor,
@@ -59,7 +60,7 @@ def find_position(
     moving = {
         n: c
         for n, c in survey.columns.items()
-        if moves(c) and may_be_position(n, survey.columns, h)
+        if moves(c) and may_be_position(n, survey.columns, h) and n not in columns_in_use(survey)
     }
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
     followed = followed_columns(_without_names(moving, flat))
@@ -92,7 +93,7 @@ def find_position(
     elif scores:
         best = max(scores, key=lambda n: scores[n])
         if likeness(best, "position") == 0:
-            best = _most_explained([best, *as_likely(scores, best)], flat, h)
+            best = most_explained([best, *as_likely(scores, best)], flat, h)
         travels = {n: float(np.ptp(x)) for n, x in flat.items()}
         best = axis_that_moves(best, as_likely(scores, best), travels)
         _note_choice(survey, best, scores, derivative, followed)
@@ -133,17 +134,6 @@ def _note_choice(
     else:
         why = "it is the first column that moves"
     survey.guesses[key] = f"{best!r} is read as the position: {why}"
-
-
-def _most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str:
-    """That of equally likely columns whose motion explains most of any other column."""
-    if len(names) == 1:
-        return names[0]
-    shares = {
-        name: max(explain_force(f, flat[name], h).explained for n, f in flat.items() if n != name)
-        for name in names
-    }
-    return max(shares, key=lambda name: shares[name])
 
 
 def _without_names(

@@ -16,11 +16,13 @@ from .content import (
     Array,
     Survey,
     SurveyedColumn,
+    columns_in_use,
     is_unit_of,
     moves,
     rises,
     sample_time_of,
 )
+from .copies import is_copy
 from .derivative import DERIVATIVE, rate_agreement, unwrap_column, wrap_of
 from .set_point import follows, may_be_set_point
 
@@ -30,7 +32,7 @@ def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[s
 
     raw: the columns of numbers, by name
     """
-    used = {entry["column"] for entry in survey.channels.values() if "column" in entry}
+    used = columns_in_use(survey)
     used |= {log.clocks[name] for name in used if name in log.clocks}
     left = [name for name in dict.fromkeys(log.names) if name not in used]
     return {name: _explain_unused(name, log, raw, survey) for name in left}
@@ -94,6 +96,8 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     ):
         if quantity in kinds or not kinds and likeness(name, quantity) >= SURE_NAME:
             return why
+    if name not in survey.explained and is_copy(column.values, unwrap_column(x, jump)):
+        return f"{position!r} times a constant plus a constant: another unit, or a control error"
     return _explain_no_force(name, survey)
 
 

@@ -1,0 +1,65 @@
+"""Columns of a log that hold the position once more, in another unit or beside a constant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..encoder import reading_step
+from ..first_guess import explain_force
+from .content import Array
+
+#: steps that a column must span: of a command with few levels, any line is within a step
+FEWEST_STEPS = 20.0
+#: part of the range of a column that sums of its numbers lose in floating point
+DIGITS = 1e-9
+#: part of its travel that a body crosses between two rows at most: the command of a relay jumps
+#: over all of its range
+JUMP = 0.5
+
+
+def is_copy(column: Array, position: Array) -> bool:
+    """Whether a column is the position times a constant plus a constant, up to rounding.
+
+    So is a reading in volts beside the same reading in mm, and the error of a controller whose set
+    point is constant. A straight line of the position explains such a column to the last digit. The
+    force of a real spring is not so exact: its sensor has noise of its own.
+    """
+    x, y = position - position.mean(), column - column.mean()
+    power = float(x @ x)
+    if power == 0.0:
+        return False
+    slope = float(x @ y) / power
+    rounding = abs(slope) * reading_step(position) + reading_step(column)
+    reach = float(np.ptp(column))
+    if rounding * FEWEST_STEPS > reach:
+        return False
+    return float(np.max(np.abs(y - slope * x))) <= rounding + DIGITS * reach
+
+
+def _jumps(column: Array) -> bool:
+    """Whether a column crosses a large part of its range between two rows, as no body does."""
+    return float(np.max(np.abs(np.diff(column)))) > JUMP * float(np.ptp(column))
+
+
+def most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str:
+    """That of equally likely positions whose motion explains most of any other column.
+
+    flat: values (n,) of the columns, by name;  h: time between two rows
+    """
+    if len(names) == 1:
+        return names[0]
+    names = [n for n in names if not _jumps(flat[n])] or names
+    shares = {
+        name: max(
+            (
+                explain_force(f, flat[name], h).explained
+                for n, f in flat.items()
+                if n != name and not is_copy(f, flat[name])
+            ),
+            default=0.0,
+        )
+        for name in names
+    }
+    return max(shares, key=lambda name: shares[name])
