@@ -11,7 +11,7 @@ from passivity.interval_boxes import HAND
 
 import teleopdesign as td
 from teleopdesign.passivity import claim_over_intervals
-from teleopdesign.passivity.checker import Refused, check
+from teleopdesign.passivity.checker import Refused, check, over_a_box
 
 LOW, HIGH = Fraction(-1), Fraction(2)
 
@@ -185,8 +185,10 @@ def test_no_polynomial_that_meets_the_axis_within_the_box_is_accepted():
 
 
 @pytest.mark.slow
-def test_no_more_polynomials_that_meet_the_axis_within_the_box_are_accepted():
-    assert all(n > 3 for n in attack(2, 24).values())
+def test_no_more_polynomials_that_meet_the_axis_within_the_box_are_accepted(monkeypatch):
+    # what takes longer is refused either way: with the whole effort after half a minute in all
+    monkeypatch.setattr(over_a_box, "EFFORT", over_a_box.EFFORT // 20)
+    assert all(n > 5 for n in attack(2, 42).values())
 
 
 def claims():
