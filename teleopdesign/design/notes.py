@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.ladder_text import say_floors
+from ..diagnose.noise_floor import say_floors
 from ..quantity import unit_of
 from ..realise.friction_interval import FrictionInterval
 from .from_answer import DiagnosedModel

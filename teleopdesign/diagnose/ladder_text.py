@@ -15,6 +15,7 @@ from .constant_force import constant_force_line
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
+from .noise_floor import say_floors
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
 
@@ -203,11 +204,6 @@ def _records_line(diagnosis: Diagnosis) -> str:
         f"{line}: the machine was not the same in both (friction, temperature, load), or moved "
         "differently"
     )
-
-
-def say_floors(left: float) -> str:
-    """An error in noise floors, in words: no number where it only says that the floor is zero."""
-    return f"{left:.1f}" if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
 
 
 def floors_apart(left: float, without: float) -> tuple[str, str]:

@@ -20,6 +20,7 @@ from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
 from ..model import Model
+from .criteria import CRITERIA
 from .error import error_of
 from .error_at_command import refer_to_command
 from .jitter import jitter_of
@@ -66,6 +67,15 @@ class NoiseFloor(ByValue):
         if self.value <= value:
             return self
         return replace(self, value=value, held=True)
+
+
+def say_floors(left: float, form: str = ".1f") -> str:
+    """An error in noise floors, in words: no number where it only says that the floor is zero.
+
+    form: of the number, as in a format string
+    """
+    most = CRITERIA.countable
+    return f"{left:{form}}" if left <= most else f"more than {most:g}"
 
 
 def noise_floor(

@@ -21,7 +21,7 @@ from .criteria import CRITERIA, Criteria
 from .decision import is_better
 from .diagnosis import SetAside
 from .fit import Fit, estimate
-from .noise_floor import NoiseFloor
+from .noise_floor import NoiseFloor, say_floors
 from .one_moment import MOMENTS
 from .prepare import Prepared
 from .rung import Rung
@@ -104,10 +104,11 @@ def stands_in_for_readings(
         explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left
     if explains:
         return None
+    floors, without = say_floors(leaves, ".2g"), say_floors(left, ".2g")
     reason = (
         f"lowers the error from the readings of the sensors, from {100 * before.drawn:.2g} to "
-        f"{100 * after.drawn:.2g} % of the force, but leaves {leaves:.2g} noise floors, "
-        f"{left:.2g} without it"
+        f"{100 * after.drawn:.2g} % of the force, but leaves {floors} noise floors, "
+        f"{without} without it"
     )
     return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..diagnose.ladder_text import say_floors
+from ..diagnose.noise_floor import say_floors
 from ..diagnose.open_questions import open_questions
 from ..finding import Finding, Graph, Series
 from ..plain_data import make_plain

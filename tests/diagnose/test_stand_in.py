@@ -117,6 +117,8 @@ def test_an_effect_that_weakens_readings_more_than_what_is_left_is_none():
     assert sentence_on_readings(2.0, 1.7) is None, "noise only, of a model that left more"
     assert sentence_on_readings(6.0, 6.0, after=0.1) is None
     assert sentence_on_readings(2.0, 3.0, before=0.0) is None, "no noise is stated"
+    nothing = sentence_on_readings(2.0, 1e7, after=1e-9)
+    assert "leaves more than 1000 noise floors, 2 without it" in nothing.reason
 
 
 def test_where_the_readings_explain_what_is_left_an_effect_does_not_explain_it_by_weakening_them():
