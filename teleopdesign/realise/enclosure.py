@@ -1,56 +1,40 @@
 """Interval enclosure of a law: bounds of its value over ranges of its symbols.
 
-The arithmetic is that of mpmath, rounded outward at 53 bits. Operations that mpmath lacks (signs,
-pieces, tanh) or encloses too widely (zero times an unbounded range) are defined here. An interval
-is a set of real numbers. Where a law is not defined, as a logarithm of a negative number, its
-interval is the whole line.
+Where a law is not defined, as a logarithm of a negative number, its interval is the whole line.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
+from math import inf
 from typing import Any
 
 import sympy as sp
-from mpmath import iv, libmp
+from mpmath import libmp
 
 from ..errors import ModelError
+from . import interval_arithmetic as arithmetic
+from .interval_arithmetic import (
+    WHOLE,
+    ZERO,
+    Enclosure,
+    absolute,
+    enclose_wave,
+    hull,
+    multiply,
+    negate,
+)
 
-#: an interval of mpmath; mpmath declares no types
-Enclosure = Any
 #: whether a condition can be true, and whether it can be false
 Possible = tuple[bool, bool]
 
-WHOLE: Enclosure = iv.mpf([float("-inf"), float("inf")])
-_ZERO, _ONE = iv.mpf(0), iv.mpf(1)
-#: largest argument of an exponential: with a larger one the result counts as unbounded, or zero
-_LARGEST_EXPONENT = 1e6
-#: factor of four units in the last place: mpmath rounds some functions of tiny arguments to the
-#: wrong side by one unit, as atan(9e-17) to its argument
-_GUARD = iv.mpf([1 - 2.0**-50, 1 + 2.0**-50])
+#: arguments of an exponential beyond which it exceeds all floats, or is next to zero
+_LARGEST_EXPONENT = 1e3
 
 
 class Singular(Exception):
     """The law may be undefined or unbounded within the ranges."""
-
-
-def interval(low: float, high: float) -> Enclosure:
-    """The interval from low to high, both without rounding."""
-    return iv.mpf([low, high])
-
-
-def ends(value: Enclosure) -> tuple[float, float]:
-    """Lower and upper end of an interval, as floats rounded outward."""
-    low, high = value._mpi_
-    below, above = libmp.to_float(low), libmp.to_float(high)
-    # conversion rounds to the nearest float, to zero or infinity beyond the range of floats
-    if libmp.mpf_gt(libmp.from_float(below), low):
-        below = math.nextafter(below, -math.inf)
-    if libmp.mpf_lt(libmp.from_float(above), high):
-        above = math.nextafter(above, math.inf)
-    return below, above
 
 
 def enclosure_of(
@@ -102,9 +86,7 @@ def _operation(node: sp.Basic, smooth: bool) -> Callable[..., Any]:
     if isinstance(node, sp.log):
         return lambda x: _logarithm(x, smooth)
     if isinstance(node, sp.tan):
-        return lambda x: multiply(
-            _enclose_sine(iv.sin(x)), _reciprocal(_enclose_sine(iv.cos(x)), smooth)
-        )
+        return lambda x: multiply(_sine(x), _reciprocal(_cosine(x), smooth))
     operation = _OPERATIONS.get(node.func)
     if operation is None:
         raise ModelError(f"no guaranteed bound: none is known of {node.func.__name__}(...)")
@@ -113,28 +95,18 @@ def _operation(node: sp.Basic, smooth: bool) -> Callable[..., Any]:
 
 def _constant(node: sp.Basic) -> Enclosure:
     if isinstance(node, sp.Float):
-        return iv.make_mpf((node._mpf_, node._mpf_))
+        return arithmetic.outward(node._mpf_, node._mpf_)
     if isinstance(node, sp.Rational) and node.is_finite:
-        return iv.mpf(node.p) / iv.mpf(node.q)
+        return arithmetic.constant(lambda bits, way: libmp.from_rational(node.p, node.q, bits, way))
     if node in (sp.pi, sp.E):
-        return +iv.pi if node == sp.pi else iv.exp(_ONE)
+        return arithmetic.constant(libmp.mpf_pi if node == sp.pi else libmp.mpf_e)
     raise ModelError(f"no guaranteed bound: none is known of {node}")
 
 
-def multiply(x: Enclosure, y: Enclosure) -> Enclosure:
-    """Product; zero times an unbounded range is zero, because a range holds real numbers only."""
-    if x.a == 0 == x.b or y.a == 0 == y.b:
-        return _ZERO
-    return x * y
-
-
 def _reciprocal(x: Enclosure, smooth: bool) -> Enclosure:
-    if x.a <= 0 <= x.b:
-        if smooth:
-            raise Singular
-        if x.a < 0 < x.b or x.a == x.b:
-            return WHOLE
-    return _ONE / x
+    if smooth and x[0] <= 0.0 <= x[1]:
+        raise Singular
+    return arithmetic.reciprocal(x)
 
 
 def _power(node: sp.Pow, smooth: bool) -> Callable[..., Enclosure]:
@@ -147,76 +119,85 @@ def _power(node: sp.Pow, smooth: bool) -> Callable[..., Enclosure]:
 
     def power(x: Enclosure) -> Enclosure:
         if root != 1:
-            if smooth and x.a <= 0:
+            if smooth and x[0] <= 0.0:
                 raise Singular
-            if x.a < 0:
+            if x[0] < 0.0:
                 return WHOLE
-            x = iv.sqrt(x) if root == 2 else _enclose_root(x, root)
-        x = x**whole
+            x = _square_root(x) if root == 2 else _enclose_root(x, root)
+        x = arithmetic.power(x, whole)
         return _reciprocal(x, smooth) if exponent < 0 else x
 
     return power
 
 
+def _square_root(x: Enclosure) -> Enclosure:
+    """The root of an interval that is not negative: mpmath rounds it correctly."""
+    low, high = (libmp.from_float(end) for end in x)
+    bits = arithmetic.BITS
+    return arithmetic.outward(
+        libmp.mpf_sqrt(low, bits, libmp.round_floor),
+        libmp.mpf_sqrt(high, bits, libmp.round_ceiling),
+    )
+
+
 def _enclose_root(x: Enclosure, root: int) -> Enclosure:
     """The root of an interval that is not negative."""
-    zero = x.a == 0
-    power = _exponential(_logarithm(x, False) / root)
-    return _hull(_ZERO, power) if zero else power
+    whole = arithmetic.reciprocal((float(root), float(root)))
+    power = _exponential(multiply(_logarithm(x, False), whole))
+    return hull(ZERO, power) if x[0] == 0.0 else power
 
 
 def _logarithm(x: Enclosure, smooth: bool) -> Enclosure:
-    if smooth and x.a <= 0:
+    if smooth and x[0] <= 0.0:
         raise Singular
-    return WHOLE if x.a < 0 or x.b <= 0 else multiply(iv.log(x), _GUARD)
+    if x[0] < 0.0 or x[1] <= 0.0:
+        return WHOLE
+    low = -inf if x[0] == 0.0 else _logarithm_of_positive(x[0])[0]
+    return low, _logarithm_of_positive(x[1])[1]
+
+
+def _logarithm_of_positive(x: float) -> Enclosure:
+    return (inf, inf) if x == inf else arithmetic.enclose_rising(libmp.mpf_log, (x, x))
 
 
 def _exponential(x: Enclosure) -> Enclosure:
-    low = x.a if x.a > -_LARGEST_EXPONENT else iv.mpf("-inf")
-    high = x.b if x.b < _LARGEST_EXPONENT else iv.mpf("inf")
-    below = iv.exp(low if x.a < _LARGEST_EXPONENT else iv.mpf(_LARGEST_EXPONENT))
-    above = iv.exp(high if x.b > -_LARGEST_EXPONENT else iv.mpf(-_LARGEST_EXPONENT))
-    hull = _hull(below, above) * _GUARD
-    if x.b <= 0:
-        return iv.mpf([hull.a, min(hull.b, _ONE)])
-    return iv.mpf([max(hull.a, _ONE), hull.b]) if x.a >= 0 else hull
+    low, high = x
+    below = 0.0 if low < -_LARGEST_EXPONENT else _exponential_of(min(low, _LARGEST_EXPONENT))[0]
+    above = inf if high > _LARGEST_EXPONENT else _exponential_of(max(high, -_LARGEST_EXPONENT))[1]
+    least, most = (1.0 if low >= 0.0 else 0.0), (1.0 if high <= 0.0 else inf)
+    return arithmetic.within((below, above), least, most)
 
 
-def _enclose_sine(x: Enclosure) -> Enclosure:
-    """The range of a sine, with a guard against rounding."""
-    guarded = x * _GUARD
-    return iv.mpf([max(guarded.a, -_ONE), min(guarded.b, _ONE)])
+def _exponential_of(x: float) -> Enclosure:
+    return arithmetic.enclose_rising(libmp.mpf_exp, (x, x))
 
 
-def _hull(*parts: Enclosure) -> Enclosure:
-    return iv.mpf([min(p.a for p in parts), max(p.b for p in parts)])
+def _sine(x: Enclosure) -> Enclosure:
+    return enclose_wave(libmp.libmpi.mpi_sin, x)
 
 
-def _enclose_rising(function: Callable[..., Any]) -> Callable[[Enclosure], Enclosure]:
-    """The interval of an increasing function, from its values at both ends."""
+def _cosine(x: Enclosure) -> Enclosure:
+    return enclose_wave(libmp.libmpi.mpi_cos, x)
 
-    def enclose(x: Enclosure) -> Enclosure:
-        low, high = x._mpi_
-        ends = (function(low, 53, libmp.round_floor), function(high, 53, libmp.round_ceiling))
-        return iv.make_mpf(ends) * _GUARD
 
-    return enclose
+def _half(*parts: Enclosure) -> Enclosure:
+    return multiply(_add(*parts), (0.5, 0.5))
 
 
 def _sign(x: Enclosure) -> Enclosure:
-    return iv.mpf([_sign_of(x.a), _sign_of(x.b)])
+    return _sign_of(x[0]), _sign_of(x[1])
 
 
-def _sign_of(x: Enclosure) -> int:
-    return int(x > 0) - int(x < 0)
+def _sign_of(x: float) -> float:
+    return float(x > 0) - float(x < 0)
 
 
 def _step(x: Enclosure, *_: Any) -> Enclosure:
-    return iv.mpf([1 if x.a > 0 else 0, 0 if x.b < 0 else 1])
+    return 1.0 if x[0] > 0 else 0.0, 0.0 if x[1] < 0 else 1.0
 
 
 def _add(*parts: Enclosure) -> Enclosure:
-    return reduce(lambda x, y: x + y, parts)
+    return reduce(arithmetic.add, parts)
 
 
 def _multiply_all(*parts: Enclosure) -> Enclosure:
@@ -224,11 +205,11 @@ def _multiply_all(*parts: Enclosure) -> Enclosure:
 
 
 def _enclose_minimum(*parts: Enclosure) -> Enclosure:
-    return iv.mpf([min(p.a for p in parts), min(p.b for p in parts)])
+    return min(p[0] for p in parts), min(p[1] for p in parts)
 
 
 def _largest(*parts: Enclosure) -> Enclosure:
-    return iv.mpf([max(p.a for p in parts), max(p.b for p in parts)])
+    return max(p[0] for p in parts), max(p[1] for p in parts)
 
 
 def _pieces(*parts: Any) -> Enclosure:
@@ -238,23 +219,23 @@ def _pieces(*parts: Any) -> Enclosure:
         if can_be_true:
             reached.append(value)
         if not can_be_false:
-            return _hull(*reached)
+            return hull(*reached)
     return WHOLE  # undefined where no condition is true
 
 
 def _compare_below(x: Enclosure, y: Enclosure) -> Possible:
-    return bool(x.a < y.b), bool(x.b >= y.a)
+    return x[0] < y[1], x[1] >= y[0]
 
 
 def _compare_not_above(x: Enclosure, y: Enclosure) -> Possible:
-    return bool(x.a <= y.b), bool(x.b > y.a)
+    return x[0] <= y[1], x[1] > y[0]
 
 
 def _compare_equal(x: Enclosure, y: Enclosure) -> Possible:
-    return bool(x.a <= y.b and y.a <= x.b), not (x.a == x.b == y.a == y.b)
+    return x[0] <= y[1] and y[0] <= x[1], not (x[0] == x[1] == y[0] == y[1])
 
 
-def _negate(x: Possible) -> Possible:
+def _refute(x: Possible) -> Possible:
     return x[1], x[0]
 
 
@@ -267,13 +248,13 @@ _OPERATIONS: Mapping[Any, Callable[..., Any]] = {
     sp.Add: _add,
     sp.Mul: _multiply_all,
     sp.exp: _exponential,
-    sp.sin: lambda x: _enclose_sine(iv.sin(x)),
-    sp.cos: lambda x: _enclose_sine(iv.cos(x)),
-    sp.tanh: lambda x: _enclose_sine(_enclose_rising(libmp.mpf_tanh)(x)),
-    sp.atan: _enclose_rising(libmp.mpf_atan),
-    sp.sinh: lambda x: (_exponential(x) - _exponential(-x)) / 2,
-    sp.cosh: lambda x: (_exponential(abs(x)) + _exponential(-abs(x))) / 2,
-    sp.Abs: abs,
+    sp.sin: _sine,
+    sp.cos: _cosine,
+    sp.tanh: lambda x: arithmetic.within(arithmetic.enclose_rising(libmp.mpf_tanh, x), -1.0, 1.0),
+    sp.atan: lambda x: arithmetic.enclose_rising(libmp.mpf_atan, x),
+    sp.sinh: lambda x: _half(_exponential(x), negate(_exponential(negate(x)))),
+    sp.cosh: lambda x: _half(_exponential(absolute(x)), _exponential(negate(absolute(x)))),
+    sp.Abs: absolute,
     sp.sign: _sign,
     sp.Heaviside: _step,
     sp.Min: _enclose_minimum,
@@ -284,9 +265,9 @@ _OPERATIONS: Mapping[Any, Callable[..., Any]] = {
     sp.LessThan: _compare_not_above,
     sp.GreaterThan: lambda x, y: _compare_not_above(y, x),
     sp.Equality: _compare_equal,
-    sp.Unequality: lambda x, y: _negate(_compare_equal(x, y)),
+    sp.Unequality: lambda x, y: _refute(_compare_equal(x, y)),
     sp.And: lambda *all_of: (all(x[0] for x in all_of), any(x[1] for x in all_of)),
     sp.Or: lambda *any_of: (any(x[0] for x in any_of), all(x[1] for x in any_of)),
-    sp.Not: _negate,
+    sp.Not: _refute,
     sp.ITE: _if,
 }

@@ -14,7 +14,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...realise.enclosure import enclosure_of, ends
+from ...realise.enclosure import enclosure_of
 from .late_terms import ExactTerms
 
 Terms = Mapping[float, np.ndarray]
@@ -67,7 +67,7 @@ def holds_root(terms: ExactTerms, at: complex) -> float | None:
     for power in range(-10, -1):
         radius = base * Fraction(10) ** power
         rest = sp.Add(*(_further(p, t, x, base, radius) for t, p in terms.items()))
-        most = ends(enclosure_of(rest, ())(()))[1]
+        _, most = enclosure_of(rest, ())(())
         edge = float(radius) * (1 - 1e-15)
         if (most_value + most) * (1 + 1e-15) < least_slope * edge * (1 - 1e-15):
             return float(radius) * (1 + 1e-15)
@@ -102,7 +102,7 @@ def _enclose_at(
             real, imaginary = _number(real), _number(imaginary)
             total[0] += size * (real * sp.cos(turn) + imaginary * sp.sin(turn))
             total[1] += size * (imaginary * sp.cos(turn) - real * sp.sin(turn))
-    first, second = (ends(enclosure_of(r**2 + i**2, ())(())) for r, i in (value, slope))
+    first, second = (enclosure_of(r**2 + i**2, ())(()) for r, i in (value, slope))
     return first, second
 
 
