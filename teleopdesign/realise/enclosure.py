@@ -165,7 +165,7 @@ def _exponential(x: Enclosure) -> Enclosure:
     below = 0.0 if low < -_LARGEST_EXPONENT else _exponential_of(min(low, _LARGEST_EXPONENT))[0]
     above = inf if high > _LARGEST_EXPONENT else _exponential_of(max(high, -_LARGEST_EXPONENT))[1]
     least, most = (1.0 if low >= 0.0 else 0.0), (1.0 if high <= 0.0 else inf)
-    return arithmetic.within((below, above), least, most)
+    return arithmetic.limit((below, above), least, most)
 
 
 def _exponential_of(x: float) -> Enclosure:
@@ -250,7 +250,7 @@ _OPERATIONS: Mapping[Any, Callable[..., Any]] = {
     sp.exp: _exponential,
     sp.sin: _sine,
     sp.cos: _cosine,
-    sp.tanh: lambda x: arithmetic.within(arithmetic.enclose_rising(libmp.mpf_tanh, x), -1.0, 1.0),
+    sp.tanh: lambda x: arithmetic.limit(arithmetic.enclose_rising(libmp.mpf_tanh, x), -1.0, 1.0),
     sp.atan: lambda x: arithmetic.enclose_rising(libmp.mpf_atan, x),
     sp.sinh: lambda x: _half(_exponential(x), negate(_exponential(negate(x)))),
     sp.cosh: lambda x: _half(_exponential(absolute(x)), _exponential(negate(absolute(x)))),

@@ -18,7 +18,7 @@ from mpmath import libmp
 
 Enclosure = tuple[float, float]
 #: a function of mpmath on its own numbers: (number, bits, rounding) -> number
-PointFunction = Callable[[Any, int, str], Any]
+RoundedFunction = Callable[[Any, int, str], Any]
 
 WHOLE: Enclosure = (-inf, inf)
 ZERO: Enclosure = (0.0, 0.0)
@@ -40,7 +40,7 @@ def _next_to(rounded: float, error: float) -> Enclosure:
     return low, rounded if error <= 0.0 else nextafter(rounded, inf)
 
 
-def _beyond(sign: float) -> Enclosure:
+def _outside_floats(sign: float) -> Enclosure:
     """Where a finite number lies that is beyond all floats."""
     return (_LARGEST, inf) if sign > 0 else (-inf, -_LARGEST)
 
@@ -65,7 +65,7 @@ def add_floats(a: float, b: float) -> Enclosure:
     """The floats on either side of a + b, both equal where it is a float."""
     s = a + b
     if isinf(s):
-        return (s, s) if isinf(a) or isinf(b) else _beyond(s)
+        return (s, s) if isinf(a) or isinf(b) else _outside_floats(s)
     v = s - a
     return _next_to(s, (a - (s - v)) + (b - v))
 
@@ -76,7 +76,7 @@ def multiply_floats(a: float, b: float) -> Enclosure:
         return ZERO
     p = a * b
     if isinf(p):
-        return (p, p) if isinf(a) or isinf(b) else _beyond(p)
+        return (p, p) if isinf(a) or isinf(b) else _outside_floats(p)
     if abs(a) == 1.0 or abs(b) == 1.0:
         return p, p
     if _is_usual(a) and _is_usual(b):
@@ -90,7 +90,7 @@ def _invert_float(a: float) -> Enclosure:
     """The floats on either side of 1/a, a not zero; of an infinite end, zero."""
     r = 1.0 / a
     if isinf(r):
-        return _beyond(r)
+        return _outside_floats(r)
     if isinf(a):
         return ZERO
     if not (_is_usual(a) and _is_usual(r)):
@@ -101,14 +101,17 @@ def _invert_float(a: float) -> Enclosure:
 
 
 def add(x: Enclosure, y: Enclosure) -> Enclosure:
+    """Sum of two intervals."""
     return add_floats(x[0], y[0])[0], add_floats(x[1], y[1])[1]
 
 
 def negate(x: Enclosure) -> Enclosure:
+    """The interval turned round zero."""
     return -x[1], -x[0]
 
 
 def absolute(x: Enclosure) -> Enclosure:
+    """The absolute values of the numbers of an interval."""
     low, high = x
     if low >= 0.0:
         return x
@@ -176,7 +179,7 @@ def constant(function: Callable[[int, str], Any]) -> Enclosure:
     return outward(function(BITS, libmp.round_floor), function(BITS, libmp.round_ceiling))
 
 
-def enclose_rising(function: PointFunction, x: Enclosure) -> Enclosure:
+def enclose_rising(function: RoundedFunction, x: Enclosure) -> Enclosure:
     """The interval of an increasing function, from its values at both ends."""
     low, high = (libmp.from_float(end) for end in x)
     ends = function(low, BITS, libmp.round_floor), function(high, BITS, libmp.round_ceiling)
@@ -186,9 +189,9 @@ def enclose_rising(function: PointFunction, x: Enclosure) -> Enclosure:
 def enclose_wave(function: Callable[[Any, int], Any], x: Enclosure) -> Enclosure:
     """The range of a sine or cosine of mpmath's intervals."""
     ends = function((libmp.from_float(x[0]), libmp.from_float(x[1])), BITS)
-    return within(multiply(outward(*ends), _GUARD), -1.0, 1.0)
+    return limit(multiply(outward(*ends), _GUARD), -1.0, 1.0)
 
 
-def within(x: Enclosure, least: float, most: float) -> Enclosure:
+def limit(x: Enclosure, least: float, most: float) -> Enclosure:
     """The interval without what lies beyond bounds that are known of its values."""
     return max(x[0], least), min(x[1], most)
