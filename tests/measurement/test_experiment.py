@@ -181,16 +181,16 @@ def test_a_dataset_in_a_group_is_named_by_its_path(rod, edit):
 
 
 @pytest.mark.slow
-def test_an_hour_at_1_khz_is_read_in_well_under_a_minute(rod):
+def test_ten_minutes_at_1_khz_are_read_in_seconds(rod):
 
     block = [
         f"%s,{u:.5f},{x:.7f},{f:.4f}" for u, x, f in np.random.default_rng(1).normal(size=(1000, 3))
     ]
     with (rod / "fit.csv").open("w") as file:
         file.write("t,u,x,f_h\n")
-        for second in range(3600):
+        for second in range(600):
             for i, line in enumerate(block):
                 file.write(line % f"{second + i / 1000:.3f}" + "\n")
-    with takes_less_than(30):  # s; 3 on a quiet machine
+    with takes_less_than(10):  # s; 0.5 on a quiet machine
         record = load_experiment(rod).records[0]
-    assert len(record.time) == 3_600_000
+    assert len(record.time) == 600_000

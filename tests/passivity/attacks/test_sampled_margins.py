@@ -144,7 +144,7 @@ def behind(drawn, delay):
     return [*near, at * (1 + Fraction(1, 10**8)), at * (1 + Fraction(1, 10**6))]
 
 
-@attacked(0, 10)
+@attacked(0, 6)
 def test_a_sampled_loop_grows_from_its_delay_margin_on_and_not_before(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     while sum(counts.values()) < number:
@@ -167,7 +167,7 @@ def test_a_sampled_loop_grows_from_its_delay_margin_on_and_not_before(seed, numb
     assert counts["delay limits"] and counts["grows"]
 
 
-@attacked(6, 40)
+@attacked(6, 15)
 def test_a_sampled_loop_grows_from_its_gain_and_phase_margins_on_and_not_before(seed, number):
     """Its gain times a factor, or turned by an angle at all frequencies."""
     rng, counts = np.random.default_rng(seed), Counter()

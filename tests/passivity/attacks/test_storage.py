@@ -139,7 +139,7 @@ def random_friction(rng):
     return Dahl(share_of_body, soft * 10 ** rng.uniform(-1, 0.7)), friction
 
 
-@attacked(0, 15)
+@attacked(0, 8)
 def test_no_motion_takes_out_more_than_a_storage_that_has_converged(seed, number):
     rng, counts, nearest = np.random.default_rng(seed), Counter(), []
     for k in range(number):

@@ -477,7 +477,7 @@ def judge(family, rng, counts):
 
 
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.__name__)
-@attacked(1, 16)
+@attacked(1, 10)
 def test_no_strange_wiring_is_proved_that_grows_or_gives_out_energy(family, seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
