@@ -117,7 +117,8 @@ def acts_at_few_moments(base: Fit, fit: Fit) -> bool:
     """Whether fewer than `MOMENTS` blocks of the check records hold what an effect explains.
 
     Their effective number is (sum g)^2 / sum g^2 with the falls g of the sum of squares: 15 to 23
-    of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of readings.
+    of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of readings. In
+    shorter records it is small whatever acts: there the doubt counts against the effect.
     """
     falls = np.bincount(base.check_blocks, base.check_residual**2 - fit.check_residual**2)
     return bool(falls.sum() ** 2 < MOMENTS * np.sum(falls**2))

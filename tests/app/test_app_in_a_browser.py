@@ -89,7 +89,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("served", [["--only", *FEW]], indirect=True)  # all: 75 s
+@pytest.mark.parametrize("served", [["--only", *FEW]], indirect=True)  # all: half as long again
 @pytest.mark.skipif(CHROMIUM is None, reason=WHY)
 def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
     address, folder = served
