@@ -33,6 +33,8 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "velocity": velocity,
         "acceleration": acceleration,
         "force": force,
+        "largest_force": max(float(np.abs(m.command + m.interaction).max()) for m in motions)
+        or force,
         "inertia": force / acceleration,
         "damping": force / velocity,
         "stiffness": force / position,

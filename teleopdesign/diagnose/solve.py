@@ -53,6 +53,7 @@ class _SearchSpace:
 
     scale: (p,) SI value of the unit of each;  decades: (p,) whether x is a logarithm
     lower, upper, start: (p,) bounds of x, and where the search starts
+    limited: (p,) whether the upper bound is a `FitSearch.limit`, no bound of the parameter
     """
 
     scale: Array
@@ -60,6 +61,7 @@ class _SearchSpace:
     lower: Array
     upper: Array
     start: Array
+    limited: NDArray[np.bool_]
 
     def values(self, x: Array) -> Array:
         """Values (p,) of the parameters at x, in SI units."""
@@ -80,12 +82,15 @@ def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _S
     upper = np.array(
         [min(d.upper / s, d.search.within) for d, s in zip(declared, scale, strict=True)]
     )
+    limits = np.array([d.search.limit for d in declared])
+    limited, upper = limits < upper, np.minimum(limits, upper)
     start = np.array([model.parameters[n].value for n in free]) / scale
     lower[decades] = -DECADES * np.log(10)
     upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
     start[decades] = np.log(np.maximum(start[decades], 1e-300))
     # slightly inside the bounds: a law may divide by a parameter whose bound is zero
-    return _SearchSpace(scale, decades, lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND, start)
+    inside = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND
+    return _SearchSpace(scale, decades, *inside, start, limited)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +161,9 @@ def solve(
     if any(s.shared is not None for s in stretches):
         left = replace(left, model=settle_links(left.model_at(best), stretches))
         residual, jacobian = left.both(best)
-    at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
+    at_upper = upper - best < AT_BOUND
+    at_upper[:p] &= ~space.limited
+    at_bound = (best - lower < AT_BOUND) | at_upper
     return Solution(
         model=left.model_at(best),
         values=space.values(best[:p]),

@@ -28,12 +28,15 @@ class FitSearch:
 
     starts: start values, as multiples of the record's scale
     scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
-        travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
+        travel; "largest_force": measured, actuator and interaction together; "resonance_stiffness"
+        and the like: of a resonance within the bandwidth
     of_a_turn: on a revolute axis, starts at whole fractions of a turn too, down to one over this
         number, where they are shorter than all `starts`
     of: another parameter, before this one in the effect: `starts` are multiples of each of its
         values, so that both start together; "": of the record's scale
     within: upper bound in that scale, above which the parameter would have another meaning
+    limit: upper bound in that scale for a search only: no larger value can have acted. A parameter
+        at it keeps its meaning, and does not count as at a bound
     chosen: fixed at the first start, not estimated: other parameters are relative to this one
     essential: must surely exceed zero, because at zero the effect is another one; and other values
         of it must leave more, with all other parameters fitted again
@@ -44,6 +47,7 @@ class FitSearch:
     of_a_turn: int = 0
     of: str = ""
     within: float = float("inf")
+    limit: float = float("inf")
     chosen: bool = False
     essential: bool = False
 

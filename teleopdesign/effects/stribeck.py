@@ -38,7 +38,11 @@ EFFECT = Effect(
     energy="dissipates",
     law=law,
     parameters={
-        "extra_static_level": Parameter("force", "F_S - F_C: extra friction at rest"),
+        "extra_static_level": Parameter(
+            "force",
+            "F_S - F_C: extra friction at rest",
+            search=FitSearch(scale="largest_force", limit=1.0),
+        ),
         "stribeck_velocity": Parameter(
             "velocity",
             "v_S: speed where the extra level is down to 1/e",

@@ -113,6 +113,7 @@ SCALES = {
     "cogging_harmonic.period": "travel",
     "friction_drift.time_constant": "duration",
     "position_dependent_friction.period": "travel",
+    "stribeck.extra_static_level": "largest_force",
     "torque_ripple.period": "travel",
     "transmission_compliance.damping": "resonance_damping",
     "transmission_compliance.stiffness": "resonance_stiffness",
@@ -126,6 +127,8 @@ WITHIN = {
     "torque_ripple.period": 2.0,
     **{f"maxwell_slip.{n}_{i}": 1e4 for n in ("stiffness", "level") for i in (3, 4)},
 }
+#: largest value that can have acted, in that unit
+LIMIT = {"stribeck.extra_static_level": 1.0}
 #: set, and not estimated
 CHOSEN = {
     "contact_hardening.depth",
@@ -151,7 +154,7 @@ PARAMETERS = {f"{n}.{p}": q for n, e in KNOWN.items() for p, q in e.parameters.i
 
 
 def test_every_name_of_these_tables_is_a_parameter():
-    for names in (BOUNDS, STARTS, SCALES, OF, WITHIN, CHOSEN, OPTIONAL):
+    for names in (BOUNDS, STARTS, SCALES, OF, WITHIN, LIMIT, CHOSEN, OPTIONAL):
         assert set(names) <= set(PARAMETERS)
 
 
@@ -165,6 +168,7 @@ def test_a_parameter_has_the_bounds_and_the_search_of_these_tables(name):
     assert declared.scale == SCALES.get(name, declared.quantity)
     assert search.of == OF.get(name, "")
     assert search.within == WITHIN.get(name, inf)
+    assert search.limit == LIMIT.get(name, inf)
     assert search.chosen == (name in CHOSEN)
     # without a gap a play is a compliance
     assert search.essential == (name == "backlash.gap")
