@@ -7,9 +7,11 @@ Time counts in samples. Numbers are exact before `mpmath` takes them, with the d
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 import mpmath
 import numpy as np
@@ -38,13 +40,10 @@ class HeldPlant:
         """
         lead, n = below[0], len(below) - 1
         # time in samples: s h = q, so that the coefficient of q^k is that of s^k over h^k
-        monic = [c / lead * period**k for k, c in enumerate(below)]
-        a = mpmath.matrix(n, n)
-        for i in range(n):
-            a[i, 0] = as_mpf(-monic[i + 1])
-            if i + 1 < n:
-                a[i, i + 1] = mpmath.mpf(1)
-        whole = _integral(a, mpmath.mpf(1))
+        monic = tuple(c / lead * period**k for k, c in enumerate(below))
+        a = _companion(monic)
+        growth = _growth_of(monic, mpmath.mp.dps) if n else None
+        whole = growth.integral(mpmath.mpf(1)) if growth else a
         inputs = []
         for time, numerator in above:
             padded = [Fraction(0)] * (n + 1 - len(numerator)) + list(numerator)
@@ -54,10 +53,10 @@ class HeldPlant:
                                zip(scaled[1:], monic[1:], strict=True)] or [0])  # fmt: skip
             m = int(time // period)
             share = as_mpf(time / period - m)
-            if not n:
+            if growth is None:
                 inputs.append((m, mpmath.matrix(0, 1), mpmath.matrix(0, 1), as_mpf(straight)))
                 continue
-            late = _integral(a, 1 - share)
+            late = growth.integral(1 - share)
             inputs.append((m, late * b, (whole - late) * b, as_mpf(straight)))
         output = mpmath.matrix(1, n)
         if n:
@@ -107,18 +106,74 @@ class HeldPlant:
         return step * scale / beside, now / beside, before / beside, straight, whole, c * scale
 
 
-def _integral(a: mpmath.matrix, time: mpmath.mpf) -> mpmath.matrix:
-    """Integral of e^(A t) from 0 to `time`: a block of the exponential of a larger matrix."""
-    n = a.rows
-    if not n:
-        return a
-    whole = mpmath.matrix(2 * n, 2 * n)
+@dataclass(frozen=True)
+class _Growth:
+    """Integrals of e^(A t) from 0 to any part of a sample, from those over halves of a sample.
+
+    terms: elements of A^k / (k+1)!, row by row, for times up to the shortest half
+    halves: e^(A t) and its integral for t = 2^-j, the shortest, up to 1
+    """
+
+    terms: tuple[list[mpmath.mpf], ...]
+    halves: tuple[tuple[mpmath.matrix, mpmath.matrix], ...]
+
+    @classmethod
+    def of(cls, a: mpmath.matrix) -> _Growth:
+        """The integrals for a matrix A, time in samples, with the digits that are set."""
+        size = mpmath.mnorm(a, "inf")
+        times = max(mpmath.mag(size), 0) + int(0.5 * mpmath.mp.prec**0.5)
+        with mpmath.extraprec(2 * a.rows + times):
+            shortest = mpmath.ldexp(1, -times)
+            powers, left = [mpmath.eye(a.rows)], mpmath.mpf(1)
+            while left > mpmath.eps:
+                k = len(powers) + 1
+                powers.append(powers[-1] * a / k)
+                left = left * size * shortest / k
+            terms = tuple(list(power) for power in powers)
+            over = cls(terms, ())._up_to(shortest)
+            halves = [(mpmath.eye(a.rows) + a * over, over)]
+            for _ in range(times):
+                step, over = halves[-1]
+                halves.append((step * step, over + step * over))
+        return cls(terms, tuple(halves))
+
+    def _up_to(self, time: mpmath.mpf) -> mpmath.matrix:
+        """The integral up to a time within the shortest half."""
+        # lists: a matrix of `mpmath` takes ten times as long to add
+        total = [x * time for x in self.terms[-1]]
+        for term in reversed(self.terms[:-1]):
+            total = [(x + y) * time for x, y in zip(total, term, strict=True)]
+        n = math.isqrt(len(total))
+        return mpmath.matrix([total[i * n : (i + 1) * n] for i in range(n)])
+
+    def integral(self, time: mpmath.mpf) -> mpmath.matrix:
+        """The integral of e^(A t) from 0 to a time of 0 to 1 samples."""
+        times = len(self.halves) - 1
+        whole = int(mpmath.floor(mpmath.ldexp(time, times)))
+        total = self._up_to(time - mpmath.ldexp(whole, -times))
+        for k, (step, over) in enumerate(self.halves):
+            if whole >> k & 1:
+                total = over + step * total
+        return total
+
+
+# a search for a margin moves the dead time of one plant
+@lru_cache(maxsize=16)
+def _growth_of(monic: tuple[Fraction, ...], digits: int) -> _Growth:
+    """The integrals for a plant of these coefficients, highest power first, time in samples."""
+    with mpmath.workdps(digits):
+        return _Growth.of(_companion(monic))
+
+
+def _companion(monic: Sequence[Fraction]) -> mpmath.matrix:
+    """The matrix A of the states of a denominator whose first coefficient is 1."""
+    n = len(monic) - 1
+    a = mpmath.matrix(n, n)
     for i in range(n):
-        for j in range(n):
-            whole[i, j] = a[i, j] * time
-        whole[i, n + i] = time
-    made = mpmath.expm(whole, method="taylor")
-    return made[:n, n:]
+        a[i, 0] = as_mpf(-monic[i + 1])
+        if i + 1 < n:
+            a[i, i + 1] = mpmath.mpf(1)
+    return a
 
 
 def as_mpf(value: Fraction) -> mpmath.mpf:
