@@ -32,11 +32,11 @@ def is_copy(column: Array, position: Array) -> bool:
     if power == 0.0:
         return False
     slope = float(x @ y) / power
-    rounding = abs(slope) * reading_step(position) + reading_step(column)
-    reach = float(np.ptp(column))
-    if rounding * FEWEST_STEPS > reach:
+    reach, off = float(np.ptp(column)), float(np.max(np.abs(y - slope * x)))
+    if off > reach / FEWEST_STEPS + DIGITS * reach:  # no rounding that is allowed explains it
         return False
-    return float(np.max(np.abs(y - slope * x))) <= rounding + DIGITS * reach
+    rounding = abs(slope) * reading_step(position) + reading_step(column)
+    return rounding * FEWEST_STEPS <= reach and off <= rounding + DIGITS * reach
 
 
 def _jumps(column: Array) -> bool:
