@@ -110,17 +110,24 @@ def _summary(
             + "."
         )
     if base.fit_error > CRITERIA.adequate * floor:
-        parts.append(
-            f"these limits hold above the noise floor, {100 * floor:.2g} % of the force; "
-            f"{100 * base.fit_error:.2g} % of the force is unexplained, and small effects may be "
-            "hidden in this part."
-        )
+        parts.append(_describe_floor(base.fit_error, floor))
     return Finding(
         "what the record can show",
         "note" if hidden or never or large else "fine",
         "\n".join(p[0].upper() + p[1:] for p in parts),
         numbers,
         place,
+    )
+
+
+def _describe_floor(left: float, floor: float) -> str:
+    """What the limits mean beside a part `left` of the force that the model leaves unexplained."""
+    lacks = left > CRITERIA.countable * floor
+    return (
+        f"these limits hold above the noise floor, {100 * floor:.2g} % of the force"
+        f"{', which contains no noise of the force: state `noise` at the channel' * lacks}; "
+        f"{100 * left:.2g} % of the force is unexplained, and small effects may be hidden in this "
+        "part."
     )
 
 

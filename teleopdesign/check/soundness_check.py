@@ -18,6 +18,7 @@ from ..measurement.soundness import check_signals
 from ..model import Model
 from .bandwidth_check import check_bandwidth
 from .excitation import check_excitation
+from .feedback_check import check_feedback
 from .mixed_columns import check_clock_unit, check_mixed_columns
 from .plausibility import check_plausibility
 
@@ -39,7 +40,12 @@ def check_experiment(
 
 
 def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[Finding, ...]:
-    findings = [*_guesses(experiment), *check_clock_unit(experiment), *check_signals(experiment)]
+    findings = [
+        *_guesses(experiment),
+        *check_clock_unit(experiment),
+        *check_signals(experiment),
+        *check_feedback(experiment),
+    ]
     if model is None:
         try:
             model = Model.from_experiment(experiment)

@@ -1,7 +1,8 @@
 """Plausible parameters: whether a fitted effect deserves its name, by the rules in its file.
 
-One rule holds for every force, also for a user's effects: along the motion it cannot vary by more
-than the acting forces, unless another effect cancels it.
+Two rules hold for every force, also for a user's effects: along the motion it cannot vary by more
+than the acting forces, unless another effect cancels it, and a force of the position cannot be told
+where a controller computes the command from the position.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from ..errors import ModelError
 from ..model import Model
 from ..realise.along_motion import measured_along
 from ..realise.traced import Along
+from .feedback_law import explain_computed
 from .prepare import Prepared, Stretch
 
 
@@ -41,6 +43,8 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         alongs = [(measured_along(body, s.motion), s) for s in stretches]
         for effect in effects:
             reason = _ask_effect(effect, "plausible", facts)
+            if reason is None:
+                reason = explain_computed(effect, prepared.experiment, place)
             if reason is None and effect.role == "force":
                 reason = _explain_cancelled(effect, alongs, facts)
             if reason is not None:

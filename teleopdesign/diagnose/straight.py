@@ -20,6 +20,7 @@ from ..errors import ModelError
 from ..model import Model
 from .candidates import Candidate
 from .decision import is_better
+from .feedback_law import is_of_place
 from .fit import Fit, estimate
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
@@ -139,22 +140,16 @@ def _judge_beside(rung: Rung, line: Fit, prepared: Prepared) -> Rung:
 
 
 @lru_cache(maxsize=256)
-def _is_of_place(effect: Effect) -> bool:
-    """Whether an effect is a force that depends on the position at most."""
-    signals = effect.expression().free_symbols & set(SIGNALS.values())
-    return effect.role == "force" and not effect.states and signals <= {SIGNALS["position"]}
-
-
 def is_straight(effect: Effect) -> bool:
     """Whether a force of one parameter is linear in position; a constant force is, too."""
-    if not _is_of_place(effect) or len(effect.parameters) != 1 or effect.strength is None:
+    if not is_of_place(effect) or len(effect.parameters) != 1 or effect.strength is None:
         return False
     return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) == 0)
 
 
 def is_bent(effect: Effect) -> bool:
     """Whether a force of position is not linear, and has no period of free length."""
-    if not _is_of_place(effect) or isinstance(period(effect), str):
+    if not is_of_place(effect) or isinstance(period(effect), str):
         return False
     return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) != 0)
 

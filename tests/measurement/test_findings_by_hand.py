@@ -128,8 +128,21 @@ def test_a_body_that_is_logged_more_slowly_than_another_is_to_be_diagnosed_alone
 def test_a_channel_that_changes_at_odd_times_or_always_has_no_rate():
     assert check_update(held_in_turn(1)) == []
     assert check_update(held_in_turn(10, off=1, part=0.4)) == []
-    assert check_update(held_in_turn(10, n=500)) == []  # fifty changes, 49 distances
-    assert len(check_update(held_in_turn(10, n=520))) == 1
+    position = [channel(held_in_turn(10, n=n).values, "position") for n in (500, 520)]
+    assert check_update(position[0]) == []  # fifty changes, 49 distances
+    assert len(check_update(position[1])) == 1
+
+
+def test_a_current_that_is_read_every_eighth_row_shows_it_in_few_seconds():
+    """A force takes no even times, as a position at constant speed does: twenty changes tell."""
+    short, long = (held_in_turn(8, n=n).values for n in (160, 176))
+    assert check_update(channel(short, "actuator_force")) == []
+    assert check_update(channel(long, "position")) == []
+    (finding,) = check_update(channel(long, "actuator_force"))
+    assert "changes only every 8 samples" in finding.sentence
+    assert "of a measured force, what is faster than half of this rate is lost" in finding.sentence
+    relay = np.repeat(np.arange(22) % 2, 8).astype(float)
+    assert check_update(channel(relay, "actuator_force")) == [], "a test by steps"
 
 
 def stuck_at(*holds):

@@ -5,7 +5,7 @@ import pytest
 
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.measurement.survey.set_point import follows, has_numbers_of
+from teleopdesign.measurement.survey.set_point import follows, has_numbers_of, lags, settles_at
 
 T = 0.01 * np.arange(1500)
 WANTED = 40.0 * np.sign(np.sin(1.3 * T)) + 15.0 * np.sin(2.9 * T)
@@ -95,3 +95,41 @@ def test_a_force_by_its_name_or_unit_stays_one_where_a_spring_gives_it_the_numbe
     for name in ("torque", "a [Nm]"):
         survey = look({"t": T, "angle [rad]": late, name: WANTED})
         assert survey.channels["actuator_force"]["column"] == name
+
+
+def planned():
+    """Set point, planned path, position, speed and current of a drive that plans its path."""
+    wanted = np.array([40.0, -30.0, 25.0, -45.0, 10.0, 10.0])[(T / 2.5).astype(int)]
+    path, place, speed = [0.0], [0.0], [0.0]
+    for goal in wanted[1:]:
+        path.append(path[-1] + float(np.clip(goal - path[-1], -0.3, 0.3)))
+        speed.append(speed[-1] + 0.5 * (path[-1] - place[-1] - 0.6 * speed[-1]))
+        place.append(place[-1] + 0.6 * speed[-1])
+    speed = np.array(speed)
+    current = 0.02 * np.gradient(speed, 0.01) + 0.05 * speed + 0.8 * np.tanh(20.0 * speed)
+    noise = 0.6 * np.random.default_rng(1).standard_normal(len(T))
+    return wanted, np.array(path), np.round(place, 2), np.round(60.0 * speed, 1), current + noise
+
+
+def test_steps_of_a_set_point_that_a_drive_reaches_by_a_planned_path_are_no_force():
+    columns = {f"column {k + 2}": values for k, values in enumerate(planned())}
+    survey = look({"t": T, **columns})
+    assert survey.channels["position"]["column"] == "column 4"
+    assert survey.channels["actuator_force"]["column"] == "column 6"
+    assert survey.unused["column 2"] == "a set point: 'column 4' follows it"
+    assert survey.unused["column 3"].startswith("has the numbers of 'column 4'")
+
+
+def test_a_position_lags_behind_its_planned_path_by_less_than_a_row():
+    path = np.cumsum(np.sin(2.0 * T))
+    late = 0.6 * path + 0.4 * np.r_[path[0], path[:-1]]
+    assert lags(late, path) and not lags(path, late) and not lags(path, path.copy())
+
+
+def test_a_position_settles_at_steps_of_its_set_point_and_a_relay_switches_in_motion():
+    wanted, path, *_ = planned()
+    assert settles_at(path, wanted) and not settles_at(wanted, path)
+    assert not settles_at(path[:500], wanted[:500]), "two holds"
+    swing = np.sin(3.0 * T)
+    assert not settles_at(swing, -np.sign(swing)), "a relay"
+    assert not settles_at(0.3 * path, wanted), "a gear lies between"

@@ -11,8 +11,9 @@ from typing import Literal
 import numpy as np
 
 from ...finding import Finding
-from ..encoder import update_period
+from ..encoder import CHANGES, CHANGES_OF_FORCE, update_period
 from ..repeated_rows import repeats, stuck_stretches
+from .force_steps import LEVELS
 from .signal import Signal
 
 
@@ -66,8 +67,11 @@ def check_repeats(signal: Signal) -> list[Finding]:
 
 def check_update(signal: Signal) -> list[Finding]:
     """Report a channel that changes at a lower rate than the log."""
-    every = update_period(*(x for _, x in signal.stretches))
-    if every == 1:
+    is_force = signal.channel.quantity in ("actuator_force", "interaction_force")
+    fewest = CHANGES_OF_FORCE if is_force else CHANGES
+    every = update_period(*(x for _, x in signal.stretches), fewest=fewest)
+    # a test by steps of two levels is no slow channel
+    if every == 1 or is_force and len(np.unique(signal.values)) < LEVELS:
         return []
     period = every * signal.record.sample_time
     return [
@@ -75,7 +79,8 @@ def check_update(signal: Signal) -> list[Finding]:
             "held samples",
             "note",
             f"{signal.name} changes only every {every} samples: it runs at {1 / period:.4g} Hz, "
-            f"the log at {1 / signal.record.sample_time:.4g} Hz.{_of_one_body(signal)}",
+            f"the log at {1 / signal.record.sample_time:.4g} Hz.{_of_one_body(signal)}"
+            f"{_of_a_force(signal)}",
             {"samples": float(every), "rate": 1 / period},
             signal.record.file,
         )
@@ -90,6 +95,16 @@ def _of_one_body(signal: Signal) -> str:
     return (
         f" The motion has steps between readings, which hide effects: diagnose the {body} in "
         "an experiment with its channels alone, of which one row of each reading is read."
+    )
+
+
+def _of_a_force(signal: Signal) -> str:
+    """What a held reading means where it may be a command; "" for other quantities."""
+    if signal.channel.quantity != "actuator_force":
+        return ""
+    return (
+        " A command acts as it is held; of a measured force, what is faster than half of this rate "
+        "is lost."
     )
 
 

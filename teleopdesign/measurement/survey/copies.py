@@ -9,6 +9,7 @@ import numpy as np
 from ..encoder import reading_step
 from ..first_guess import explain_force
 from .content import Array
+from .set_point import has_numbers_of, lags
 
 #: steps that a column must span: of a command with few levels, any line is within a step
 FEWEST_STEPS = 20.0
@@ -31,11 +32,11 @@ def is_copy(column: Array, position: Array) -> bool:
     if power == 0.0:
         return False
     slope = float(x @ y) / power
-    rounding = abs(slope) * reading_step(position) + reading_step(column)
-    reach = float(np.ptp(column))
-    if rounding * FEWEST_STEPS > reach:
+    reach, off = float(np.ptp(column)), float(np.max(np.abs(y - slope * x)))
+    if off > reach / FEWEST_STEPS + DIGITS * reach:  # no rounding that is allowed explains it
         return False
-    return float(np.max(np.abs(y - slope * x))) <= rounding + DIGITS * reach
+    rounding = abs(slope) * reading_step(position) + reading_step(column)
+    return rounding * FEWEST_STEPS <= reach and off <= rounding + DIGITS * reach
 
 
 def _jumps(column: Array) -> bool:
@@ -45,6 +46,10 @@ def _jumps(column: Array) -> bool:
 
 def most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str:
     """That of equally likely positions whose motion explains most of any other column.
+
+    Of two with the same numbers it is the later one: the earlier one is the path that was planned.
+    A set point is no such column: friction alone explains the steps of a set point that the
+    position reaches.
 
     flat: values (n,) of the columns, by name;  h: time between two rows
     """
@@ -56,10 +61,11 @@ def most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str
             (
                 explain_force(f, flat[name], h).explained
                 for n, f in flat.items()
-                if n != name and not is_copy(f, flat[name])
+                if n != name and not is_copy(f, flat[name]) and not has_numbers_of(f, flat[name])
             ),
             default=0.0,
         )
         for name in names
     }
-    return max(shares, key=lambda name: shares[name])
+    best = max(shares, key=lambda name: shares[name])
+    return next((name for name in names if lags(flat[name], flat[best])), best)

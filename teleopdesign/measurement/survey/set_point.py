@@ -1,7 +1,9 @@
 """Set points among the columns of a log: the position of a controlled machine follows them.
 
 A set point has the numbers of the position, only earlier. Such a column is neither the position nor
-a force, whatever its name: "r" beside "y", "SV" beside "PV", "reference" beside "measurement".
+a force, whatever its name: "r" beside "y", "SV" beside "PV", "reference" beside "measurement". A
+drive that plans its path reaches a step of its set point later than any delay: there, the position
+comes to rest at each value that was held.
 """
 
 from __future__ import annotations
@@ -19,6 +21,9 @@ LATEST = 0.1
 #: part of the squares of a column by which its position may differ: two columns that agree as a
 #: velocity and the derivative of its position must
 APART = 1.0 - DERIVATIVE**2
+#: holds at whose ends the position rests: between fewer, a position that starts and ends at rest
+#: moves from one value to another under any force
+FEWEST_HOLDS = 3
 
 
 def followed_columns(flat: Mapping[str, Array]) -> dict[str, str]:
@@ -42,13 +47,39 @@ def follows(column: Array, other: Array) -> bool:
     at_once = _apart(column, other, 0)
     later = min(_apart(column, other, k) for k in _delays(len(column)))
     earlier = min(_apart(other, column, k) for k in _delays(len(column)))
-    return later < min(at_once, earlier, APART)
+    return later < min(at_once, earlier, APART) or settles_at(column, other)
+
+
+def lags(column: Array, other: Array) -> bool:
+    """Whether a column has the numbers of another one, and these a row later rather than earlier.
+
+    The delay may be less than a row, as that of a position behind the path that a drive plans.
+    """
+    return has_numbers_of(column, other) and _apart(column, other, 1) < _apart(other, column, 1)
+
+
+def settles_at(position: Array, column: Array) -> bool:
+    """Whether a position comes to rest at the values that another column holds.
+
+    At the ends of the holds the position has the numbers of the column, and moves slower than on
+    the average. A relay has only two values as well, but it switches where the position is fast.
+    """
+    ends = np.flatnonzero(np.diff(column))  # the last row of each hold, without that of the log
+    ends = ends[ends > 0]
+    if len(ends) < FEWEST_HOLDS or 2 * len(ends) > len(column):
+        return False
+    held, spread = column[ends], float(np.var(column[ends]))
+    change = np.abs(np.diff(position))
+    at_rest = float(np.mean(change[ends - 1])) < float(np.mean(change))
+    return at_rest and float(np.mean((position[ends] - held) ** 2)) < APART * spread
 
 
 def has_numbers_of(column: Array, position: Array) -> bool:
     """Whether a column has the numbers of the position, at the same time, earlier or later."""
     if not _are_alike(column, position):
         return False
+    if settles_at(position, column):
+        return True
     delays = _delays(len(column))
     least = (min(_apart(column, position, k), _apart(position, column, k)) for k in delays)
     return min(_apart(column, position, 0), *least) < APART

@@ -24,7 +24,7 @@ from .content import (
 )
 from .copies import is_copy
 from .derivative import DERIVATIVE, rate_agreement, unwrap_column, wrap_of
-from .set_point import follows, may_be_set_point
+from .set_point import follows, has_numbers_of, may_be_set_point
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
@@ -96,6 +96,8 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     ):
         if quantity in kinds or not kinds and likeness(name, quantity) >= SURE_NAME:
             return why
+    if may_be_set_point(column) and has_numbers_of(column.values, unwrap_column(x, jump)):
+        return f"has the numbers of {position!r}: a set point, or the same reading once more"
     if name not in survey.explained and is_copy(column.values, unwrap_column(x, jump)):
         return f"{position!r} times a constant plus a constant: another unit, or a control error"
     return _explain_no_force(name, survey)
