@@ -169,6 +169,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
+    lines.append(_bandwidth_line(diagnosis))
     if diagnosis.left > CRITERIA.countable:
         lines.append(
             f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"
@@ -187,6 +188,13 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
+
+
+def _bandwidth_line(diagnosis: Diagnosis) -> str:
+    """A sentence on the frequencies that the errors of the table include."""
+    stated = diagnosis.experiment.bandwidth == diagnosis.prepared.bandwidth
+    source = "stated" if stated else "chosen: up to there the positions show motion"
+    return f"compared up to {diagnosis.prepared.bandwidth:.3g} Hz ({source})"
 
 
 def _records_line(diagnosis: Diagnosis) -> str:

@@ -125,6 +125,9 @@ def test_the_ladder_is_a_table_with_parameters_floor_and_verdict(diagnosis):
     for part in ("your model, re-estimated", "+ stribeck at device", "noise floor", "N*m",
                  "verdict: effects_missing"):  # fmt: skip
         assert part in text
+    assert f"compared up to {diagnosis.prepared.bandwidth:.3g} Hz (stated)\n" in text
+    unstated = replace(diagnosis, experiment=replace(diagnosis.experiment, bandwidth=None))
+    assert "Hz (chosen: up to there the positions show motion)\n" in ladder_text(unstated)
     assert max(map(len, text.splitlines())) < 120
 
 
