@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
-from ...quantity import measures, si_factor
 from ._log import Array, Log, join_names
+from ._seconds import seconds_of
 
 #: all tables must overlap in time for at least this part of the shortest one
 SHARED = 0.5
@@ -35,7 +35,7 @@ def open_folder(
     logs = {n: open_one(t, f"{file}/{t.name}") for n, t in zip(names, tables, strict=True)}
     _refuse_same_columns(logs, folder, [t.name for t in tables])
     time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
-    seconds = {n: _seconds(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
+    seconds = {n: seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
     _require_shared_time(seconds, file)
     origin = min(float(np.nanmin(s)) for s in seconds.values())
     columns = {f"{n}.{c}": (n, c) for n, log in logs.items() for c in log.names}
@@ -84,27 +84,6 @@ def _time_column(log: Log, file: str) -> str:
             "by side need one each"
         )
     return best
-
-
-def _seconds(log: Log, column: str, file: str) -> Array:
-    """The time stamps of a table in s, from the same instant for all tables."""
-    from ..column_names import unit_in_name
-    from ..numbers_in_cells import numbers_of
-    from ..stamp_unit import unit_of_steps
-    from ..wrapped_stamps import unwrap_stamps
-
-    values = np.asarray(log.read({column: "channels.time"})[column])
-    if values.dtype.kind == "M":
-        return np.asarray((values - np.datetime64(0, "s")) / np.timedelta64(1, "ns") * 1e-9)
-    stamps = (
-        values.reshape(-1).astype(np.float64)
-        if values.dtype.kind in "iu"  # as floats, nanoseconds since 1970 are exact to 256 ns
-        else numbers_of(values, column, file)
-    )
-    unit = log.units.get(column) or unit_in_name(column, "time")
-    if unit is None or not measures(unit, "time"):
-        unit = unit_of_steps(stamps)[0]
-    return np.asarray(unwrap_stamps(stamps)[0] * si_factor(unit, quantity="time"))
 
 
 def _require_shared_time(seconds: Mapping[str, Array], file: str) -> None:

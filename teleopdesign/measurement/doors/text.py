@@ -28,6 +28,7 @@ from ._dialect import (
 )
 from ._log import MOST_BYTES, Array, Log, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
+from ._sparse import groups_of, with_separate_clocks
 
 #: rows that are read in one block: 20 MB of text
 _ROWS = 200_000
@@ -69,9 +70,10 @@ def open_text(path: Path, file: str) -> Log:
         notes.append("no header: columns are named by their number")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
-    return Log(
-        dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks
-    )
+    log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
+    rows = [cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip()]
+    time, groups = groups_of(log.names, rows)
+    return with_separate_clocks(log, file, time, groups) if groups else log
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:

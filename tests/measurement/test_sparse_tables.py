@@ -1,0 +1,66 @@
+"""One table with the times of several clocks: each signal has numbers in its own rows only."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.tables import open_log, read_columns
+
+T = np.arange(1500) / 100.0
+Q = 0.5 * np.sin(2 * np.pi * 0.4 * T) + 0.1 * np.sin(2 * np.pi * 1.7 * T)
+U = 0.01 * np.gradient(np.gradient(Q, T), T) + 0.1 * np.sign(np.gradient(Q, T))
+POSITION, VELOCITY, COMMAND = "/joints/arm/position", "/joints/arm/velocity", "/command/data"
+
+
+def write(path, begin=1.7e9, unit=1.0, time="__time"):
+    """Position and velocity at 100 Hz, the command at 50 Hz, 2 ms after every second position."""
+    rows = [(t, f"{q:.8f},{v:.8f},") for t, q, v in zip(T, Q, np.gradient(Q, T), strict=True)]
+    rows += [(t + 0.002, f",,{u:.8f}") for t, u in zip(T[::2], U[::2], strict=True)]
+    lines = [f"{(t + begin) / unit:.6f},{cells}" for t, cells in sorted(rows)]
+    path.write_text("\n".join([f"{time},{POSITION},{VELOCITY},{COMMAND}", *lines]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(("begin", "unit", "time"), [(1.7e9, 1.0, "__time"), (5, 1e-3, "t [ms]")])
+def test_each_signal_has_its_times_in_seconds(tmp_path, begin, unit, time):
+    path = write(tmp_path / "log.csv", begin, unit, time)
+    log = open_log(path, "log.csv")
+    of_position, of_command = f"{time} of {POSITION}", f"{time} of {COMMAND}"
+    assert log.names == (time, POSITION, VELOCITY, COMMAND, of_position, of_command)
+    assert log.clocks == {POSITION: of_position, VELOCITY: of_position, COMMAND: of_command}
+    wanted = {
+        of_position: "channels.time",
+        POSITION: "channels.position",
+        COMMAND: "channels.force",
+    }
+    columns = read_columns(path, "log.csv", wanted)
+    first = begin if begin < 1e8 else 0.0
+    assert columns.values[of_position] == pytest.approx(T + first, abs=1e-5)
+    assert columns.values[POSITION] == pytest.approx(Q, abs=1e-8)
+    assert columns.values[COMMAND] == pytest.approx(U[::2], abs=1e-8)
+    assert columns.stamps[COMMAND] == pytest.approx(T[::2] + 0.002 + first, abs=1e-5)
+
+
+def test_a_survey_takes_the_position_with_its_times_and_the_command_of_another_clock(tmp_path):
+    log = open_log(write(tmp_path / "log.csv"), "log.csv")
+    channels = survey_log(log, "log.csv", Choices()).channels
+    of_channel = {quantity: table["column"] for quantity, table in channels.items()}
+    clock = f"__time of {POSITION}"
+    assert of_channel == {"time": clock, "position": POSITION, "actuator_force": COMMAND}
+
+
+@pytest.mark.parametrize(
+    ("kept", "time"),
+    [
+        (0.6, "t"),  # a channel that loses readings
+        (0.0, "t"),  # one that has none
+        (0.4, "x"),  # no column is a time
+    ],
+)
+def test_a_table_of_one_clock_stays_as_it_is(tmp_path, kept, time):
+    rng = np.random.default_rng(3)
+    cells = [f"{x:.3f}" if rng.random() < kept else "" for x in Q]
+    lines = [f"{t},{q},{c}" for t, q, c in zip(T, Q, cells, strict=True)]
+    (tmp_path / "log.csv").write_text("\n".join([f"{time},q,tau", *lines]) + "\n")
+    log = open_log(tmp_path / "log.csv", "log.csv")
+    assert log.names == (time, "q", "tau") and not log.clocks
