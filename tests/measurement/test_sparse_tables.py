@@ -49,6 +49,15 @@ def test_a_survey_takes_the_position_with_its_times_and_the_command_of_another_c
     assert of_channel == {"time": clock, "position": POSITION, "actuator_force": COMMAND}
 
 
+def test_a_signal_that_begins_after_thousands_of_rows_has_its_times(tmp_path):
+    lines = [f"{t / 100},{t % 7}.5," for t in range(9000)]
+    lines += [f"{t / 100},{t % 7}.5,\n{t / 100 + 0.001},,{t % 5}" for t in range(9000, 12000)]
+    (tmp_path / "log.csv").write_text("\n".join(["time,q,tau", *lines]) + "\n")
+    log = open_log(tmp_path / "log.csv", "log.csv")
+    assert log.clocks == {"q": "time of q", "tau": "time of tau"}
+    assert len(log.read({"tau": ""})["tau"]) == 3000
+
+
 @pytest.mark.parametrize(
     ("kept", "time"),
     [

@@ -71,22 +71,29 @@ def open_text(path: Path, file: str) -> Log:
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
-    rows = [cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip()]
+    # the last lines too: a signal may begin late
+    some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
+    rows = [cells_of(line, dialect.separator) for line in some if line.strip()]
     time, groups = groups_of(log.names, rows)
     return with_separate_clocks(log, file, time, groups) if groups else log
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:
     """Whether the last row has too few cells; False for packed files and for space as separator."""
-    if path.name.lower().endswith(".gz") or dialect.separator == " ":
-        return False
+    lines = [] if dialect.separator == " " else _last_lines(path, dialect)
+    cells = cells_of(lines[-1], dialect.separator) if len(lines) > 1 else []
+    return 0 < len(cells) < len(dialect.header)
+
+
+def _last_lines(path: Path, dialect: Dialect) -> list[str]:
+    """The last lines with text, the first of them perhaps only in part; none of a packed file."""
+    if path.name.lower().endswith(".gz"):
+        return []
     with path.open("rb") as stream:
         stream.seek(0, 2)
         stream.seek(max(0, stream.tell() - LOOKED_AT))
         tail = stream.read().decode(dialect.encoding.removesuffix("-sig"), errors="ignore")
-    lines = [line for line in tail.replace("\r", "\n").split("\n") if line.strip()]
-    cells = cells_of(lines[-1], dialect.separator) if len(lines) > 1 else []
-    return 0 < len(cells) < len(dialect.header)
+    return [line for line in tail.replace("\r", "\n").split("\n") if line.strip()]
 
 
 def _read(
