@@ -16,6 +16,8 @@ import numpy as np
 from ..blocks import Body
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..errors import ModelError
+from ..measurement.motion import Motion
+from ..measurement.repeated_rows import runs_of
 from ..model import Model
 from ..realise.along_motion import measured_along
 from ..realise.traced import Along
@@ -136,9 +138,18 @@ def record_facts(
         film=_film(body, speed, numbers),
         body=numbers,
         duration=max(float(np.ptp(m.time)) for m in motions),
+        stuck=max(_longest_hold(m, numbers.get("coulomb.level", 0.0)) for m in motions),
+        resolved=0.5 / prepared.bandwidth,
         places=np.concatenate([m.position[m.direction != 0] for m in motions]),
         speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )
+
+
+def _longest_hold(motion: Motion, level: float) -> float:
+    """Longest time (s) in which a force above a level acts and no direction of motion is sure."""
+    held = (motion.direction == 0) & (np.abs(motion.command + motion.interaction) > level)
+    first, past = runs_of(held)
+    return float(np.max(past - first, initial=0)) * motion.sample_time
 
 
 def _film(body: Body, speed: float, numbers: Mapping[str, float]) -> float:

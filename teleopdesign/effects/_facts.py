@@ -43,6 +43,9 @@ READ = 2.0
 #: is hardly distinguished from a line: models of real machines leave about as much. A higher limit
 #: would also doubt functions that bend
 STRAIGHT = 0.1
+#: part of an extra level at rest that must act at the slowest motion that the readings show, unless
+#: a rest shows this level: less is no more than the errors of a model
+VISIBLE = 0.05
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,8 @@ class RecordFacts:
         body that depend on the velocity alone, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     duration: of the longest record (s)
+    stuck: longest time (s) in which more than the Coulomb level acts and the body does not surely
+        move;  resolved: shortest time (s) of a change that the bandwidth of the comparison shows
     places, speeds: (n,) of the samples in which the body slides, over all records
     """
 
@@ -75,6 +80,8 @@ class RecordFacts:
     body: Mapping[str, float]
     duration: float = float("inf")
     acting: float = float("inf")
+    stuck: float = float("inf")
+    resolved: float = 0.0
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
 
@@ -111,6 +118,38 @@ class RecordFacts:
     def text(self, value: float, quantity: str) -> str:
         """A value of this quantity (SI) with its unit on the body's axis."""
         return f"{value:.3g} {unit_of(quantity, self.axis)}"
+
+
+def level_at_rest_is_observable(extra: float, there: float, facts: RecordFacts) -> str | None:
+    """A sentence where only passing reversals show an extra level of friction at rest; else None.
+
+    extra: N or N m at rest;  there: what is left of it at the slowest motion
+    Between two rows of opposite directions, friction of a larger level balances more of any error.
+    """
+    if there > VISIBLE * extra or facts.stuck > facts.resolved:
+        return None
+    return (
+        f"its extra friction acts below {facts.text(facts.slowest, 'velocity')}, the slowest "
+        "motion that the readings show, and more than the Coulomb level holds the body for no "
+        f"longer than {facts.stuck:.2g} s, where changes of {facts.resolved:.2g} s are resolved: "
+        "the effect imitates an error in the time of the force at reversals"
+    )
+
+
+def level_at_rest_was_reached(extra: float, there: float, facts: RecordFacts) -> str | None:
+    """A sentence where no measured force reached the friction at rest, extra level and all.
+
+    extra, there: as in `level_at_rest_is_observable`;  returns: None where one did
+    """
+    at_rest = facts.body["coulomb.level"] + extra
+    if at_rest <= facts.force:
+        return None
+    return (
+        f"friction of {facts.text(at_rest, 'force')} at rest exceeds all measured forces, "
+        f"{facts.text(facts.force, 'force')}: the level at rest and v_S are not determined; "
+        f"only the fall from {facts.text(there, 'force')} extra at the slowest motion, "
+        f"{facts.text(facts.slowest, 'velocity')}, is known"
+    )
 
 
 def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:

@@ -29,6 +29,8 @@ FACTS = RecordFacts(
     stroke=0.5,
     force=3.0,
     acting=3.0,
+    stuck=0.01,
+    resolved=0.02,
     speed=np.pi,
     film=0.2 * np.pi,
     body={
@@ -45,6 +47,11 @@ FACTS = RecordFacts(
 ELEMENTS = {"level_2": 0.1, "level_3": 0.1, "level_4": 0.0, "stiffness_3": 3e6, "stiffness_4": 1.0}
 #: effect -> (parameters that deserve its name, those that do not, what these stand for)
 MISFITS = {
+    "stribeck": (
+        {"extra_static_level": 0.2, "stribeck_velocity": 0.1},
+        {"extra_static_level": 0.2, "stribeck_velocity": 0.001},
+        "an error in the time of the force",
+    ),
     "cogging": ({"period": 0.6}, {"period": 0.8}, "gravity"),
     "torque_ripple": ({"period": 0.6}, {"period": 3.0}, "friction that varies"),
     "presliding": ({"stiffness": 50.0}, {"stiffness": 0.03}, "a spring"),
@@ -125,7 +132,7 @@ def test_every_check_answers_for_values_of_any_size(name):
 UNTOLD = {
     "stribeck": (
         {"extra_static_level": 1.0, "stribeck_velocity": 0.5},
-        {"extra_static_level": 4.0, "stribeck_velocity": 0.02},
+        {"extra_static_level": 4.0, "stribeck_velocity": 0.04},
         "the fall from",
     ),
     "friction_drift": (
