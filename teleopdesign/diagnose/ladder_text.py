@@ -18,6 +18,7 @@ from .fit import Fit
 from .noise_floor import say_floors
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
+from .short_segments import short_segments_line
 
 if TYPE_CHECKING:
     from .arms.diagnosis import ArmRung
@@ -182,6 +183,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
         lines.append(_records_line(diagnosis))
+    if (short := short_segments_line(diagnosis.prepared.experiment)) is not None:
+        lines.append(short)
     if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
         lines.append(constant)
     lines.append("")
