@@ -72,6 +72,15 @@ def test_stamps_beside_a_count_of_rows_are_the_time():
     assert _clock_without_name({"rows": rows, "stamps": stamps}, 4)[0] == "stamps"
 
 
+def test_a_command_that_is_constant_in_the_first_log_is_chosen_by_its_name():
+    t = 0.01 * np.arange(300)
+    columns = t, np.full(300, -70.0), np.sin(3.0 * t) + 0.3 * np.sin(7.0 * t)
+    with pytest.raises(ExperimentError, match="'?column 2'? does not change here: --force"):
+        numbered(*columns)
+    table = {f"column {k}": x for k, x in enumerate(columns, start=1)}
+    assert used(look(table, actuator_force="column 2"))["actuator_force"] == "column 2"
+
+
 def test_a_speed_about_its_mean_is_that_of_a_motion_one_way():
     assert rate_agreement(ANGLE, SPEED, H) == 1.0 > DERIVATIVE
     for unit in (60.0, 60.0 / (2 * np.pi), 1 / 6.0):  # turns, rad and deg beside rpm
