@@ -16,6 +16,7 @@ from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
 from .noise_floor import say_floors
+from .open_parameters import open_parameters_line
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
 from .short_segments import short_segments_line
@@ -187,6 +188,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         lines.append(short)
     if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
         lines.append(constant)
+    if diagnosis.verdict == "model_adequate" and (line := open_parameters_line(diagnosis.model)):
+        lines.append(line)
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
