@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.short_segments import short_segments_line
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.short_segments import short_segments_line, why_too_short
+from teleopdesign.errors import ExperimentError
 
 H = 0.005
 
@@ -35,6 +37,14 @@ def test_short_segments_are_counted_for_each_record():
     assert line.startswith("records: segments shorter than 0.6 s do not count")
     assert line.endswith(f": 2 of 3 in {made.records[1].file} (check)")
     assert short_segments_line(SimpleNamespace(records=made.fit_records)) is None
+
+
+def test_a_refusal_says_that_pauses_cut_the_records():
+    """Of a log of 1.2 s with 13 pauses it said "no stretch of 0.6 s or more", and no more."""
+    made = experiment(trials(0.5, 0.55), fit=[(0, 9)])
+    with pytest.raises(ExperimentError, match="cut them into 2 segments, of which the longest las"):
+        prepare(made, bandwidth=5.0)
+    assert why_too_short(made.records[:0]) == ""
 
 
 @pytest.mark.slow
