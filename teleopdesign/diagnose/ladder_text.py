@@ -16,8 +16,10 @@ from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
 from .noise_floor import say_floors
+from .open_parameters import open_parameters_line
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
+from .short_segments import short_segments_line
 
 if TYPE_CHECKING:
     from .arms.diagnosis import ArmRung
@@ -183,8 +185,12 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
         lines.append(_records_line(diagnosis))
+    if (short := short_segments_line(diagnosis.prepared.experiment)) is not None:
+        lines.append(short)
     if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
         lines.append(constant)
+    if diagnosis.verdict == "model_adequate" and (line := open_parameters_line(diagnosis.model)):
+        lines.append(line)
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)

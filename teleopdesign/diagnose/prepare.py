@@ -14,10 +14,11 @@ from ..errors import ExperimentError
 from ..measurement.bandwidth import default_bandwidth
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array, spectrum
-from ..measurement.motion import SMOOTHING, Motion, motions
+from ..measurement.motion import SHORTEST, SMOOTHING, Motion, motions
 from ..measurement.record import Record
 from .scales import LARGEST, scales
 from .shared_links import Shared, share_again
+from .short_segments import why_too_short
 
 #: seconds at each end of a stretch where the low-pass is not yet in steady state
 TRIM = 0.25
@@ -144,7 +145,10 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
                 stretch = stretch_of(motion, record.use, chosen, record.offset_names)
                 stretches.append(replace(stretch, force_is_sensed=sensed))
     if not any(s.use == "fit" for s in stretches):
-        raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
+        why = why_too_short([r for r in experiment.records if r.use == "fit"])
+        raise ExperimentError(
+            f"{experiment.folder.name}: fit records: no stretch of {SHORTEST:g} s or more{why}"
+        )
     if all(s.use == "fit" for s in stretches):  # each then has blocks that are held out in turn
         stretches = [s for s in stretches if len(s.keep) >= FOLDS]
         if not stretches:

@@ -15,14 +15,12 @@ from .criteria import CRITERIA, Criteria
 from .diagnosis import Undetermined
 from .evidence import whole_score
 from .fit import Fit, estimate
+from .open_parameters import OPEN
 from .plausibility import undetermined_of
 from .prepare import Prepared
 from .products import product_of
 from .rung import Rung
 
-#: standard error over value from which a parameter counts as open: then zero and twice the value
-#: both lie within two standard errors
-OPEN = 0.5
 #: a product of open parameters is known far better than each of them, if its relative error is
 #: below this part of the least relative error of the parameters
 PRODUCT = 0.5

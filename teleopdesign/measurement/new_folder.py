@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import ExperimentError
 from ..plain_data import write_beside, write_text
 from .channel import channels_from, sample_rate_from
 from .description import bodies_from
 from .encoder import reading_step, rests
 from .first_guess import FirstGuess, guess_from
+from .motion import SHORTEST as SEGMENT
 from .record import read_record
 from .record_clock import FEWEST, SHORTEST
 from .survey import Survey, spans_of
@@ -23,6 +26,8 @@ from .toml_text import comment_text, inline_text, string_text
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
 
+#: steps of the survey's grid between two rows, from which a pause lies there: the grid is even
+PAUSE = 1.5
 #: digits of first values: they are starts, not results
 _DIGITS = 3
 _FILE = "experiment.toml"
@@ -131,7 +136,7 @@ def _records(
 
 def _why_whole(survey: Survey, parts: FitAndCheck) -> str:
     """Why a log is not cut into these parts; "" where it may be: both are long enough and move."""
-    if survey.duration < 2 * max(FEWEST * sample_time_of(survey), SHORTEST):
+    if min(_lasting(survey, *part) for part in parts) < _shortest(survey):
         return "too short to be cut into"
     x = survey.columns[survey.channels["position"]["column"]].values
     step = reading_step(x)
@@ -144,13 +149,34 @@ def _why_whole(survey: Survey, parts: FitAndCheck) -> str:
 
 
 def _usual_spans(survey: Survey) -> FitAndCheck:
-    """The usual cut of one log, or the middle where the usual check record would be too short."""
-    fit, check = spans_of(survey.duration, survey.trials)
-    shortest = max(FEWEST * sample_time_of(survey), SHORTEST)
-    if survey.duration - check[0] >= shortest and fit[1] >= shortest:
-        return fit, check
-    middle = float(f"{0.5 * survey.duration:.4g}")
-    return (0.0, middle), (middle, check[1])
+    """The usual cut of one log, or the middle of its rows where one part would be too short."""
+    parts = spans_of(survey.duration, survey.trials)
+    if min(_lasting(survey, *part) for part in parts) >= _shortest(survey):
+        return parts
+    middle = float(f"{np.median(survey.time):.4g}")
+    return (0.0, middle), (middle, parts[1][1])
+
+
+def _shortest(survey: Survey) -> float:
+    """The shortest record that can be read, s."""
+    return max(FEWEST * sample_time_of(survey), SHORTEST)
+
+
+def _lasting(survey: Survey, begin: float, end: float) -> float:
+    """Time that the segments of a part cover, s: no pause, and no segment too short to count.
+
+    Behind the rows that the survey looked at, the log is taken to be one segment.
+    """
+    h, last = sample_time_of(survey), float(survey.time[-1])
+    inside = survey.time[(survey.time >= begin) & (survey.time < end)]
+    starts = np.searchsorted(inside, survey.trials)
+    pauses = np.flatnonzero(np.diff(inside) > PAUSE * h) + 1
+    ends = np.unique([0, *starts, *pauses, len(inside)])
+    segments = h * np.diff(ends)
+    behind = max(min(end, survey.duration) - max(begin, last), 0.0)
+    if behind and len(segments):
+        segments[-1] += behind
+    return float(segments[segments >= SEGMENT].sum()) if len(segments) else behind
 
 
 def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, Any]]) -> FirstGuess:

@@ -11,6 +11,7 @@ from teleopdesign.measurement.survey.axes import (
     of_another_axis,
     same_but_axis,
 )
+from teleopdesign.measurement.survey.clock import _clock_without_name
 from teleopdesign.measurement.survey.derivative import DERIVATIVE, is_mean_rate, rate_agreement
 
 RNG = np.random.default_rng(3)
@@ -48,6 +49,36 @@ def test_the_first_column_that_rises_is_the_time_unless_another_is_far_more_even
     # as even but for a third: both may be the time
     later = STAMPS + 0.002 * RNG.random(300)
     assert used(numbered(later, VOLTAGE, SPEED, STAMPS, ANGLE))["time"] == "column 1"
+
+
+def test_stamps_beside_a_count_of_rows_are_the_time():
+    """The rows were taken for milliseconds, although the microseconds stood beside them."""
+    rows = np.arange(1200.0)
+    stamps = 88.0 + 5090 * rows + 4 * RNG.integers(-3, 4, 1200)
+    position = np.sin(0.05 * rows) + 0.2 * np.sin(0.17 * rows)
+    force = np.gradient(np.gradient(position)) + 1e-3 * np.sign(np.gradient(position))
+    survey = numbered(rows, force, stamps, position)
+    assert used(survey)["time"] == "column 3"
+    assert survey.channels["time"]["unit"] == "us"
+    assert survey.guesses["channels.time.column"] == (
+        "'column 3' is read as the time: it is as even as a clock, beside 'column 1', which counts "
+        "the rows"
+    )
+    assert "column 1" in survey.unused
+    # counts of a motor that speeds up; and three columns, of which no position would be left
+    counts = np.round(np.cumsum(100.0 + 0.1 * rows))
+    assert _clock_without_name({"rows": rows, "counts": counts}, 4)[0] == "rows"
+    assert _clock_without_name({"rows": rows, "stamps": stamps}, 3)[0] == "rows"
+    assert _clock_without_name({"rows": rows, "stamps": stamps}, 4)[0] == "stamps"
+
+
+def test_a_command_that_is_constant_in_the_first_log_is_chosen_by_its_name():
+    t = 0.01 * np.arange(300)
+    columns = t, np.full(300, -70.0), np.sin(3.0 * t) + 0.3 * np.sin(7.0 * t)
+    with pytest.raises(ExperimentError, match="'?column 2'? does not change here: --force"):
+        numbered(*columns)
+    table = {f"column {k}": x for k, x in enumerate(columns, start=1)}
+    assert used(look(table, actuator_force="column 2"))["actuator_force"] == "column 2"
 
 
 def test_a_speed_about_its_mean_is_that_of_a_motion_one_way():

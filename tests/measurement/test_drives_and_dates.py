@@ -108,6 +108,25 @@ def test_a_log_of_velocities_alone_says_what_to_add():
         look({"t": T, "omega_rad_s": RATE, "tau_Nm": U})
 
 
+def test_a_measured_velocity_is_the_derivative_and_neither_its_reference_nor_a_tilt():
+    """A log of a robot on wheels: the reference is smoother than the measured velocity."""
+    noise = 0.1 * np.random.default_rng(5).standard_normal(len(T))
+    columns = {
+        "t": T, "x [m]": Q, "v_ref [m/s]": RATE, "v [m/s]": RATE + noise,
+        "tilt [rad]": 0.2 * RATE, "u [V]": U,
+    }  # fmt: skip
+    survey = look(columns)
+    assert survey.notes[0] == "'v [m/s]' is the derivative of 'x [m]'"
+    assert survey.channels["velocity"]["column"] == "v [m/s]"
+    assert survey.unused["tilt [rad]"] == "a position beside 'x [m]'"
+
+
+def test_the_integral_of_a_desired_velocity_is_no_position():
+    columns = {"t": T, "targetSpeed": RATE, "leftSpeed": RATE, "leftCommand": U}
+    with pytest.raises(ExperimentError, match="add a column with the integral of 'leftSpeed'"):
+        look(columns)
+
+
 def test_a_voltage_is_no_position_beside_a_speed():
     """ "voltage" and "rpm" gave a position in volts, and no word of the speed."""
     columns = {"time": T, "voltage": 6.0 * np.sin(T), "rpm": 30.0 * np.cos(T)}

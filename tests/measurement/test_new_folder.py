@@ -210,3 +210,20 @@ def test_a_log_is_not_cut_where_the_body_rests_in_a_part(dither, tmp_path):
     records = written(make_folder(survey, [log], tmp_path / "made", title="arrived"))["records"]
     assert [r["use"] for r in records] == ["fit"]
     assert any("the body rests from 3.594 to 5.99 s" in note for note in survey.notes)
+
+
+@pytest.mark.parametrize(("lengths", "uses"), [((1.3, 0.4, 0.5), 1), ((1.3, 0.4, 1.2), 2)])
+def test_pauses_and_short_trials_do_not_make_a_part_long_enough(lengths, uses, tmp_path):
+    """Of three trials in 4 s, the check record held 0.97 s: it was written, and then refused."""
+    tables, begin = [], 0.0
+    for trial, length in enumerate(lengths):
+        t = 0.005 * np.arange(round(length / 0.005))
+        q, u = np.sin(5.0 * t), np.cos(5.0 * t) + 0.2 * np.sign(np.cos(5.0 * t))
+        tables.append(np.column_stack([np.full(len(t), trial), begin + t, q, u]))
+        begin += length + 1.0
+    log = tmp_path / "trials.csv"
+    names = "trial,t_s,angle_rad,torque_Nm"
+    np.savetxt(log, np.vstack(tables), delimiter=",", header=names, comments="", fmt="%.7g")
+    folder = make_folder(survey_of(log), [log], tmp_path / "made", title="trials")
+    assert len(written(folder)["records"]) == uses
+    assert load_experiment(folder).fit_records

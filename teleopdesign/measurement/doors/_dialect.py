@@ -23,6 +23,7 @@ from ._header import (
     names_of_labelled_rows,
 )
 from ._log import number_names
+from ._numbered import names_by_number
 
 COMMENTS = ("#", "%", "//")
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
@@ -184,6 +185,10 @@ def _header(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines before the first row of numbers."""
     plain = [line for line in before if line.strip()]
+    if plain and _comments(plain[-1:]):  # a row of names below such a list says more
+        numbered = names_by_number(_comments(plain), width)
+        if numbered is not None:
+            return numbered
     rows: list[tuple[str, ...]] = []
     wide: list[tuple[str, ...]] = []
     cells: list[str] = []
@@ -216,6 +221,12 @@ def _header(
         ):
             return rows[-1], ("", *map(bare_unit, units))
     return joined, units_by_name
+
+
+def _comments(lines: Sequence[str]) -> list[str]:
+    """What comments say, without their marks."""
+    texts = (line.strip() for line in lines if line.lstrip().startswith(COMMENTS))
+    return [text.lstrip("#%/ \t") for text in texts]
 
 
 def open_bytes(path: Path) -> IO[bytes]:

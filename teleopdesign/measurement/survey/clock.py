@@ -24,6 +24,12 @@ MOST = 60_000
 #: times as uneven as another column that a first column without a name may rise. Two: the stamps of
 #: a logger spread by a third of a step at most, the angle of a motor at ripple by its whole step
 FAR_LESS_EVEN = 2.0
+#: part of its usual step by which all steps of a clock beside a count of rows may differ, but for a
+#: twentieth at either end: a machine that speeds up or turns back differs by more, and so does a
+#: ripple of its speed
+AS_EVEN_AS_A_CLOCK, AT_EITHER_END = 0.02, 0.05
+#: fewest columns of a log whose count of rows leaves a clock, a position and a force
+FEWEST_BESIDE_A_COUNT = 4
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
 FEWEST_CHANGES = 3
 #: names of a column that holds the time from one row to the next, and the part of their median by
@@ -107,7 +113,7 @@ def time_column(
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
         if scores[name] == 0.0:
-            name, why = _clock_without_name(rising)
+            name, why = _clock_without_name(rising, len(raw))
             guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
     if unit is None and _is_unit_of_time(name):
@@ -135,13 +141,20 @@ def rate_of_steps(raw: Mapping[str, Array], log: Log, choices: Choices) -> tuple
     return None
 
 
-def _clock_without_name(rising: Mapping[str, Array]) -> tuple[str, str]:
+def _clock_without_name(rising: Mapping[str, Array], width: int) -> tuple[str, str]:
     """The time among columns that always rise, where no name tells it, and why it is the time.
 
     The first one, unless it rises far less evenly than another: the angle of a motor that turns one
-    way rises, too. A column that counts rows is the time only as the first one.
+    way rises, too. A column that counts rows is the time only as the first one, and not beside
+    stamps of a clock.
+
+    width: number of columns of the log
     """
     first, *others = rising
+    if width >= FEWEST_BESIDE_A_COUNT and _counts_rows(rising[first]):
+        stamps = [n for n in others if _is_stamp(rising[n])]
+        if stamps:
+            return stamps[0], f"as even as a clock, beside {first!r}, which counts the rows"
     uneven = {n: _unevenness(rising[n]) for n in others if not _counts_rows(rising[n])}
     even = min(uneven, key=lambda n: uneven[n], default=first)
     if even != first and FAR_LESS_EVEN * uneven[even] < _unevenness(rising[first]):
@@ -154,6 +167,15 @@ def _unevenness(x: Array) -> float:
     steps = np.diff(x[np.isfinite(x)])
     usual = float(np.median(steps))
     return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else float("inf")
+
+
+def _is_stamp(x: Array) -> bool:
+    """Whether whole numbers rise as evenly as the stamps of a clock, and are no count of rows."""
+    steps = np.diff(x[np.isfinite(x)])
+    usual = float(np.median(steps))
+    low, high = np.quantile(steps, [AT_EITHER_END, 1.0 - AT_EITHER_END])
+    even = usual > 1.0 and float(high - low) < AS_EVEN_AS_A_CLOCK * usual
+    return bool(even and np.all(steps > 0) and np.array_equal(x, np.round(x)))
 
 
 def _counts_rows(x: Array) -> bool:

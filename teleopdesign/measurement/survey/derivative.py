@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import likeness
+from ..column_names import is_another_quantity, likeness
 from ..filtering import spectrum
 from ..first_guess import motion_columns
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
@@ -97,6 +97,25 @@ def may_be_position(name: str, columns: Mapping[str, SurveyedColumn], sample_tim
         return False
     speeds = (c for n, c in columns.items() if n != name and not rises(c.readings))
     return any(is_mean_rate(column.values, c.values, sample_time) for c in speeds)
+
+
+def is_force(column: SurveyedColumn) -> bool:
+    """Whether unit or name of a column are those of a force."""
+    if column.unit is not None:
+        return is_unit_of(column.unit, "force")
+    return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
+
+
+def is_no_velocity(column: SurveyedColumn) -> bool:
+    """Whether unit or name of a column are those of a force, a position or another quantity.
+
+    Friction, a voltage and the pressure against friction resemble a velocity, and so does an angle
+    beside a motion with which it drifts.
+    """
+    angle_or_length = is_unit_of(column.unit, "position") and not is_unit_of(
+        column.unit, "velocity"
+    )
+    return is_force(column) or angle_or_length or is_another_quantity(column.name)
 
 
 def rate_agreement(x: Array, v: Array, sample_time: float) -> float:

@@ -147,7 +147,7 @@ def _find_driving_force(
         raise ExperimentError(
             f"{file}: found no column that could be a force beside "
             f"{survey.channels['position']['column']!r}, "
-            f"found {join_names(survey.columns)}{reasons(survey.unread)}"
+            f"found {join_names(survey.columns)}{_constant_columns(survey)}{reasons(survey.unread)}"
         )
     force = max(scores, key=lambda n: scores[n])
     why = None
@@ -172,6 +172,18 @@ def _find_driving_force(
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
+
+
+def _constant_columns(survey: Survey) -> str:
+    """How to choose a command that is constant in a log, for a message; "" without such a column.
+
+    Each of several logs may hold another constant command.
+    """
+    names = [name for name, column in survey.columns.items() if not moves(column)]
+    if not names:
+        return ""
+    which = f"{join_names(names)} {'does' if len(names) == 1 else 'do'} not change here"
+    return f"; {which}: --force {names[0]!r} chooses such a command"
 
 
 def _warn_of_size(survey: Survey, force: str, x: Array, h: float) -> None:

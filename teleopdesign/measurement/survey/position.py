@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ...quantity import measures, si_factor
-from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
+from ..column_names import is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
@@ -34,6 +34,7 @@ from .derivative import (
     DERIVATIVE,
     derivative_factor,
     follows_direction,
+    is_no_velocity,
     may_be_position,
     rate_agreement,
     unwrap_column,
@@ -73,15 +74,15 @@ def find_position(
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
-            # friction, and the pressure against it, resemble a velocity
-            if other == name or _is_force(column_2) or is_another_quantity(other):
+            if other == name or is_no_velocity(column_2):
                 continue
             if has_sibling(name, other, moving):
                 continue
             agree = rate_agreement(flat[name], column_2.values, h)
             if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
-            sure = agree + BY_NAME * likeness(other, "velocity")
+            # a desired velocity agrees with the position as well, and better where it is smooth
+            sure = agree + BY_NAME * likeness(other, "velocity") - 2.0 * BY_NAME * is_wanted(other)
             if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
                 derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
@@ -150,8 +151,12 @@ def _without_names(
 
 
 def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
-    """What to do with a log of velocities, as the end of a message; "" without a velocity."""
+    """What to do with a log of velocities, as the end of a message; "" without a velocity.
+
+    The integral of a desired velocity would be a set point.
+    """
     names = [name for name, column in moving.items() if _is_velocity(column)]
+    names.sort(key=is_wanted)
     return f"; add a column with the integral of {names[0]!r}" if names else ""
 
 
@@ -179,13 +184,6 @@ def _is_velocity(column: SurveyedColumn) -> bool:
     if is_unit_of(column.unit, "velocity"):
         return True
     return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
-
-
-def _is_force(column: SurveyedColumn) -> bool:
-    """Whether unit or name of a column are those of a force."""
-    if column.unit is not None:
-        return is_unit_of(column.unit, "force")
-    return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
 
 
 def describe_position(

@@ -23,7 +23,7 @@ from .content import (
     sample_time_of,
 )
 from .copies import is_copy
-from .derivative import DERIVATIVE, rate_agreement, unwrap_column, wrap_of
+from .derivative import DERIVATIVE, is_no_velocity, rate_agreement, unwrap_column, wrap_of
 from .set_point import follows, has_numbers_of, may_be_set_point
 
 
@@ -79,7 +79,7 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
     if may_be_set_point(column) and follows(unwrap_column(x, jump), column.values):
         return f"a set point: {position!r} follows it"
     agree = rate_agreement(unwrap_column(x, jump), column.values, sample_time_of(survey))
-    if likeness(name, "actuator_force") >= SURE_NAME > likeness(name, "velocity"):
+    if is_no_velocity(column):
         agree = 0.0  # a voltage is nearly in proportion to the speed
     if agree > DERIVATIVE and "velocity" in survey.channels:
         return f"a second velocity for {position!r}"

@@ -1,0 +1,55 @@
+"""Segments that are too short to be compared do not count, and the answer says so."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.short_segments import short_segments_line, why_too_short
+from teleopdesign.errors import ExperimentError
+
+H = 0.005
+
+
+def trials(*lengths):
+    """Motions under a force, one trial of each length (s), a second apart."""
+    begin, parts = 0.0, []
+    for k, length in enumerate(lengths):
+        t = H * np.arange(round(length / H))
+        q, u = np.sin(9.0 * t), 5.0 * np.cos(9.0 * t) - 8.1 * np.sin(9.0 * t)
+        parts.append(np.column_stack([np.full(len(t), k), begin + t, q, u]))
+        begin += length + 1.0
+    return dict(zip(("trial", "t", "q", "u"), np.vstack(parts).T, strict=True))
+
+
+def experiment(table, **spans):
+    return td.experiment(
+        table, axis="revolute", inertia=0.1, segment="trial", actuator_force="u",
+        position={"column": "q", "unit": "rad"}, **spans,
+    )  # fmt: skip
+
+
+def test_short_segments_are_counted_for_each_record():
+    made = experiment(trials(1.5, 0.5, 0.59, 2.0), fit=[(0, 2.2)], check=[(2.2, 9)])
+    line = short_segments_line(made)
+    assert line.startswith("records: segments shorter than 0.6 s do not count")
+    assert line.endswith(f": 2 of 3 in {made.records[1].file} (check)")
+    assert short_segments_line(SimpleNamespace(records=made.fit_records)) is None
+
+
+def test_a_refusal_says_that_pauses_cut_the_records():
+    """Of a log of 1.2 s with 13 pauses it said "no stretch of 0.6 s or more", and no more."""
+    made = experiment(trials(0.5, 0.55), fit=[(0, 9)])
+    with pytest.raises(ExperimentError, match="cut them into 2 segments, of which the longest las"):
+        prepare(made, bandwidth=5.0)
+    assert why_too_short(made.records[:0]) == ""
+
+
+@pytest.mark.slow
+def test_a_check_record_of_short_segments_is_no_check():
+    """Its rows were listed as a check record, and the check error was that on other rows."""
+    made = experiment(trials(2.0, 0.5, 0.55), fit=[(0, 2.5)], check=[(2.5, 9)])
+    words = str(td.find_missing(made))
+    assert "2 of 2" in words and "So no check record counts: the check error is that" in words
