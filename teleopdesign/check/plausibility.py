@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
+from ..diagnose.feedback_law import describe_computed
 from ..diagnose.prepare import Prepared
 from ..diagnose.record_shift import CLOCK
 from ..finding import Finding
@@ -74,6 +75,8 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     turned = inertia.sure < 0 and brakes <= 0 or inertia.sure == 0 and brakes < 0
     if balance.left > NOTHING or not (against or turned):
         return
+    if describe_computed(prepared.experiment, balance.body):
+        return  # the spring and the damper of a controller, against which a hand moves the device
     lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other or ""))
     if against:
         wrong = lead if turned else other

@@ -10,6 +10,7 @@ from ..diagnose.constant_force import lacks_scale
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
 from ..diagnose.silent_records import why_silent
+from ..diagnose.unknown_drive import describe_work
 from ..errors import ExperimentError
 from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
@@ -65,7 +66,10 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
         return (*findings, _report_skipped(str(problem), "warning"))
     if lacks_scale(prepared.stretches, model):
         return (*findings, _constant_force())
-    if silent := why_silent(prepared, model):
+    work = describe_work(experiment)
+    if work:
+        findings.append(Finding("work", "warning", work))
+    elif silent := why_silent(prepared, model):
         return (*findings, _report_skipped(silent.rstrip("."), "warning"))
     mixed = list(check_mixed_columns(part))
     if mixed:
@@ -76,7 +80,7 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     agreement = check_plausibility(model, prepared)
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]
-    if against:
+    if against or work:
         sentence = (
             "not checked which effects the record can show: first make signs, units and columns "
             "agree."

@@ -7,9 +7,14 @@ device is: the controller reads the same position. So does a bias, or another fo
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from ..effects import SIGNALS, Effect
 from ..measurement.experiment import Experiment
+from ..measurement.law_of_readings import LawOfReadings, law_of_readings
+from ..measurement.record import Record
 from ..measurement.survey.copies import is_copy
+from ..quantity import unit_of
 
 
 def is_of_place(effect: Effect) -> bool:
@@ -32,11 +37,52 @@ def is_computed(experiment: Experiment, body: str, *, of: str = "position") -> b
     return bool(signals) and all(is_copy(s[command], s[reading]) for s in signals)
 
 
+def computed_law(experiment: Experiment, body: str) -> LawOfReadings | None:
+    """The law of a controller that computes the command of every fit record from its readings.
+
+    None: there is no such law, or a force of the hand is measured
+    """
+    needed = {f"{body}.position", f"{body}.actuator_force"}
+    if f"{body}.interaction_force" in experiment.channels:
+        return None
+    laws = [_law_of_record(r, body) for r in experiment.fit_records if needed <= set(r.signals)]
+    return laws[0] if laws and all(laws) else None
+
+
+@lru_cache(maxsize=16)  # asked for every effect that is compared
+def _law_of_record(record: Record, body: str) -> LawOfReadings | None:
+    return law_of_readings(
+        record.signals[f"{body}.actuator_force"],
+        record.signals[f"{body}.position"],
+        record.segments,
+        sample_time=record.sample_time,
+        velocity=record.signals.get(f"{body}.velocity"),
+    )
+
+
+def describe_computed(experiment: Experiment, body: str) -> str | None:
+    """What a controller computes the command from, after "the command is"; None: nothing."""
+    if is_computed(experiment, body):
+        return "the position times a constant plus a constant, to the last digit"
+    law = computed_law(experiment, body)
+    if law is None:
+        return None
+    axis = experiment.axis(body)
+    spring = f"a virtual spring of {law.stiffness:.3g} {unit_of('stiffness', axis)}"
+    damper = f" and damper of {law.damping:.3g} {unit_of('damping', axis)}"
+    turned = " (negative: it pushes away, unless a sign is wrong)" if law.stiffness < 0.0 else ""
+    where = ", where it is neither at rest nor at a limit" if law.is_partial else ""
+    return (
+        f"computed from the readings of the position, to the last digit: {spring}"
+        f"{damper if law.is_damped else ''}{turned}{where}"
+    )
+
+
 def explain_computed(effect: Effect, experiment: Experiment, body: str) -> str | None:
     """A sentence where an effect only repeats the law of a controller; else None."""
-    if not (is_of_place(effect) and is_computed(experiment, body)):
+    if not is_of_place(effect):
         return None
-    return (
-        "the command is the position times a constant plus a constant, to the last digit: a "
-        "controller computes it, and the effect repeats this law"
-    )
+    computed = describe_computed(experiment, body)
+    if computed is None:
+        return None
+    return f"the command is {computed}; a controller computes it, and the effect repeats this law"

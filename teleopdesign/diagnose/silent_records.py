@@ -7,6 +7,7 @@ from ..model import Model
 from .constant_force import describe_constant_force, lacks_scale
 from .jitter import describe_jitter, is_much_jitter
 from .prepare import Prepared
+from .unknown_drive import describe_work
 
 
 def why_silent(prepared: Prepared, model: Model) -> str:
@@ -23,6 +24,8 @@ def why_silent(prepared: Prepared, model: Model) -> str:
             "The body rests throughout the check records, where any friction explains the force: "
             "they cannot check a model."
         )
+    if work := describe_work(prepared.experiment):
+        return work
     much = is_much_jitter(prepared.of("fit"), prepared.experiment)
     return describe_jitter() if much else ""
 

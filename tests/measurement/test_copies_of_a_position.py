@@ -8,7 +8,7 @@ from measurement.columns_by_hand import look
 
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.survey import Survey
-from teleopdesign.measurement.survey.copies import is_copy
+from teleopdesign.measurement.survey.copies import is_copy, pulls_back
 
 ROWS, STEP = 600, 0.01
 
@@ -79,3 +79,18 @@ def test_a_named_command_in_proportion_to_the_position_is_a_force():
     x, _ = pushed()
     result = survey(angle=np.round(x, 3), u=np.round(10.0 * (15.0 - x), 3))
     assert result.channels["actuator_force"]["column"] == "u"
+
+
+@pytest.mark.parametrize("damper", [0.0, 0.05])
+def test_the_damper_of_a_controller_that_pulls_back_is_no_wrong_sign(damper):
+    """A hand moves it. `new` took the position with the opposite sign."""
+    t = STEP * np.arange(ROWS)
+    x = np.round(0.4 * np.sin(2.1 * t) * np.sin(0.7 * t), 4)
+    u = np.round(-1.5 * x - damper * np.diff(x, prepend=x[0]) / STEP, 5)
+    noise = 0.01 * np.random.default_rng(1).standard_normal(ROWS)
+    assert pulls_back(u, x, STEP) and not pulls_back(-u, x, STEP)
+    assert not pulls_back(u + noise, x, STEP)
+    names = "time", "angle (rad)", "torque (Nm)"
+    for torque, sign in (u, 1), (u + noise, -1 if damper else 1):
+        position = survey(**dict(zip(names, (t, x, torque), strict=True))).channels["position"]
+        assert position.get("sign", 1) == sign

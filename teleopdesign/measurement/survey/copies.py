@@ -1,4 +1,4 @@
-"""Columns of a log that hold the position once more, in another unit or beside a constant."""
+"""Columns of a log that are the position once more, in another unit, or computed from it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from ..encoder import reading_step
 from ..first_guess import explain_force
+from ..law_of_readings import law_of_readings
 from .content import Array
 from .set_point import has_numbers_of, lags
 
@@ -37,6 +38,20 @@ def is_copy(column: Array, position: Array) -> bool:
         return False
     rounding = abs(slope) * reading_step(position) + reading_step(column)
     return rounding * FEWEST_STEPS <= reach and off <= rounding + DIGITS * reach
+
+
+def pulls_back(command: Array, position: Array, h: float) -> bool:
+    """Whether a controller computes a command from the position so that it pulls back.
+
+    Where a hand moves a device against such a law, the damper of the controller drives as friction
+    with a wrong sign would.
+
+    h: time between two rows
+    """
+    if is_copy(command, position):
+        return float((position - position.mean()) @ (command - command.mean())) < 0.0
+    law = law_of_readings(command, position, [slice(0, len(command))], sample_time=h)
+    return law is not None and law.stiffness > 0.0
 
 
 def _jumps(column: Array) -> bool:

@@ -29,7 +29,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .copies import is_copy
+from .copies import is_copy, pulls_back
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si
 from .set_point import has_numbers_of, may_be_set_point
@@ -281,7 +281,8 @@ def _choose_signs(
             )
         total = u + better * f
         with_hand = explain_force(total, x, h)
-    if with_hand.explained > DRIVES and is_turned(total, x, h):
+    turned = with_hand.explained > DRIVES and is_turned(total, x, h)
+    if turned and not (hand is None and pulls_back(u, x, h)):
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1
