@@ -64,6 +64,7 @@ def test_a_signal_that_begins_after_thousands_of_rows_has_its_times(tmp_path):
         (0.6, "t"),  # a channel that loses readings
         (0.0, "t"),  # one that has none
         (0.4, "x"),  # no column is a time
+        (0.4, "t"),  # one that loses most of them beside one that has all
     ],
 )
 def test_a_table_of_one_clock_stays_as_it_is(tmp_path, kept, time):

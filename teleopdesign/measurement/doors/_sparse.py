@@ -41,11 +41,11 @@ def groups_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[str,
     if not len(whole):
         return "", []
     share = filled.mean(axis=0)
-    if not np.any((share > 0.0) & (share < SELDOM)):
-        return "", []
-    times = {n: likeness(n, "time") for n, s in zip(names, share, strict=True) if s == 1.0}
-    time = max(times, key=lambda n: times[n], default="")
-    if not time or times[time] == 0.0:
+    full = [n for n, s in zip(names, share, strict=True) if s == 1.0]
+    if not np.any((share > 0.0) & (share < SELDOM)) or len(full) != 1:
+        return "", []  # beside a signal with numbers in all rows, another one has lost them
+    time = full[0]
+    if likeness(time, "time") == 0.0:
         return "", []
     groups: dict[bytes, list[str]] = {}
     for name, column, part in zip(names, filled.T, share, strict=True):
