@@ -11,7 +11,7 @@ topic of a bag is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -28,7 +28,7 @@ from ._seconds import seconds_of
 SELDOM = 0.5
 
 
-def groups_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[str, list[list[str]]]:
+def groups_of(names: Sequence[str], rows: Iterable[Sequence[str]]) -> tuple[str, list[list[str]]]:
     """The column of time, and the groups of columns with numbers in the same rows only.
 
     rows: the first rows of the table, as cells
@@ -36,9 +36,10 @@ def groups_of(names: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[str,
     """
     from ..column_names import likeness
 
-    whole = [row for row in rows if len(row) == len(names)]
-    filled = np.array([[not is_empty(cell) for cell in row] for row in whole], dtype=bool)
-    if not len(whole):
+    width = len(names)
+    marks = (bytes(not is_empty(cell) for cell in row) for row in rows if len(row) == width)
+    filled = np.frombuffer(b"".join(marks), dtype=bool).reshape(-1, width)
+    if not len(filled):
         return "", []
     share = filled.mean(axis=0)
     full = [n for n, s in zip(names, share, strict=True) if s == 1.0]

@@ -73,7 +73,7 @@ def open_text(path: Path, file: str) -> Log:
     log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
     # the last lines too: a signal may begin late
     some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
-    rows = [cells_of(line, dialect.separator) for line in some if line.strip()]
+    rows = (cells_of(line, dialect.separator) for line in some if line.strip())
     time, groups = groups_of(log.names, rows)
     return with_separate_clocks(log, file, time, groups) if groups else log
 
