@@ -17,6 +17,7 @@ from ..measurement.survey.copies import is_copy
 from ..quantity import unit_of
 
 
+@lru_cache(maxsize=256)
 def is_of_place(effect: Effect) -> bool:
     """Whether an effect is a force that depends on the position at most."""
     signals = effect.expression().free_symbols & set(SIGNALS.values())

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from itertools import combinations
 
 import sympy as sp
@@ -139,7 +138,6 @@ def _judge_beside(rung: Rung, line: Fit, prepared: Prepared) -> Rung:
     return replace(rung, ranking=ranking_alone(without, rung.added, line, prepared))
 
 
-@lru_cache(maxsize=256)
 def is_straight(effect: Effect) -> bool:
     """Whether a force of one parameter is linear in position; a constant force is, too."""
     if not is_of_place(effect) or len(effect.parameters) != 1 or effect.strength is None:

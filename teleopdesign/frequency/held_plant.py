@@ -139,7 +139,7 @@ class _Growth:
 
     def _up_to(self, time: mpmath.mpf) -> mpmath.matrix:
         """The integral up to a time within the shortest half."""
-        # lists: a matrix of `mpmath` takes ten times as long to add
+        # lists: with matrices of `mpmath` this takes six times as long
         total = [x * time for x in self.terms[-1]]
         for term in reversed(self.terms[:-1]):
             total = [(x + y) * time for x, y in zip(total, term, strict=True)]

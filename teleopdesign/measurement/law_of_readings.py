@@ -21,6 +21,7 @@ from scipy.signal import lfilter, lfiltic
 
 from .encoder import grid_of, reading_step
 from .filtering import Array
+from .repeated_rows import runs_of
 
 #: (readings of the position, past commands) of the laws, the simpler one first: spring, damper of
 #: one difference, of several, with a filter of first and of second order
@@ -77,9 +78,7 @@ class _Rows:
         """Rows in a line that a law can predict, with as many rows before them as it reads."""
         shortest, count = SHORTEST_RUN if past else 1, 0
         for segment in self.segments:
-            free = np.concatenate([[False], self.free[segment], [False]])
-            edges = np.flatnonzero(np.diff(free.astype(np.int8)))
-            for begin, end in edges.reshape(-1, 2).tolist():
+            for begin, end in zip(*runs_of(self.free[segment]), strict=True):
                 first = segment.start + max(begin + past, taps - 1)
                 last = min(segment.start + end, first + MOST - count)
                 if last - first >= shortest:

@@ -76,14 +76,11 @@ def with_separate_clocks(log: Log, file: str, time: str, groups: Sequence[Sequen
         of_table = {w: channel for w, channel in wanted.items() if w not in first_of}
         values = log.read({**{first_of[clock]: "" for clock in clocks}, **of_table})
         here = {clock: np.isfinite(values[first_of[clock]]) for clock in clocks}
-        return {
-            w: seconds()[here[w]]
-            if w in first_of
-            else values[w][here[clock_of[w]]]
-            if w in clock_of
-            else values[w]
-            for w in wanted
-        }
+        out = {w: seconds() if w in first_of else values[w] for w in wanted}
+        for w in wanted:
+            if (clock := clock_of.get(w, w)) in here:
+                out[w] = out[w][here[clock]]
+        return out
 
     firsts = join_names([group[0] for group in groups], most=4)
     note = f"signals with times of their own: {firsts}"

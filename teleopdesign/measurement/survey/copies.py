@@ -8,12 +8,10 @@ import numpy as np
 
 from ..encoder import reading_step
 from ..first_guess import explain_force
-from ..law_of_readings import law_of_readings
+from ..law_of_readings import FEWEST_STEPS, law_of_readings
 from .content import Array
 from .set_point import has_numbers_of, lags
 
-#: steps that a column must span: of a command with few levels, any line is within a step
-FEWEST_STEPS = 20.0
 #: part of the range of a column that sums of its numbers lose in floating point
 DIGITS = 1e-9
 #: part of its travel that a body crosses between two rows at most: the command of a relay jumps
