@@ -30,6 +30,9 @@ USUAL_COUNTS = tuple(
     )
 )
 NEAR_USUAL = 0.02
+#: part of its range that a number crosses at once where it wraps: a body that is reversed so fast
+#: would not reach the ends of this range in between
+WHOLE_RANGE = 0.9
 #: lengths of a turn in units of angle; fewest counts of a turn, below which a number of counts may
 #: be the range of a motion
 TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
@@ -68,6 +71,17 @@ def wrap_of(x: Array) -> float | None:
     return period if near and reach <= 1.001 * period else None
 
 
+def overflow_of(x: Array) -> float | None:
+    """Size of a column's leaps from one end of its range to the other, as of a number that wraps.
+
+    None: the column does not leap so at least twice, or leaps of this size are usual for it.
+    """
+    reach, steps = float(np.ptp(x)), np.abs(np.diff(x))
+    leaps = steps[steps > WHOLE_RANGE * reach]
+    is_rare = len(leaps) >= 2 and float(np.median(steps)) < (1.0 - WHOLE_RANGE) * reach
+    return float(np.median(leaps)) if is_rare else None
+
+
 def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, float]:
     """Factor and correlation between the derivative of x and a column v."""
     s = spectrum(len(x), sample_time)
@@ -104,6 +118,13 @@ def is_force(column: SurveyedColumn) -> bool:
     if column.unit is not None:
         return is_unit_of(column.unit, "force")
     return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
+
+
+def is_velocity(column: SurveyedColumn) -> bool:
+    """Whether unit or name of a column are those of a velocity."""
+    if is_unit_of(column.unit, "velocity"):
+        return True
+    return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
 
 
 def is_no_velocity(column: SurveyedColumn) -> bool:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
-from ...quantity import measures, si_factor
-from ..column_names import is_wanted, likeness, why_no_unit, words_of
+from ...quantity import is_unit, measures, si_factor
+from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
@@ -35,7 +35,9 @@ from .derivative import (
     derivative_factor,
     follows_direction,
     is_no_velocity,
+    is_velocity,
     may_be_position,
+    overflow_of,
     rate_agreement,
     unwrap_column,
     wrap_of,
@@ -79,7 +81,7 @@ def find_position(
             if has_sibling(name, other, moving):
                 continue
             agree = rate_agreement(flat[name], column_2.values, h)
-            if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
+            if not is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
             # a desired velocity agrees with the position as well, and better where it is smooth
             sure = agree + BY_NAME * likeness(other, "velocity") - 2.0 * BY_NAME * is_wanted(other)
@@ -155,14 +157,18 @@ def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
 
     The integral of a desired velocity would be a set point.
     """
-    names = [name for name, column in moving.items() if _is_velocity(column)]
+    names = [name for name, column in moving.items() if is_velocity(column)]
     names.sort(key=is_wanted)
-    return f"; add a column with the integral of {names[0]!r}" if names else ""
+    if not names:
+        return ""
+    leap = overflow_of(moving[names[0]].values)
+    first = f" (first undo its leaps of {leap:.3g}, as of a number that wraps)" if leap else ""
+    return f"; add a column with the integral of {names[0]!r}{first}"
 
 
 def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
     """How to choose a column that its name makes a force, for a message; not beside a velocity."""
-    if any(map(_is_velocity, moving.values())):
+    if any(map(is_velocity, moving.values())):
         return ""
     unsure = (n for n, c in moving.items() if c.unit is None)
     names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
@@ -170,20 +176,20 @@ def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
 
 
 def _is_another(column: SurveyedColumn) -> bool:
-    """Whether a column is a force or a velocity, by its unit or, without a unit, by its name."""
-    if is_unit_of(column.unit, "position"):
+    """Whether a column is no position, by its unit or, without a unit, by its name.
+
+    A potentiometer may be logged in mV, and the last letters of a name may be no unit: "q_ms".
+    """
+    if is_unit_of(column.unit, "position") or is_unit_of(column.unit, "time"):
         return False
-    if column.unit is None and likeness(column.name, "position") == 0:
+    named = likeness(column.name, "position")
+    if column.unit is not None and is_unit(column.unit):
+        return not (named >= SURE_NAME and column.unit == "mV")
+    if named == 0:
         others = ("velocity", "actuator_force", "interaction_force")
-        return max(likeness(column.name, other) for other in others) >= SURE_NAME
-    return any(is_unit_of(column.unit, kind) for kind in ("velocity", "force"))
-
-
-def _is_velocity(column: SurveyedColumn) -> bool:
-    """Whether unit or name of a column are those of a velocity."""
-    if is_unit_of(column.unit, "velocity"):
-        return True
-    return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
+        no_position = max(likeness(column.name, other) for other in others) >= SURE_NAME
+        return no_position or is_another_quantity(column.name)
+    return False
 
 
 def describe_position(

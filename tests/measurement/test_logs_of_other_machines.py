@@ -1,0 +1,94 @@
+"""Columns that were read as what they are not, in logs of machines unlike the examples."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey.copies import repeats_mostly
+from teleopdesign.measurement.survey.derivative import overflow_of
+
+STEP, ROWS = 0.01, 1200
+T = STEP * np.arange(ROWS)
+
+
+def survey(**columns):
+    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted})
+    return survey_log(log, "log", Choices())
+
+
+def servo():
+    """A servo behind a sine: set point, angle a little later, current of inertia and friction."""
+    wanted = 40.0 * np.sin(2 * np.pi * 0.25 * T) + 9.0 * np.sin(2 * np.pi * 0.6 * T)
+    angle = np.interp(T - 0.06, T, wanted)
+    rate = np.gradient(angle, T)
+    noise = np.random.default_rng(4).standard_normal(ROWS)
+    current = 3e-3 * np.gradient(rate, T) + 0.6 * np.tanh(rate / 5.0) + 0.08 * noise
+    return np.round(wanted, 2), np.round(angle, 2), np.round(current, 3)
+
+
+@pytest.mark.parametrize("slope", [-1.0, 4096 / 360.0])
+def test_a_set_point_with_the_other_sign_or_unit_is_no_force(slope):
+    """The steps of such a set point were the force, and `spring` was named with 0.7 % left."""
+    wanted, angle, current = servo()
+    again = np.round(slope * wanted, 2)
+    again[:3] = 0.0  # the machine is switched on
+    again[200::9] = again[199:-1:9]  # the two are not written in the same row
+    columns = {"column 1": T, "column 2": wanted, "column 3": again, "column 4": angle}
+    result = survey(**columns, **{"column 5": current})
+    assert result.channels["position"]["column"] == "column 4"
+    assert result.channels["actuator_force"]["column"] == "column 5"
+    assert "set point 'column 2' in another unit" in result.unused["column 3"]
+    with pytest.raises(ExperimentError, match="no column that could be a force"):
+        survey(**columns)
+
+
+def test_a_force_that_follows_a_set_point_is_no_copy_of_it():
+    wanted, angle, current = servo()
+    assert repeats_mostly(np.round(-2.0 * wanted, 2), wanted)
+    assert not repeats_mostly(current, wanted)
+    assert not repeats_mostly(np.round(wanted - angle, 2), wanted)
+    assert not repeats_mostly(wanted, np.zeros(ROWS))
+
+
+def test_a_commanded_speed_is_no_force_unless_it_is_chosen():
+    """The held command of a joint's velocity was its torque: "the motion explains 97 %"."""
+    _, angle, current = servo()
+    speed = np.where(np.arange(ROWS) < 400, -9.0, -18.0)
+    with pytest.raises(ExperimentError, match="--force 'roll/velocity' overrules"):
+        survey(**{"time": T, "roll/position": angle, "roll/velocity": speed})
+    log = {"time": T, "roll/position": angle, "roll/velocity": speed}
+    opened = Log(tuple(log), lambda wanted: {n: log[n] for n in wanted})
+    chosen = survey_log(opened, "log", Choices(actuator_force="roll/velocity"))
+    assert chosen.channels["actuator_force"]["column"] == "roll/velocity"
+    assert "actuator_force" in survey(time=T, angle=angle, v=current).channels, "v: a voltage"
+
+
+@pytest.mark.parametrize(
+    "name", ["load cell weight [g]", "AccX (g)", "Power (W)", "motor temp [°C]", "rate [Hz]"]
+)
+def test_a_unit_of_another_quantity_names_no_position(name):
+    """Grams of a load cell and the acceleration of a bench were angles in deg and rad."""
+    _, angle, current = servo()
+    with pytest.raises(ExperimentError, match="found no position"):
+        survey(**{"time [s]": T, name: angle, "brake torque [Nm]": current})
+
+
+def test_a_potentiometer_in_millivolts_is_a_position():
+    _, angle, current = servo()
+    result = survey(**{"time [s]": T, "position [mV]": 20.0 * angle, "torque [Nm]": current})
+    assert result.channels["position"]["column"] == "position [mV]"
+
+
+def test_the_advice_for_a_speed_names_its_overflow():
+    _, angle, current = servo()
+    speed = 3.0 * np.gradient(angle, T)
+    wrapped = (speed + 50.0) % 100.0 - 50.0
+    assert overflow_of(wrapped) == pytest.approx(100.0, rel=0.1)
+    assert overflow_of(speed) is None and overflow_of(np.sign(np.sin(200.0 * T))) is None
+    names = "time [s]", "a1 velocity [deg/s]", "torque [Nm]"
+    with pytest.raises(ExperimentError, match="integral of .* undo its leaps of 9"):
+        survey(**dict(zip(names, (T, wrapped, current), strict=True)))
+    with pytest.raises(ExperimentError, match=r"integral of 'a1 velocity \[deg/s\]'$"):
+        survey(**dict(zip(names, (T, speed, current), strict=True)))
