@@ -26,6 +26,7 @@ from ._dialect import (
     is_value,
     open_bytes,
 )
+from ._in_turn import turns_of, with_machines_apart
 from ._log import MOST_BYTES, Array, Log, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
 from ._sparse import groups_of, with_separate_clocks
@@ -71,11 +72,24 @@ def open_text(path: Path, file: str) -> Log:
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
-    # the last lines too: a signal may begin late
-    some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
-    rows = (cells_of(line, dialect.separator) for line in some if line.strip())
-    time, groups = groups_of(log.names, rows)
-    return with_separate_clocks(log, file, time, groups) if groups else log
+    first, last = (
+        [cells_of(line, dialect.separator) for line in some if line.strip()]
+        for some in (lines[dialect.first :], _last_lines(path, dialect)[1:])
+    )
+    time, groups = groups_of(log.names, [*first, *last])  # a signal may begin late
+    if groups:
+        return with_separate_clocks(log, file, time, groups)
+    if dialect.named and (turns := turns_of(log.names, first, dialect.comma)) is not None:
+        return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
+    return log
+
+
+def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
+    """The cells of a column as text, one for each row that is read."""
+    place = dialect.header.index(name)
+    with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+        lines = _lines(stream, dialect, file, [])
+        return [cells_of(line, dialect.separator)[place] for line in lines]
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:
