@@ -5,9 +5,11 @@ import pytest
 
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
+from teleopdesign.measurement.stamp_unit import unit_in_place_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.copies import repeats_mostly
 from teleopdesign.measurement.survey.derivative import overflow_of
+from teleopdesign.measurement.tables import open_log
 
 STEP, ROWS = 0.01, 1200
 T = STEP * np.arange(ROWS)
@@ -92,3 +94,52 @@ def test_the_advice_for_a_speed_names_its_overflow():
         survey(**dict(zip(names, (T, wrapped, current), strict=True)))
     with pytest.raises(ExperimentError, match=r"integral of 'a1 velocity \[deg/s\]'$"):
         survey(**dict(zip(names, (T, speed, current), strict=True)))
+
+
+@pytest.mark.parametrize("name", ["time_us", "t [ns]"])
+def test_a_name_with_an_impossible_unit_of_time_is_overruled_as_a_guess(name):
+    """Seconds in a column "time_us" made a log of 6 s one of 6 us, which was refused."""
+    _, angle, current = servo()
+    result = survey(**{name: T, "angle_deg": angle, "torque": current})
+    assert result.channels["time"] == {"column": name, "unit": "s"}
+    assert "as its name says" in result.guesses["channels.time.unit"]
+
+
+def test_a_unit_of_time_that_may_be_right_is_kept():
+    _, angle, current = servo()
+    columns = {"time_us": 100.0 * np.arange(ROWS), "angle_deg": angle, "torque": current}
+    with pytest.raises(ExperimentError, match="'time_us' is read in us: --unit 'time_us=UNIT'"):
+        survey(**columns)
+    assert unit_in_place_of("us", np.arange(ROWS)) is None, "a scope of 1 MHz"
+    assert unit_in_place_of("s", np.zeros(5)) is None
+    columns["time_us"] = 1e6 * T
+    assert survey(**columns).channels["time"]["unit"] == "us"
+    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted})
+    columns["time_us"] = T
+    with pytest.raises(ExperimentError, match="of samples, expected at least 1 s$"):
+        survey_log(log, "log", Choices(units={"time_us": "us"}))
+
+
+def test_a_row_wider_than_the_header_is_refused_once_with_its_text(tmp_path):
+    """The message repeated the row for each column, and called them columns without numbers."""
+    path = tmp_path / "log.csv"
+    _, angle, current = servo()
+    rows = [f"LOG,{t:.3f},{q},{u}" for t, q, u in zip(T, angle, current, strict=True)]
+    path.write_text("\n".join(["time,angle,torque", *rows]))
+    expected = (
+        "log.csv: row 1: found 4 cells, expected 3 as in the header; the header may leave out the "
+        'name of a text ("LOG" in cell 1): write it there'
+    )
+    with pytest.raises(ExperimentError) as problem:
+        survey_log(open_log(path, "log.csv"), "log.csv", Choices())
+    assert str(problem.value) == expected
+    path.write_text("\n".join(["time,angle", *(row[4:] for row in rows)]))
+    with pytest.raises(ExperimentError, match="found 3 cells, expected 2 as in the header$"):
+        survey_log(open_log(path, "log.csv"), "log.csv", Choices())
+
+
+def test_a_message_about_a_log_without_position_names_columns_at_rest_and_without_name():
+    _, _, current = servo()
+    columns = {"": np.arange(ROWS), "time": T, "w": np.zeros(ROWS), "torque": current}
+    with pytest.raises(ExperimentError, match=r'among "", w, torque \(w not changing\)'):
+        survey(**columns)

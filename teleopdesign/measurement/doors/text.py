@@ -27,7 +27,7 @@ from ._dialect import (
     open_bytes,
 )
 from ._in_turn import turns_of, with_machines_apart
-from ._log import MOST_BYTES, Array, Log, refuse_size
+from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
 from ._sparse import groups_of, with_separate_clocks
 
@@ -187,7 +187,8 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
             continue
         if cells > width and not quoted_cells and separator != " ":
             if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
-                raise _ragged_row_error(file, count, cells, width)
+                nameless = _text_without_name(line, dialect) if count == 1 else ""
+                raise _ragged_row_error(file, count, cells, width, nameless)
             line = line.rstrip("\r\n")[:-1] + "\n"
         yield line
     if cut:
@@ -218,10 +219,22 @@ def _is_text(line: str, dialect: Dialect) -> bool:
     return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
 
 
-def _ragged_row_error(file: str, row: int, cells: int, width: int) -> ExperimentError:
+def _ragged_row_error(
+    file: str, row: int, cells: int, width: int, more: str = ""
+) -> ExperimentError:
     return ExperimentError(
-        f"{file}: row {row}: found {cells} cells, expected {width} as in the header"
+        f"{file}: row {row}: found {cells} cells, expected {width} as in the header{more}"
     )
+
+
+def _text_without_name(line: str, dialect: Dialect) -> str:
+    """What to do about the first row's texts, such as a tag before its numbers; "" without one."""
+    cells = cells_of(line, dialect.separator)
+    texts = [k for k, c in enumerate(cells) if not is_value(c, dialect.comma) and not is_empty(c)]
+    if not texts or len(cells) != len(dialect.header) + 1:
+        return ""
+    where = join_names([f"{quote(cells[k])} in cell {k + 1}" for k in texts], most=3)
+    return f"; the header may leave out the name of a text ({where}): write it there"
 
 
 def _read_cell_by_cell(

@@ -25,6 +25,7 @@ from .content import (
     explain_ambiguity,
     is_unit_of,
     moves,
+    names_at_rest,
     reasons,
     sample_time_of,
 )
@@ -158,7 +159,7 @@ def _constant_columns(survey: Survey) -> str:
 
     Each of several logs may hold another constant command.
     """
-    names = [name for name, column in survey.columns.items() if not moves(column)]
+    names = names_at_rest(survey)
     if not names:
         return ""
     which = f"{join_names(names)} {'does' if len(names) == 1 else 'do'} not change here"

@@ -8,10 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
 from ...quantity import is_unit, measures, si_factor
 from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
-from ..doors._log import join_names
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
 from .axis_kind import IN_TURNS
@@ -26,7 +24,6 @@ from .content import (
     explain_ambiguity,
     is_unit_of,
     moves,
-    reasons,
     sample_time_of,
 )
 from .copies import most_explained
@@ -37,13 +34,13 @@ from .derivative import (
     is_no_velocity,
     is_velocity,
     may_be_position,
-    overflow_of,
     rate_agreement,
     unwrap_column,
     wrap_of,
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
 from .force_entry import describe_code
+from .no_position import error_without_position
 from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
@@ -101,11 +98,7 @@ def find_position(
         best = axis_that_moves(best, as_likely(scores, best), travels)
         _note_choice(survey, best, scores, derivative, followed)
     else:
-        raise ExperimentError(
-            f"{file}: found no position: no column changes without being a force or "
-            f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
-            f"{_integral_of(moving)}{_named_as_force(moving)}{reasons(survey.unread)}"
-        )
+        raise error_without_position(survey, moving, file)
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
@@ -150,29 +143,6 @@ def _without_names(
         and not _is_another(column)
         and may_be_set_point(column)
     }
-
-
-def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
-    """What to do with a log of velocities, as the end of a message; "" without a velocity.
-
-    The integral of a desired velocity would be a set point.
-    """
-    names = [name for name, column in moving.items() if is_velocity(column)]
-    names.sort(key=is_wanted)
-    if not names:
-        return ""
-    leap = overflow_of(moving[names[0]].values)
-    first = f" (first undo its leaps of {leap:.3g}, as of a number that wraps)" if leap else ""
-    return f"; add a column with the integral of {names[0]!r}{first}"
-
-
-def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
-    """How to choose a column that its name makes a force, for a message; not beside a velocity."""
-    if any(map(is_velocity, moving.values())):
-        return ""
-    unsure = (n for n, c in moving.items() if c.unit is None)
-    names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
-    return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
 
 
 def _is_another(column: SurveyedColumn) -> bool:
