@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,8 @@ NUMBERS_MACHINES = frozenset(
 )
 #: most machines of a table, and least rows of each among the first rows of the table
 MOST_MACHINES, FEWEST_ROWS = 64, 10
+#: first rows of a table that are looked at: batches of up to 200 rows of two machines come back
+MOST_ROWS = 1000
 #: part of the shortest machine's time for which all run together
 TOGETHER = 0.5
 #: part that the steps from row to row of the table shrink by within each machine
@@ -62,7 +65,7 @@ def turns_of(names: Sequence[str], rows: Iterable[Sequence[str]], comma: bool) -
 
     rows: as cells
     """
-    table = [row for row in rows if len(row) == len(names)]
+    table = [row for row in islice(rows, MOST_ROWS) if len(row) == len(names)]
     time = _time_of(names)
     if time is None or len(table) < 2 * FEWEST_ROWS:
         return None

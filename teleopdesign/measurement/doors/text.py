@@ -72,14 +72,14 @@ def open_text(path: Path, file: str) -> Log:
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
-    first, last = (
-        [cells_of(line, dialect.separator) for line in some if line.strip()]
-        for some in (lines[dialect.first :], _last_lines(path, dialect)[1:])
-    )
-    time, groups = groups_of(log.names, [*first, *last])  # a signal may begin late
+    # the last lines too: a signal may begin late
+    some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
+    rows = (cells_of(line, dialect.separator) for line in some if line.strip())
+    time, groups = groups_of(log.names, rows)
     if groups:
         return with_separate_clocks(log, file, time, groups)
-    if dialect.named and (turns := turns_of(log.names, first, dialect.comma)) is not None:
+    rows = (cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip())
+    if dialect.named and (turns := turns_of(log.names, rows, dialect.comma)) is not None:
         return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
     return log
 
