@@ -29,6 +29,7 @@ from ._dialect import (
 from ._in_turn import turns_of, with_machines_apart
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
+from ._signals_in_rows import open_signals_in_rows
 from ._sparse import groups_of, with_separate_clocks
 
 #: rows that are read in one block: 20 MB of text
@@ -41,6 +42,8 @@ _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 def open_text(path: Path, file: str) -> Log:
     """Open a csv file, packed or not; raises ExperimentError: no text, no rows."""
+    if (turned := open_signals_in_rows(path, file)) is not None:
+        return turned
     encoding, lines = first_lines(path, file)
     if pairs := names_in_lines(lines):
         return log_of_pairs(path, file, encoding, pairs)
