@@ -1,6 +1,7 @@
 """Tables whose rows belong to several machines in turn, with and without a column that says so."""
 
 import itertools
+import json
 
 import numpy as np
 import pytest
@@ -121,3 +122,39 @@ def test_a_time_that_always_falls_has_no_parts_without_end():
     parts, returns = parts_by_time(-np.arange(1000.0))
     assert returns == 0 and int(parts.max()) <= MOST_MACHINES + 1
     assert parts_by_time(np.zeros(3))[1] == 0
+
+
+def as_json(path, records):
+    path.write_text(json.dumps(records))
+
+
+def as_parquet(path, records):
+    pytest.importorskip("pyarrow")
+    pytest.importorskip("pandas").DataFrame(records).to_parquet(path)
+
+
+@pytest.mark.parametrize(("kind", "write_records"), [("json", as_json), ("parquet", as_parquet)])
+@pytest.mark.parametrize("labels", [("hip", "knee"), (3, 8)])
+def test_records_of_several_machines_are_read_apart(tmp_path, kind, write_records, labels):
+    names = "joint", "time", "position", "effort"
+    records = [dict(zip(names, row, strict=True)) for row in in_turn(labels)]
+    write_records(tmp_path / f"log.{kind}", records)
+    log = tables.open_log(tmp_path / f"log.{kind}", "log")
+    one, other = labels
+    read = log.read({f"{one}.effort": "", f"{other}.time": ""})
+    np.testing.assert_allclose(read[f"{one}.effort"].astype(float), machine(0)[:, 2], atol=1e-6)
+    np.testing.assert_allclose(read[f"{other}.time"], machine(1)[:, 0], atol=1e-6)
+
+
+def test_records_of_one_machine_stay_as_they_are(tmp_path):
+    for names in (("joint", "time", "x", "u"), ("id", "a", "x", "u"), ("state", "time", "x", "u")):
+        records = [dict(zip(names, ("hip", *row), strict=True)) for row in one_machine()]
+        as_json(tmp_path / "log.json", records)
+        assert set(tables.open_log(tmp_path / "log.json", "log").names) == set(names)
+
+
+def test_dates_of_several_machines_are_seconds(tmp_path):
+    rows = [(k, f"2024-03-09 19:03:{10 + t:09.6f}", q, u) for k, t, q, u in in_turn("ab")]
+    log = write(tmp_path / "log.csv", ("joint", "time", "position", "torque"), rows)
+    time = log.read({"b.time": ""})["b.time"]
+    np.testing.assert_allclose(time - time[0], machine(1)[:, 0] - machine(1)[0, 0], atol=1e-6)

@@ -21,13 +21,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...errors import ExperimentError
 from ...quantity import measures, si_factor
 from ._cells import is_number, number_of, seconds_of
 from ._log import Array, Log, join_names
 
-#: words of the name of a column that numbers machines
+#: words of the name of a column that names or numbers machines
 NUMBERS_MACHINES = frozenset(
-    "id ids no nr num number motor joint servo axis actuator node device drive can leg".split()
+    "id ids no nr num number name motor joint servo axis actuator node device drive can leg".split()
 )
 #: most machines of a table, and least rows of each among the first rows of the table
 MOST_MACHINES, FEWEST_ROWS = 64, 10
@@ -182,6 +183,40 @@ def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:
     return part, returns
 
 
+def machines_apart(log: Log) -> Log:
+    """A log of records or arrays, with the columns of each machine where its rows take turns.
+
+    Only a column whose name says that it names machines is looked at: others are read twice else.
+    """
+    from ..column_names import words_of
+
+    may_name = any(
+        words and NUMBERS_MACHINES.issuperset(words) for words in map(words_of, log.names)
+    )
+    if log.clocks or not may_name or len(set(log.names)) < len(log.names):
+        return log
+    try:
+        columns = log.read(dict.fromkeys(log.names, ""))
+    except ExperimentError:  # the message belongs to the column that is wanted
+        return log
+    texts = {n: [_as_text(cell) for cell in np.asarray(c)[:MOST_ROWS]] for n, c in columns.items()}
+    if len(set(map(len, texts.values()))) != 1:
+        return log
+    turns = turns_of(log.names, zip(*texts.values(), strict=True), False)
+    if turns is None or turns.column is None:
+        return log
+    return with_machines_apart(
+        log, turns, lambda name: [*map(_as_text, np.asarray(log.read({name: ""})[name]))]
+    )
+
+
+def _as_text(cell: Any) -> str:
+    """A cell as a text table holds it: 2.0 of a column of numbers is "2"."""
+    if isinstance(cell, float | np.floating) and float(cell).is_integer():
+        return str(int(cell))
+    return "" if cell is None else str(cell)
+
+
 def with_machines_apart(
     log: Log, turns: Turns, cells_of_column: Callable[[str], Sequence[str]]
 ) -> Log:
@@ -189,17 +224,20 @@ def with_machines_apart(
 
     cells_of_column: function that reads a column as text, one cell for each row of `log`
     """
+    from ..numbers_in_cells import holds_dates, numbers_of
 
     @cache
     def rows() -> tuple[Array, NDArray[np.intp]]:
-        stamps = np.asarray(log.read({turns.time: "channels.time"})[turns.time], dtype=float)
+        read_time = log.read({turns.time: "channels.time"})[turns.time]
+        stamps = numbers_of(read_time, turns.time, "log")
         if turns.column is None:
             machine = parts_by_time(stamps)[0]
         else:
             order = {name: k for k, name in enumerate(turns.names)}
             cells = cells_of_column(turns.column)
             machine = np.array([order.get(cell, -1) for cell in cells], dtype=np.intp)
-        return stamps * _scale(log, turns.time, stamps[machine == 0]), machine
+        scale = 1.0 if holds_dates(read_time) else _scale(log, turns.time, stamps[machine == 0])
+        return stamps * scale, machine
 
     signals = [n for n in log.names if n not in (turns.column, turns.time)]
     columns = {f"{m}.{n}": (k, n) for k, m in enumerate(turns.names) for n in signals}
