@@ -7,13 +7,20 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import is_another_quantity, likeness
+from ..column_names import is_another_quantity, likeness, words_of
 from ..filtering import spectrum
 from ..first_guess import motion_columns
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
+#: correlation from which a column is the derivative of a velocity beside it, and no force: numbers
+#: of a planned path agree to their digits, and friction of 1 % of the force lowers it below
+EXACT = 0.9999
+#: words in names of accelerations
+ACCELERATIONS = frozenset(
+    "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot ddtheta".split()
+)
 #: part of its path that a motion one way goes forward, noise of the readings included; times its
 #: spread that the mean of a speed is, from which its noise says little; and part by which the mean
 #: of a speed may differ from the motion: filters and a start from rest
@@ -145,6 +152,21 @@ def rate_agreement(x: Array, v: Array, sample_time: float) -> float:
     if agree > DERIVATIVE:
         return agree if has_both_signs(x, v, sample_time) else 0.0
     return 1.0 if is_mean_rate(x, v, sample_time) else agree
+
+
+def is_acceleration(column: SurveyedColumn, velocity: Array | None, sample_time: float) -> bool:
+    """Whether a column is an acceleration: by a word of its name, or exactly by its numbers.
+
+    velocity: (n,), a column of the log.  A planned path holds position, velocity and acceleration;
+        the force of a drive contains friction and noise as well
+    """
+    if is_force(column):
+        return False
+    if ACCELERATIONS.intersection(words_of(column.name)):
+        return True
+    if velocity is None:
+        return False
+    return derivative_factor(velocity, column.values, sample_time)[1] > EXACT
 
 
 def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:

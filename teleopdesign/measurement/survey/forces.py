@@ -59,7 +59,7 @@ def describe_forces(
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
     used = {position, velocity, time_name, *columns_in_use(survey)}
-    free = possible_forces(survey, position, used, x)
+    free = possible_forces(survey, position, velocity, used, x)
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     sizes = _sizes_beside_signed(free, position, survey)
     scores = {

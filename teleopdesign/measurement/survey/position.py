@@ -45,6 +45,8 @@ from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
+#: difference between two correlations that tells nothing
+SAME = 0.005
 #: relative difference between a velocity and the derivative of its position that filters and
 #: rounding may cause
 SAME_TIME = 0.1
@@ -85,6 +87,7 @@ def find_position(
             if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
                 derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
+    scores = {n: s - 0.4 * _is_rate(n, derivative) for n, s in scores.items()}
     # a column whose name or unit is of something else is never a position
     known = choices.units  # except with a chosen unit: a wrong choice is refused with its name
     scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
@@ -103,6 +106,17 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _is_rate(name: str, derivative: Mapping[str, tuple[str, float]]) -> bool:
+    """Whether a column is a velocity with an acceleration, and no position with a velocity.
+
+    derivative: column -> its derivative, and how surely it is
+    """
+    if name not in derivative:
+        return False
+    _, sure = derivative[name]
+    return any(of == name and other > sure - SAME for of, other in derivative.values())
 
 
 def _note_choice(

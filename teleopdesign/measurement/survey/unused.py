@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from ...quantity import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness
 from ..doors._log import Log
@@ -23,7 +25,14 @@ from .content import (
     sample_time_of,
 )
 from .copies import is_copy, repeats_mostly
-from .derivative import DERIVATIVE, is_no_velocity, rate_agreement, unwrap_column, wrap_of
+from .derivative import (
+    DERIVATIVE,
+    is_acceleration,
+    is_no_velocity,
+    rate_agreement,
+    unwrap_column,
+    wrap_of,
+)
 from .force_candidates import is_speed
 from .set_point import follows, has_numbers_of, may_be_set_point
 
@@ -99,6 +108,10 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
             return why
     if may_be_set_point(column) and has_numbers_of(column.values, unwrap_column(x, jump)):
         return f"has the numbers of {position!r}: a set point, or the same reading once more"
+    h = sample_time_of(survey)
+    rate = np.gradient(unwrap_column(x, jump), h)
+    if name not in survey.explained and is_acceleration(column, rate, h):
+        return f"an acceleration of {position!r}"
     if is_speed(column) and name not in survey.explained:
         return "a velocity by its name, and no force"
     if name not in survey.explained and is_copy(column.values, unwrap_column(x, jump)):
