@@ -110,6 +110,8 @@ OTHER_QUANTITIES = frozenset(
     "pressure press druck pression bar mbar psi pa kpa mpa hpa temperature temp temperatur celsius "
     "degc kelvin humidity flow".split()
 )
+#: units of further such quantities, which are names as well ("w" of an angular velocity)
+OTHER_UNITS = OTHER_QUANTITIES | frozenset("°c c w kw mw db ohm".split())
 
 #: units that are words or parts of names as well: "x_in" is an input, "hand_ft" force and torque
 _ONLY_IN_BRACKETS = ("in", "ft")
@@ -276,8 +278,9 @@ def likeness(name: str, quantity: str) -> float:
 
 
 def is_another_quantity(name: str) -> bool:
-    """Whether a name stands for a pressure, a temperature or a similar quantity."""
-    return bool(OTHER_QUANTITIES.intersection(words_of(name)))
+    """Whether a name or the unit in it stands for a pressure, a temperature or the like."""
+    unit = (unfit_unit(name) or "").lower()
+    return bool(OTHER_QUANTITIES.intersection(words_of(name))) or unit in OTHER_UNITS
 
 
 def is_wanted(name: str) -> bool:

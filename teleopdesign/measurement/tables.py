@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, did_you_mean, quote
+from .doors._in_turn import machines_apart
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
@@ -57,6 +58,8 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
+#: readers of rows that may belong to several machines; `open_text` looks for such rows itself
+OF_RECORDS = (open_json, open_parquet, open_workbook)
 #: first bytes of a file -> the function that reads such a file
 BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
     b"\x89HDF\r\n\x1a\n": open_hdf5,
@@ -116,6 +119,9 @@ def open_log(path: Path, file: str) -> Log:
     door = opened
     log = _read_with_errors(lambda: door(path, file), file)
     refuse_odd_names(log, file)
+    if door in OF_RECORDS:
+        whole = log
+        log = _read_with_errors(lambda: machines_apart(whole), file)
     return replace(log, read=lambda wanted: _read_with_errors(lambda: log.read(wanted), file))
 
 

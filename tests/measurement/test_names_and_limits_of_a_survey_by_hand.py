@@ -17,11 +17,10 @@ from teleopdesign.measurement.survey import (
 )
 from teleopdesign.measurement.survey.axes import of_another_axis, stand_together
 from teleopdesign.measurement.survey.axis_kind import axis_of
-from teleopdesign.measurement.survey.derivative import is_force, may_be_position
+from teleopdesign.measurement.survey.derivative import is_force, is_velocity, may_be_position
 from teleopdesign.measurement.survey.force_entry import _middle_of_input
 from teleopdesign.measurement.survey.position import (
     _is_another,
-    _is_velocity,
     _step_of_readings,
 )
 from teleopdesign.measurement.survey.trials import longest_trial, name_trials, trial_column
@@ -92,7 +91,7 @@ def test_what_tells_whether_an_axis_turns(columns, choices, axis, why):
 )  # fmt: skip
 def test_what_is_a_velocity_or_a_force_by_unit_or_name(name, unit, velocity, force, another):
     one = column(name, unit=unit)
-    assert (_is_velocity(one), is_force(one), _is_another(one)) == (velocity, force, another)
+    assert (is_velocity(one), is_force(one), _is_another(one)) == (velocity, force, another)
 
 
 def test_only_a_stated_position_may_always_rise():

@@ -145,6 +145,6 @@ def part(values: Any, column: int | None) -> Any:
 
 
 def join_names(names: Iterable[str], most: int = 20) -> str:
-    """Names for a message."""
-    names = list(names)
+    """Names for a message; an empty one is written as such."""
+    names = [name or '""' for name in names]
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")

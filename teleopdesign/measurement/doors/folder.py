@@ -33,6 +33,8 @@ def open_folder(
     stems = [t.name.split(".")[0] for t in tables]
     names = stems if len(set(stems)) == len(stems) else [t.name for t in tables]
     logs = {n: open_one(t, f"{file}/{t.name}") for n, t in zip(names, tables, strict=True)}
+    if _are_signals(logs):
+        return _log_of_signals(logs)
     _refuse_same_columns(logs, folder, [t.name for t in tables])
     time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
     seconds = {n: seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
@@ -61,6 +63,45 @@ def open_folder(
         return tuple(f"{n}: {note}" for n, log in logs.items() for note in log.left_out())
 
     return Log(tuple(columns), read, units, tuple(notes), clocks, left_out)
+
+
+def _are_signals(logs: Mapping[str, Log]) -> bool:
+    """Whether tables without header are signals whose files are named by them: "position.csv"."""
+    from ..column_names import likeness
+
+    plain = all(
+        log.names == tuple(_names_with_numbers("column", len(log.names))) for log in logs.values()
+    )
+    kinds = ("position", "actuator_force")
+    return plain and all(any(likeness(n, kind) > 0 for n in logs) for kind in kinds)
+
+
+def _names_with_numbers(name: str, count: int) -> list[str]:
+    return [f"{name} {k + 1}" for k in range(count)]
+
+
+def _log_of_signals(logs: Mapping[str, Log]) -> Log:
+    """Signals of tables without header, row by row: "position 1", "torque 1"."""
+    columns = {
+        name: (table, column)
+        for table, log in logs.items()
+        for name, column in zip(
+            _names_with_numbers(table, len(log.names)) if len(log.names) > 1 else [table],
+            log.names,
+            strict=True,
+        )
+    }
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        out: dict[str, Any] = {}
+        for table, log in logs.items():
+            here = {w: columns[w][1] for w in wanted if columns[w][0] == table}
+            values = log.read({column: wanted[w] for w, column in here.items()}) if here else {}
+            out |= {w: values[column] for w, column in here.items()}
+        return out
+
+    note = f"{len(logs)} tables without header, row by row: {join_names(logs)}"
+    return Log(tuple(columns), read, notes=(note,))
 
 
 def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[str]) -> None:

@@ -26,8 +26,10 @@ from ._dialect import (
     is_value,
     open_bytes,
 )
-from ._log import MOST_BYTES, Array, Log, refuse_size
+from ._in_turn import turns_of, with_machines_apart
+from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
+from ._signals_in_rows import open_signals_in_rows
 from ._sparse import groups_of, with_separate_clocks
 
 #: rows that are read in one block: 20 MB of text
@@ -40,6 +42,8 @@ _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 def open_text(path: Path, file: str) -> Log:
     """Open a csv file, packed or not; raises ExperimentError: no text, no rows."""
+    if (turned := open_signals_in_rows(path, file)) is not None:
+        return turned
     encoding, lines = first_lines(path, file)
     if pairs := names_in_lines(lines):
         return log_of_pairs(path, file, encoding, pairs)
@@ -75,7 +79,20 @@ def open_text(path: Path, file: str) -> Log:
     some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
     rows = (cells_of(line, dialect.separator) for line in some if line.strip())
     time, groups = groups_of(log.names, rows)
-    return with_separate_clocks(log, file, time, groups) if groups else log
+    if groups:
+        return with_separate_clocks(log, file, time, groups)
+    rows = (cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip())
+    if dialect.named and (turns := turns_of(log.names, rows, dialect.comma)) is not None:
+        return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
+    return log
+
+
+def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
+    """The cells of a column as text, one for each row that is read."""
+    place = dialect.header.index(name)
+    with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+        lines = _lines(stream, dialect, file, [])
+        return [cells_of(line, dialect.separator)[place] for line in lines]
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:
@@ -173,7 +190,8 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
             continue
         if cells > width and not quoted_cells and separator != " ":
             if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
-                raise _ragged_row_error(file, count, cells, width)
+                nameless = _text_without_name(line, dialect) if count == 1 else ""
+                raise _ragged_row_error(file, count, cells, width, nameless)
             line = line.rstrip("\r\n")[:-1] + "\n"
         yield line
     if cut:
@@ -204,10 +222,22 @@ def _is_text(line: str, dialect: Dialect) -> bool:
     return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
 
 
-def _ragged_row_error(file: str, row: int, cells: int, width: int) -> ExperimentError:
+def _ragged_row_error(
+    file: str, row: int, cells: int, width: int, more: str = ""
+) -> ExperimentError:
     return ExperimentError(
-        f"{file}: row {row}: found {cells} cells, expected {width} as in the header"
+        f"{file}: row {row}: found {cells} cells, expected {width} as in the header{more}"
     )
+
+
+def _text_without_name(line: str, dialect: Dialect) -> str:
+    """What to do about the first row's texts, such as a tag before its numbers; "" without one."""
+    cells = cells_of(line, dialect.separator)
+    texts = [k for k, c in enumerate(cells) if not is_value(c, dialect.comma) and not is_empty(c)]
+    if not texts or len(cells) != len(dialect.header) + 1:
+        return ""
+    where = join_names([f"{quote(cells[k])} in cell {k + 1}" for k in texts], most=3)
+    return f"; the header may leave out the name of a text ({where}): write it there"
 
 
 def _read_cell_by_cell(

@@ -76,7 +76,8 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
         few = min(map(len, raw.values())) < FEWEST
-        raise ExperimentError(f"{problem}{'' if few else _guessed_clock(guesses)}") from None
+        how = _guessed_clock(guesses) or _stated_clock(time_name, unit, choices)
+        raise ExperimentError(f"{problem}{'' if few else how}") from None
     duration = duration_of(raw, time_name, unit, choices)
     survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
     if time_name is not None:
@@ -101,6 +102,13 @@ def _guessed_clock(guesses: Mapping[str, str]) -> str:
         return ""
     option = "--time COLUMN, --unit COLUMN=UNIT or --sample-rate HZ states it"
     return f"; {'; '.join(guesses.values())}: {option}"
+
+
+def _stated_clock(time_name: str | None, unit: str, choices: Choices) -> str:
+    """In which unit a column of time was read, as the end of a message; "" for seconds."""
+    if time_name is None or unit == "s" or time_name in choices.units:
+        return ""
+    return f"; {time_name!r} is read in {unit}: --unit {time_name + '=UNIT'!r} states another unit"
 
 
 def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:

@@ -14,7 +14,7 @@ from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
 from ..signed_numbers import sign_code_of
-from ..stamp_unit import unit_of_steps
+from ..stamp_unit import unit_in_place_of, unit_of_steps
 from ..time_grid import clock_of
 from ..wrapped_stamps import seconds_since_first, unwrap_stamps
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
@@ -69,6 +69,9 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         else:
             unread[name] = _explain_empty(finite)
     if not raw:
+        whys = set(unread.values())
+        if len(whys) == 1 and "found" in (why := whys.pop()):  # the same row of all columns
+            raise ExperimentError(f"{file}: {why}")
         raise ExperimentError(
             f"{file}: found no column of numbers among {join_names(log.names)}{reasons(unread)}"
         )
@@ -122,6 +125,8 @@ def time_column(
         unit, why = unit_of_steps(raw[name])
         if why:
             guesses["channels.time.unit"] = why
+    elif name not in choices.units and (other := unit_in_place_of(unit, raw[name])):
+        unit, guesses["channels.time.unit"] = other
     return name, unit
 
 

@@ -94,6 +94,11 @@ def moves(column: SurveyedColumn) -> bool:
     return bool(np.ptp(column.values) > 0)
 
 
+def names_at_rest(survey: Survey) -> list[str]:
+    """The columns that do not change."""
+    return [name for name, column in survey.columns.items() if not moves(column)]
+
+
 def columns_in_use(survey: Survey) -> set[str]:
     """The columns that are in a channel already, such as that which numbers trials."""
     return {entry["column"] for entry in survey.channels.values() if "column" in entry}

@@ -14,6 +14,8 @@ from .set_point import has_numbers_of, lags
 
 #: part of the range of a column that sums of its numbers lose in floating point
 DIGITS = 1e-9
+#: fits of a line to the half of the rows that lies nearest to it: each leaves out rows further off
+FITS = 4
 #: part of its travel that a body crosses between two rows at most: the command of a relay jumps
 #: over all of its range
 JUMP = 0.5
@@ -36,6 +38,27 @@ def is_copy(column: Array, position: Array) -> bool:
         return False
     rounding = abs(slope) * reading_step(position) + reading_step(column)
     return rounding * FEWEST_STEPS <= reach and off <= rounding + DIGITS * reach
+
+
+def repeats_mostly(column: Array, other: Array) -> bool:
+    """Whether a column is a straight line of another one in most rows, up to rounding.
+
+    So is a set point that is logged once more in another unit or with the other sign, also where
+    the two are written a row apart or begin apart.
+    """
+    near = np.ones(len(column), dtype=bool)
+    for _ in range(FITS):  # the rows that lie nearer to a line than the others tell the line
+        x, y = other[near] - other[near].mean(), column[near] - column[near].mean()
+        power = float(x @ x)
+        if power == 0.0:
+            return False
+        slope = float(x @ y) / power
+        off = np.abs(column - column[near].mean() - slope * (other - other[near].mean()))
+        near = off <= np.median(off)
+    rounding = abs(slope) * reading_step(other) + reading_step(column)
+    reach = float(np.ptp(column))
+    exact = off <= rounding + DIGITS * reach
+    return rounding * FEWEST_STEPS <= reach and 2 * int(exact.sum()) > len(column)
 
 
 def pulls_back(command: Array, position: Array, h: float) -> bool:

@@ -7,13 +7,20 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import is_another_quantity, likeness
+from ..column_names import is_another_quantity, likeness, words_of
 from ..filtering import spectrum
 from ..first_guess import motion_columns
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
+#: correlation from which a column is the derivative of a velocity beside it, and no force: numbers
+#: of a planned path agree to their digits, and friction of 1 % of the force lowers it below
+EXACT = 0.9999
+#: words in names of accelerations
+ACCELERATIONS = frozenset(
+    "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot ddtheta".split()
+)
 #: part of its path that a motion one way goes forward, noise of the readings included; times its
 #: spread that the mean of a speed is, from which its noise says little; and part by which the mean
 #: of a speed may differ from the motion: filters and a start from rest
@@ -30,6 +37,9 @@ USUAL_COUNTS = tuple(
     )
 )
 NEAR_USUAL = 0.02
+#: part of its range that a number crosses at once where it wraps: a body that is reversed so fast
+#: would not reach the ends of this range in between
+WHOLE_RANGE = 0.9
 #: lengths of a turn in units of angle; fewest counts of a turn, below which a number of counts may
 #: be the range of a motion
 TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
@@ -66,6 +76,17 @@ def wrap_of(x: Array) -> float | None:
     period = min(periods, key=lambda one: abs(one - turn))
     near = abs(period - turn) < NEAR_USUAL * period
     return period if near and reach <= 1.001 * period else None
+
+
+def overflow_of(x: Array) -> float | None:
+    """Size of a column's leaps from one end of its range to the other, as of a number that wraps.
+
+    None: the column does not leap so at least twice, or leaps of this size are usual for it.
+    """
+    reach, steps = float(np.ptp(x)), np.abs(np.diff(x))
+    leaps = steps[steps > WHOLE_RANGE * reach]
+    is_rare = len(leaps) >= 2 and float(np.median(steps)) < (1.0 - WHOLE_RANGE) * reach
+    return float(np.median(leaps)) if is_rare else None
 
 
 def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, float]:
@@ -106,6 +127,13 @@ def is_force(column: SurveyedColumn) -> bool:
     return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
 
 
+def is_velocity(column: SurveyedColumn) -> bool:
+    """Whether unit or name of a column are those of a velocity."""
+    if is_unit_of(column.unit, "velocity"):
+        return True
+    return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
+
+
 def is_no_velocity(column: SurveyedColumn) -> bool:
     """Whether unit or name of a column are those of a force, a position or another quantity.
 
@@ -124,6 +152,21 @@ def rate_agreement(x: Array, v: Array, sample_time: float) -> float:
     if agree > DERIVATIVE:
         return agree if has_both_signs(x, v, sample_time) else 0.0
     return 1.0 if is_mean_rate(x, v, sample_time) else agree
+
+
+def is_acceleration(column: SurveyedColumn, velocity: Array | None, sample_time: float) -> bool:
+    """Whether a column is an acceleration: by a word of its name, or exactly by its numbers.
+
+    velocity: (n,), a column of the log.  A planned path holds position, velocity and acceleration;
+        the force of a drive contains friction and noise as well
+    """
+    if is_force(column):
+        return False
+    if ACCELERATIONS.intersection(words_of(column.name)):
+        return True
+    if velocity is None:
+        return False
+    return derivative_factor(velocity, column.values, sample_time)[1] > EXACT
 
 
 def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:

@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 
 from ...errors import ExperimentError
-from ...quantity import is_unit, si_factor
+from ...quantity import si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force, is_size, is_turned, left_by_motion
 from .acting import current_that_acted, names_current, names_voltage
-from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, same_but_axis, stand_together
+from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
     NONE,
@@ -25,14 +25,14 @@ from .content import (
     explain_ambiguity,
     is_unit_of,
     moves,
+    names_at_rest,
     reasons,
-    rises,
     sample_time_of,
 )
-from .copies import is_copy, pulls_back
-from .derivative import unwrap_column, wrap_of
+from .copies import pulls_back
+from .derivative import is_velocity, unwrap_column, wrap_of
+from .force_candidates import is_speed, possible_forces
 from .force_entry import describe_force, force_to_si
-from .set_point import has_numbers_of, may_be_set_point
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
 #: with the name or unit of a force
@@ -59,7 +59,7 @@ def describe_forces(
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
     used = {position, velocity, time_name, *columns_in_use(survey)}
-    free = _possible_forces(survey, position, used, x)
+    free = possible_forces(survey, position, velocity, used, x)
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     sizes = _sizes_beside_signed(free, position, survey)
     scores = {
@@ -70,7 +70,8 @@ def describe_forces(
         + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
         for n, c in free.items()
     }
-    force, measured = _find_driving_force(survey, free, physics, scores, choices, file)
+    beside = _other_force(survey, velocity)
+    force, measured = _find_driving_force(survey, free, physics, scores, choices, (file, beside))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     _warn_of_size(survey, force, x, h)
     if measured:
@@ -93,61 +94,28 @@ def describe_forces(
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
 
-def _possible_forces(
-    survey: Survey, position: str, used: set[str | None], x: Array
-) -> dict[str, SurveyedColumn]:
-    """The columns that may be a force beside a position, whose values are x (n,)."""
-    free = {
-        n: c
-        for n, c in survey.columns.items()
-        if n not in used and moves(c) and not rises(c.readings)
-    }
-    free = {
-        n: c
-        for n, c in free.items()
-        if not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit)
-    }
-    # "joint1" beside the position "joint2" is the position of another axis
-    free = {
-        n: c
-        for n, c in free.items()
-        if likeness(n, "actuator_force") > 0
-        or is_unit_of(c.unit, "force")
-        or not same_but_axis(n, position)
-    }
-    # the error of a controller is the position once more
-    free = {
-        n: c
-        for n, c in free.items()
-        if is_unit_of(c.unit, "force")
-        or max(likeness(n, f"{whose}_force") for whose in ("actuator", "interaction")) > 0
-        or not is_copy(c.values, x)
-    }
-    # a set point of the position is no force
-    return {
-        n: c for n, c in free.items() if not (may_be_set_point(c) and has_numbers_of(c.values, x))
-    }
-
-
 def _find_driving_force(
     survey: Survey,
     free: Mapping[str, SurveyedColumn],
     physics: Mapping[str, FirstGuess],
     scores: Mapping[str, float],
     choices: Choices,
-    file: str,
+    messages: tuple[str, str],
 ) -> tuple[str, bool]:
     """The column of the actuator force, and whether it was measured in place of a command.
 
     If names alone do not decide, a guess is noted.
+    messages: the file, and which other column may be the force
     """
+    file, beside = messages
     if choices.actuator_force is not None:
         return choices.actuator_force, False
     if not scores:
         raise ExperimentError(
             f"{file}: found no column that could be a force beside "
             f"{survey.channels['position']['column']!r}, "
-            f"found {join_names(survey.columns)}{_constant_columns(survey)}{reasons(survey.unread)}"
+            f"found {join_names(survey.columns)}{beside}{_constant_columns(survey)}"
+            f"{reasons(survey.unread)}"
         )
     force = max(scores, key=lambda n: scores[n])
     why = None
@@ -164,7 +132,7 @@ def _find_driving_force(
             raise ExperimentError(
                 f"{file}: found no force: no column has the name or unit of a force, and the "
                 f"motion explains {max(share, 0.0):.0%} of {force!r}; --force COLUMN selects "
-                f"one of {join_names(free)}"
+                f"one of {join_names(free)}{beside}"
             )
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
@@ -174,12 +142,24 @@ def _find_driving_force(
     return force, acted is not None
 
 
+def _other_force(survey: Survey, velocity: str | None) -> str:
+    """Which columns were taken for velocities and may be the force nonetheless, for a message."""
+    used = columns_in_use(survey)
+    names = [n for n, c in survey.columns.items() if n not in used and moves(c) and is_speed(c)]
+    if velocity is not None and not is_velocity(survey.columns[velocity]):
+        names.insert(0, velocity)
+    if not names:
+        return ""
+    what = "are" if len(names) > 1 else "is"
+    return f"; {join_names(names)} {what} taken for a velocity, --force {names[0]!r} overrules this"
+
+
 def _constant_columns(survey: Survey) -> str:
     """How to choose a command that is constant in a log, for a message; "" without such a column.
 
     Each of several logs may hold another constant command.
     """
-    names = [name for name, column in survey.columns.items() if not moves(column)]
+    names = names_at_rest(survey)
     if not names:
         return ""
     which = f"{join_names(names)} {'does' if len(names) == 1 else 'do'} not change here"

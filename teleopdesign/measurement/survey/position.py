@@ -8,10 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
-from ...quantity import measures, si_factor
-from ..column_names import is_wanted, likeness, why_no_unit, words_of
-from ..doors._log import join_names
+from ...quantity import is_unit, measures, si_factor
+from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
 from .axis_kind import IN_TURNS
@@ -26,7 +24,6 @@ from .content import (
     explain_ambiguity,
     is_unit_of,
     moves,
-    reasons,
     sample_time_of,
 )
 from .copies import most_explained
@@ -35,6 +32,7 @@ from .derivative import (
     derivative_factor,
     follows_direction,
     is_no_velocity,
+    is_velocity,
     may_be_position,
     rate_agreement,
     unwrap_column,
@@ -42,10 +40,13 @@ from .derivative import (
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
 from .force_entry import describe_code
+from .no_position import error_without_position
 from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
+#: difference between two correlations that tells nothing
+SAME = 0.005
 #: relative difference between a velocity and the derivative of its position that filters and
 #: rounding may cause
 SAME_TIME = 0.1
@@ -79,13 +80,14 @@ def find_position(
             if has_sibling(name, other, moving):
                 continue
             agree = rate_agreement(flat[name], column_2.values, h)
-            if not _is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
+            if not is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
             # a desired velocity agrees with the position as well, and better where it is smooth
             sure = agree + BY_NAME * likeness(other, "velocity") - 2.0 * BY_NAME * is_wanted(other)
             if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
                 derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
+    scores = {n: s - 0.4 * _is_rate(n, derivative) for n, s in scores.items()}
     # a column whose name or unit is of something else is never a position
     known = choices.units  # except with a chosen unit: a wrong choice is refused with its name
     scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
@@ -99,15 +101,22 @@ def find_position(
         best = axis_that_moves(best, as_likely(scores, best), travels)
         _note_choice(survey, best, scores, derivative, followed)
     else:
-        raise ExperimentError(
-            f"{file}: found no position: no column changes without being a force or "
-            f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
-            f"{_integral_of(moving)}{_named_as_force(moving)}{reasons(survey.unread)}"
-        )
+        raise error_without_position(survey, moving, file)
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _is_rate(name: str, derivative: Mapping[str, tuple[str, float]]) -> bool:
+    """Whether a column is a velocity with an acceleration, and no position with a velocity.
+
+    derivative: column -> its derivative, and how surely it is
+    """
+    if name not in derivative:
+        return False
+    _, sure = derivative[name]
+    return any(of == name and other > sure - SAME for of, other in derivative.values())
 
 
 def _note_choice(
@@ -150,40 +159,21 @@ def _without_names(
     }
 
 
-def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
-    """What to do with a log of velocities, as the end of a message; "" without a velocity.
-
-    The integral of a desired velocity would be a set point.
-    """
-    names = [name for name, column in moving.items() if _is_velocity(column)]
-    names.sort(key=is_wanted)
-    return f"; add a column with the integral of {names[0]!r}" if names else ""
-
-
-def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
-    """How to choose a column that its name makes a force, for a message; not beside a velocity."""
-    if any(map(_is_velocity, moving.values())):
-        return ""
-    unsure = (n for n, c in moving.items() if c.unit is None)
-    names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
-    return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
-
-
 def _is_another(column: SurveyedColumn) -> bool:
-    """Whether a column is a force or a velocity, by its unit or, without a unit, by its name."""
-    if is_unit_of(column.unit, "position"):
+    """Whether a column is no position, by its unit or, without a unit, by its name.
+
+    A potentiometer may be logged in mV, and the last letters of a name may be no unit: "q_ms".
+    """
+    if is_unit_of(column.unit, "position") or is_unit_of(column.unit, "time"):
         return False
-    if column.unit is None and likeness(column.name, "position") == 0:
+    named = likeness(column.name, "position")
+    if column.unit is not None and is_unit(column.unit):
+        return not (named >= SURE_NAME and column.unit == "mV")
+    if named == 0:
         others = ("velocity", "actuator_force", "interaction_force")
-        return max(likeness(column.name, other) for other in others) >= SURE_NAME
-    return any(is_unit_of(column.unit, kind) for kind in ("velocity", "force"))
-
-
-def _is_velocity(column: SurveyedColumn) -> bool:
-    """Whether unit or name of a column are those of a velocity."""
-    if is_unit_of(column.unit, "velocity"):
-        return True
-    return column.unit is None and likeness(column.name, "velocity") >= SURE_NAME
+        no_position = max(likeness(column.name, other) for other in others) >= SURE_NAME
+        return no_position or is_another_quantity(column.name)
+    return False
 
 
 def describe_position(

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from ...quantity import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness
 from ..doors._log import Log
@@ -22,8 +24,16 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .copies import is_copy
-from .derivative import DERIVATIVE, is_no_velocity, rate_agreement, unwrap_column, wrap_of
+from .copies import is_copy, repeats_mostly
+from .derivative import (
+    DERIVATIVE,
+    is_acceleration,
+    is_no_velocity,
+    rate_agreement,
+    unwrap_column,
+    wrap_of,
+)
+from .force_candidates import is_speed
 from .set_point import follows, has_numbers_of, may_be_set_point
 
 
@@ -98,9 +108,32 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
             return why
     if may_be_set_point(column) and has_numbers_of(column.values, unwrap_column(x, jump)):
         return f"has the numbers of {position!r}: a set point, or the same reading once more"
+    h = sample_time_of(survey)
+    rate = np.gradient(unwrap_column(x, jump), h)
+    if name not in survey.explained and is_acceleration(column, rate, h):
+        return f"an acceleration of {position!r}"
+    if is_speed(column) and name not in survey.explained:
+        return "a velocity by its name, and no force"
     if name not in survey.explained and is_copy(column.values, unwrap_column(x, jump)):
         return f"{position!r} times a constant plus a constant: another unit, or a control error"
+    again = _set_point_again(column, survey, unwrap_column(x, jump))
+    if again is not None and name not in survey.explained:
+        return f"the set point {again!r} in another unit, or with the other sign"
     return _explain_no_force(name, survey)
+
+
+def _set_point_again(column: SurveyedColumn, survey: Survey, x: Array) -> str | None:
+    """The set point of a position x (n,) that a column repeats; None: it repeats none."""
+    if not may_be_set_point(column):
+        return None
+    apart = {column.name, survey.channels["position"]["column"]}
+    others = (c for n, c in survey.columns.items() if n not in apart and may_be_set_point(c))
+    names = (
+        c.name
+        for c in others
+        if moves(c) and has_numbers_of(c.values, x) and repeats_mostly(column.values, c.values)
+    )
+    return next(names, None)
 
 
 def _explain_no_force(name: str, survey: Survey) -> str:

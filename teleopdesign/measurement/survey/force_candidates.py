@@ -1,0 +1,95 @@
+"""Which columns of a log may be a force beside its position, before physics compares them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from ...quantity import is_unit
+from ..column_names import likeness, words_of
+from .axes import same_but_axis
+from .content import (
+    SURE_NAME,
+    Array,
+    Survey,
+    SurveyedColumn,
+    is_unit_of,
+    moves,
+    rises,
+    sample_time_of,
+)
+from .copies import is_copy, repeats_mostly
+from .derivative import EXACT, derivative_factor, is_acceleration, is_velocity
+from .set_point import has_numbers_of, may_be_set_point
+
+
+def possible_forces(
+    survey: Survey, position: str, velocity: str | None, used: set[str | None], x: Array
+) -> dict[str, SurveyedColumn]:
+    """The columns that may be a force beside a position, whose values are x (n,)."""
+    moving = {n: c for n, c in survey.columns.items() if n not in used and moves(c)}
+    set_points = [
+        c.values for c in moving.values() if may_be_set_point(c) and has_numbers_of(c.values, x)
+    ]
+    h = sample_time_of(survey)
+    everything = {n: c for n, c in survey.columns.items() if moves(c)}
+    paths = _planned_paths(everything, h)
+    rate = None if velocity is None else survey.columns[velocity].values
+    rules: tuple[Callable[[SurveyedColumn], bool], ...] = (
+        lambda c: not rises(c.readings),
+        lambda c: not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit),
+        # "joint1" beside the position "joint2" is the position of another axis
+        lambda c: likeness(c.name, "actuator_force") > 0 or not same_but_axis(c.name, position),
+        # the error of a controller is the position once more
+        lambda c: _names_force(c) or not is_copy(c.values, x),
+        # neither a set point nor a commanded speed is a force
+        lambda c: not (may_be_set_point(c) and has_numbers_of(c.values, x)),
+        lambda c: (
+            not may_be_set_point(c)
+            or not any(repeats_mostly(c.values, other) for other in set_points)
+        ),
+        lambda c: not is_speed(c),
+        lambda c: not is_acceleration(c, rate, h),
+        lambda c: c.name not in paths,
+    )
+    return {
+        name: column
+        for name, column in moving.items()
+        if all(rule(column) or is_unit_of(column.unit, "force") for rule in rules)
+        and not rises(column.readings)
+    }
+
+
+def _names_force(column: SurveyedColumn) -> bool:
+    """Whether a name contains a word of a force, of the actuator or of the hand."""
+    return max(likeness(column.name, f"{whose}_force") for whose in ("actuator", "interaction")) > 0
+
+
+def _planned_paths(moving: Mapping[str, SurveyedColumn], h: float) -> set[str]:
+    """The columns without name that hold position, velocity and acceleration of planned paths.
+
+    Each is exactly the derivative of the one before. Two such columns alone tell less: the friction
+    of a body that goes to and fro at one speed is the derivative of its position, too.
+    """
+    nameless = {name: column.values for name, column in moving.items() if _is_nameless(column)}
+    rates = {
+        one: [
+            other
+            for other, x in nameless.items()
+            if other != one and derivative_factor(values, x, h)[1] > EXACT
+        ]
+        for one, values in nameless.items()
+    }
+    chains = ((a, b, c) for a, after in rates.items() for b in after for c in rates[b])
+    return {name for chain in chains if len(set(chain)) == 3 for name in chain}
+
+
+def _is_nameless(column: SurveyedColumn) -> bool:
+    """Whether neither unit nor name of a column says anything: "column 3", "CH2"."""
+    kinds = ("position", "velocity", "actuator_force", "interaction_force")
+    return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
+
+
+def is_speed(column: SurveyedColumn) -> bool:
+    """Whether a word of a name says velocity; a symbol does not: "v" may be a voltage as well."""
+    word = any(len(w) > 1 and likeness(w, "velocity") >= SURE_NAME for w in words_of(column.name))
+    return word and is_velocity(column)

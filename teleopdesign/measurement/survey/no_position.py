@@ -1,0 +1,52 @@
+"""What a message says of a log in which no column can be a position, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ...errors import ExperimentError
+from ..column_names import is_wanted, likeness
+from ..doors._log import join_names
+from .content import Survey, SurveyedColumn, names_at_rest, reasons
+from .derivative import is_velocity, overflow_of
+
+
+def error_without_position(
+    survey: Survey, moving: Mapping[str, SurveyedColumn], file: str
+) -> ExperimentError:
+    """The error for a log without a position; moving: the columns that change, by name."""
+    return ExperimentError(
+        f"{file}: found no position: no column changes without being a force or "
+        f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
+        f"{_names_of_constants(survey)}{_integral_of(moving)}{_named_as_force(moving)}"
+        f"{reasons(survey.unread)}"
+    )
+
+
+def _names_of_constants(survey: Survey) -> str:
+    """Which columns hold one value throughout, for a message; "" where all change."""
+    names = names_at_rest(survey)
+    return f" ({join_names(names)} not changing)" if names else ""
+
+
+def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
+    """What to do with a log of velocities, as the end of a message; "" without a velocity.
+
+    The integral of a desired velocity would be a set point.
+    """
+    names = [name for name, column in moving.items() if is_velocity(column)]
+    names.sort(key=is_wanted)
+    if not names:
+        return ""
+    leap = overflow_of(moving[names[0]].values)
+    first = f" (first undo its leaps of {leap:.3g}, as of a number that wraps)" if leap else ""
+    return f"; add a column with the integral of {names[0]!r}{first}"
+
+
+def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
+    """How to choose a column that its name makes a force, for a message; not beside a velocity."""
+    if any(map(is_velocity, moving.values())):
+        return ""
+    unsure = (n for n, c in moving.items() if c.unit is None)
+    names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
+    return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
