@@ -10,7 +10,7 @@ import numpy as np
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .adequacy import Floors, allowed_floor, limit_noise_floor
+from .adequacy import Floors, allowed_floor, is_noise, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
@@ -64,6 +64,7 @@ class LadderSearch:
         step: int,
         among: Collection[Candidate] | None = None,
         worth: float | None = None,
+        widely: bool = False,
     ) -> Ranking:
         """`rank_candidates` on top of a fit; step: number of the rung that is searched."""
         return rank_candidates(
@@ -72,6 +73,7 @@ class LadderSearch:
             among=among,
             stated=self.stated,
             worth=worth,
+            widely=widely,
             criteria=self.criteria,
             progress=lambda line: self.progress(line.within(f"step {step}")),
         )
@@ -213,7 +215,8 @@ def look(
     rungs = (*rungs[:-1], replace(rungs[-1], fit=here))
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn, criteria=criteria)
-    ranking = search.rank(here, step=len(rungs), worth=worth)
+    widely = search.plan.draws > 0 and not is_noise(here.check_error, drawn, criteria=criteria)
+    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely)
     weakening = () if before is None else before.weakening
     first = None if before is None else before.first
     floors, first = _limit_floors(drawn, rungs, ranking, weakening, first, criteria)

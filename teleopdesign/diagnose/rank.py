@@ -14,6 +14,7 @@ from ..model import Model
 from .candidates import Candidate, bodies_with_measured_force, candidates
 from .criteria import CRITERIA, Criteria
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
+from .draws import search_among_draws
 from .evidence import check_score, check_squares, whole_score
 from .few_values import explain_few_values
 from .fit import Fit, estimate, fit_squares, rough_fit
@@ -130,6 +131,7 @@ def rank_candidates(
     among: Collection[Candidate] | None = None,
     stated: Model | None = None,
     worth: float | None = None,
+    widely: bool = False,
     criteria: Criteria = CRITERIA,
     progress: Callable[[ProgressLine], None] | None = None,
 ) -> Ranking:
@@ -140,6 +142,7 @@ def rank_candidates(
     stated: the model as its user gave it; its values are used as starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued; None:
         that of the criteria
+    widely: where no candidate explains the records, draw further starts of gaps
     progress: called before each candidate, from several threads
     """
     worth = criteria.worth if worth is None else worth
@@ -165,6 +168,8 @@ def rank_candidates(
     # effects with hidden states take longest, so they begin first
     fits = map_in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))
+    if widely:
+        fits = search_among_draws(fits, start, prepared, stated)
     fits = map_in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
     worthless = (1.0 - worth) * fit_squares(base)
     widths = OpenWidths(prepared, criteria)

@@ -90,7 +90,7 @@ def estimate_from_starts(
         model = with_parameters_of(model, base.coarse.model)
     models = make_starts(model, prepared.scales)
     absent = [model.body(at).effect(name) for name, at in model.absent]
-    rugged = any(e.corrections() and not e.linear for e in absent)
+    rugged = any(is_rugged(e) for e in absent)
     wide = rugged or any(len(e.parameters) >= PLAN.many_parameters for e in absent)
     kept = PLAN.wide_stepped if wide else PLAN.curved_stepped
     if base is not None:
@@ -126,6 +126,11 @@ def estimate_best_start(
     coarse = prepared.coarse
     best = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
     return estimate(_jolt(best, new, coarse).model, prepared, effort=EFFORTS.near)
+
+
+def is_rugged(effect: Effect) -> bool:
+    """Whether the squares of an effect have many local minima: its hidden bodies part and meet."""
+    return bool(effect.corrections()) and not effect.linear
 
 
 def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:

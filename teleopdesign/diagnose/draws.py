@@ -1,0 +1,174 @@
+"""Start values of an effect whose hidden bodies part and meet, drawn over wide ranges.
+
+With a wide gap one linear step promises nothing true: the tip meets the other side at other
+moments, and the squares are rugged. So each draw is judged by the squares that it leaves itself,
+with the parameters of the base at their linear best. The best draws are improved without
+derivatives, and are then starts like others.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from ..model import Model
+from .bodies_apart import select_bodies
+from .candidates import Candidate, make_starts
+from .fit import Fit, fit_squares, free_parameters
+from .prepare import Prepared
+from .search import Base, estimate_best_start, is_rugged
+from .search_plan import PLAN, SearchPlan
+from .stated import has_moved, reset_to_stated
+from .threads import map_in_threads
+
+
+def search_among_draws(
+    attempts: Sequence[tuple[Candidate, Fit]],
+    base: Base,
+    prepared: Prepared,
+    stated: Model | None = None,
+    *,
+    plan: SearchPlan = PLAN,
+) -> list[tuple[Candidate, Fit]]:
+    """The attempts of a ranking; where none explains the records, gaps start from draws, too.
+
+    An attempt is replaced by the fit from its draws if that leaves less.
+    """
+
+    def search(attempt: tuple[Candidate, Fit]) -> tuple[Candidate, Fit]:
+        candidate, fit = attempt
+        if not is_rugged(candidate.effect) or candidate.key in fit.model.absent:
+            return attempt
+        new = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
+        starts = best_draws(new, prepared.coarse, base.coarse, stated, plan=plan)
+        best = estimate_best_start(starts, [candidate.key], prepared)
+        return candidate, min((fit, best), key=fit_squares)
+
+    least = min((fit_squares(fit) for _, fit in attempts), default=0.0)
+    if least < plan.unexplained * fit_squares(base.fit):
+        return list(attempts)
+    return map_in_threads(search, attempts)
+
+
+def best_draws(
+    model: Model,
+    prepared: Prepared,
+    base: Fit,
+    stated: Model | None = None,
+    *,
+    plan: SearchPlan = PLAN,
+) -> list[Model]:
+    """The best few starts of the absent effects of a model, among draws of their free parameters.
+
+    returns: the best draws, and the values near them that leave less; the model itself where no
+        parameter is free
+    base: the fit of the model without these effects, on the same samples
+    stated: the model as its user gave it; where the base is far from it, every second draw is made
+        beside its values
+    """
+    names, ranges = _ranges_of(model, prepared, plan)
+    if not names:
+        return [model]
+    places = {place for _, place in model.absent}
+    squares = _Squares(prepared, base, {model.holder(place) for place in places})
+    beside = [model]
+    if stated is not None and has_moved(base, stated):
+        for place in places:
+            model = reset_to_stated(model, stated, place)
+        beside.append(model)
+    draws = []
+    for i, point in enumerate(_spread_evenly(plan.draws, len(names))):
+        around, x = beside[i % len(beside)], ranges[0] + point * (ranges[1] - ranges[0])
+        draws.append((squares.of(_with_logarithms(around, names, x)), i, around, x))
+    best = sorted(draws, key=lambda draw: draw[:2])[: plan.draws_kept]
+    improved = [_improve(around, names, x, squares, plan) for _, _, around, x in best]
+    return [*(_with_logarithms(around, names, x) for _, _, around, x in best), *improved]
+
+
+class _Squares:
+    """Squares that a model leaves with the parameters of a base at their linear best.
+
+    bodies: those at which the model may differ from the base
+    Derivatives by the parameters of the base are those at the base.
+    """
+
+    def __init__(self, prepared: Prepared, base: Fit, bodies: Collection[str]) -> None:
+        self._changed = select_bodies(prepared.of("fit"), bodies)
+        self._residual = base.fit_residual
+        known = np.hstack([base.jacobian, base.by_shift])
+        size = np.linalg.norm(known, axis=0)
+        self._basis, _ = np.linalg.qr(known[:, size > 0] / size[size > 0])
+
+    def of(self, model: Model) -> float:
+        """Sum of squares; inf where a motion grows beyond all numbers."""
+        residual = self._residual.copy()
+        residual[self._changed.rows], _ = self._changed.relative(model, ())
+        if not np.isfinite(residual).all():
+            return math.inf
+        left = residual - self._basis @ (self._basis.T @ residual)
+        return float(left @ left)
+
+
+def _ranges_of(
+    model: Model, prepared: Prepared, plan: SearchPlan
+) -> tuple[list[str], tuple[Array, Array]]:
+    """Names of the parameters to draw, and logarithms of their least and largest values.
+
+    The ranges are those of the usual starts and beyond; of an essential parameter, such as the
+    width of a gap, the upper half: the usual starts find small ones.
+    """
+    starts = make_starts(model, prepared.scales)
+    least, most, names = [], [], []
+    for name in free_parameters(starts[0]):
+        place, _, rest = name.partition(".")
+        effect, _, parameter = rest.rpartition(".")
+        if (effect, place) not in model.absent:
+            continue
+        values = [s.parameters[name].value for s in starts]
+        low, high = min(values), max(values)
+        if low <= 0.0:
+            continue
+        essential = model.body(place).effect(effect).parameters[parameter].search.essential
+        declared = model.declared(name)
+        low = math.sqrt(low * high) if essential else low / plan.draws_beyond
+        names.append(name)
+        least.append(max(low, declared.lower))
+        most.append(min(high * plan.draws_beyond, declared.upper))
+    return names, (np.log(least), np.log(most))
+
+
+def _spread_evenly(count: int, dimensions: int) -> Array:
+    """Points (count, dimensions) of the unit cube, the same ones each time (Halton 1960)."""
+    from scipy.stats import qmc  # takes a quarter of a second
+
+    sequence = qmc.Halton(dimensions, scramble=False)
+    sequence.fast_forward(1)
+    return np.asarray(sequence.random(count))
+
+
+def _with_logarithms(model: Model, names: Sequence[str], logarithms: Array) -> Model:
+    """The model at these values, each within its bounds."""
+    values = {}
+    for name, value in zip(names, np.exp(logarithms).tolist(), strict=True):
+        declared = model.declared(name)
+        values[name] = min(max(value, declared.lower), declared.upper)
+    return model.with_values(values)
+
+
+def _improve(
+    around: Model, names: Sequence[str], x: Array, squares: _Squares, plan: SearchPlan
+) -> Model:
+    """The model at the best values near a draw."""
+    from scipy.optimize import minimize
+
+    corners = np.vstack([x, x + plan.draw_step * np.eye(len(x))])
+    best = minimize(  # type: ignore[call-overload]
+        lambda y: squares.of(_with_logarithms(around, names, y)),
+        x,
+        method="Nelder-Mead",
+        options={"maxfev": plan.draw_evaluations, "initial_simplex": corners},
+    )
+    return _with_logarithms(around, names, best.x)
