@@ -35,8 +35,12 @@ def search_among_draws(
 ) -> list[tuple[Candidate, Fit]]:
     """The attempts of a ranking; where none explains the records, gaps start from draws, too.
 
-    An attempt is replaced by the fit from its draws if that leaves less.
+    An attempt is replaced by the fit from its draws if that leaves less, and if it drives no
+    parameter of the base to a bound that the attempt keeps inside: it would be refused.
     """
+
+    def order(fit: Fit) -> tuple[int, float]:
+        return len(set(fit.at_bound) - set(base.fit.at_bound)), fit_squares(fit)
 
     def search(attempt: tuple[Candidate, Fit]) -> tuple[Candidate, Fit]:
         candidate, fit = attempt
@@ -45,7 +49,7 @@ def search_among_draws(
         new = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
         starts = best_draws(new, prepared.coarse, base.coarse, stated, plan=plan)
         best = estimate_best_start(starts, [candidate.key], prepared)
-        return candidate, min((fit, best), key=fit_squares)
+        return candidate, min((fit, best), key=order)
 
     least = min((fit_squares(fit) for _, fit in attempts), default=0.0)
     if least < plan.unexplained * fit_squares(base.fit):

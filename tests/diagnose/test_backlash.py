@@ -144,6 +144,15 @@ def test_draws_are_made_only_for_gaps_that_are_there_and_where_nothing_explains(
     assert searches == [(("backlash", "device"),)]
     assert best.fit_error <= there.fit_error
 
+    def with_a_bound(*_):
+        """A fit that leaves nothing, with friction that the base needs at its bound."""
+        nothing = np.zeros_like(there.fit_residual)
+        return replace(there, fit_residual=nothing, at_bound=("device.coulomb.level",))
+
+    monkeypatch.setattr(draws, "estimate_best_start", with_a_bound)
+    kept = search_among_draws([(gap, there)], base, prepared, plan=plan)
+    assert kept == [(gap, there)]
+
 
 def test_draws_stay_within_bounds_and_leave_fixed_parameters(case):
     _, prepared, stated, _ = case
