@@ -104,6 +104,18 @@ class RecordFacts:
         whole = len(values) * float(np.var(values))
         return within / whole if whole > 0.0 else 1.0
 
+    def visible_way(self, period: float) -> float:
+        """Longest way (m or rad) without a gap that the body slides while this period is visible.
+
+        At a higher speed, a pattern of this period changes faster than the bandwidth of the
+        comparison shows. Places of more than half a period apart leave a gap.
+        """
+        slow = np.sort(self.places[2.0 * self.resolved * np.abs(self.speeds) <= abs(period)])
+        if not len(slow):
+            return 0.0
+        ways = np.split(slow, 1 + np.flatnonzero(np.diff(slow) > abs(period) / READ))
+        return max(float(way[-1] - way[0]) for way in ways)
+
     def bend(self, pattern: Callable[[Array], Array]) -> float:
         """Share (rms) of the variation of a function of the position that a straight line lacks.
 
@@ -184,6 +196,22 @@ def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) 
     )
 
 
+def period_is_visible(period: float, facts: RecordFacts) -> str | None:
+    """A sentence where a pattern is seen only at places that are passed slowly; None: it repeats.
+
+    A body is slow near its turning points, again and again, and friction of the speed is there, too
+    """
+    way = facts.visible_way(period)
+    if way >= REPEATS * abs(period) or way >= facts.visible_way(float("inf")):
+        return None
+    return (
+        f"a period of {facts.text(abs(period), 'position')} lasts less than "
+        f"{2.0 * facts.resolved:.2g} s, which the bandwidth hides, except along "
+        f"{facts.text(way, 'position')}: it is not seen to repeat, and the effect imitates "
+        "friction that depends on the speed"
+    )
+
+
 def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str | None:
     """A sentence on friction that is largest where the torque of gravity is; None: it is not."""
     if "gravity.phase" not in facts.body or len(facts.places) < 3:
@@ -212,7 +240,7 @@ def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
             "can show: the effect imitates errors of the readings"
         )
     if facts.travel >= REPEATS * abs(p.period):
-        return None
+        return period_is_visible(p.period, facts)
     return (
         f"a period of {period} does not repeat within the travel of "
         f"{facts.text(facts.travel, 'position')}: the effect imitates something else that varies "

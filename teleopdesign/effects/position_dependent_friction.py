@@ -13,7 +13,7 @@ import numpy as np
 from sympy import pi, sin
 
 from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
-from ._facts import follows_gravity, speeds_vary_by_place
+from ._facts import follows_gravity, period_is_visible, speeds_vary_by_place
 
 
 def law(now, p):
@@ -22,6 +22,10 @@ def law(now, p):
 
 def along(p):
     return lambda x: np.sin(2 * np.pi * x / (p.period or np.inf) + p.phase)
+
+
+def plausible(p, facts):
+    return speeds_vary_by_place(along(p), facts) or period_is_visible(p.period, facts)
 
 
 EFFECT = Effect(
@@ -47,7 +51,7 @@ EFFECT = Effect(
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
-    plausible=lambda p, facts: speeds_vary_by_place(along(p), facts),
+    plausible=plausible,
     undetermined=lambda p, facts: follows_gravity(along(p), facts),
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),

@@ -197,6 +197,53 @@ def test_eight_turns_of_a_motor_show_its_cogging(tmp_path):
     assert period == pytest.approx(TURN / 6, rel=0.01)
 
 
+# place and speed
+
+
+def write_sweep(folder, law):
+    """A sine that gets faster, of one amplitude, under friction that grows over the first speeds.
+
+    law: speed over the largest speed -> friction over its largest value; the catalogue lacks it
+    """
+
+    def to_and_fro(begin):
+        def place(t):
+            return 0.005 * np.sin(TURN * (0.3 * (begin + t) + 0.04 * (begin + t) ** 2))
+
+        return place
+
+    return write_made(
+        folder,
+        {"fit": [(7.2, to_and_fro(0.0))], "check": [(4.8, to_and_fro(7.2))]},
+        lambda t, x, v: 7.0 * law(v / 0.04),
+        effects=MODEL,
+        step=2e-5,
+        noise=0.14,
+        bandwidth=2.5,
+        inertia=20.0,
+        fixed=False,
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "law",
+    [
+        lambda v: np.tanh(v / 0.2),
+        lambda v: 1.15 * v / (0.15 + np.abs(v)),
+        lambda v: np.arcsinh(20.0 * v) / np.arcsinh(20.0),
+    ],
+    ids=["tanh", "rational", "asinh"],
+)
+def test_friction_that_begins_with_speed_is_called_no_pattern_of_the_place(tmp_path, law):
+    """A short period was named with a probability of 0.95: it was slow near turning points only."""
+    names = ("coulomb", "viscous", "cogging", "torque_ripple", "position_dependent_friction")
+    few = {n: EFFECTS[n] for n in (*names, "friction_drift", "shear_thinning", "bias")}
+    experiment = load_experiment(write_sweep(tmp_path / "case", law))
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, few))
+    assert {c.effect.name for c in diagnosis.missing} <= {"shear_thinning"}
+
+
 # speed and time
 
 

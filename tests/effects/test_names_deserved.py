@@ -144,6 +144,42 @@ def test_a_period_must_be_two_steps_long_and_repeat_within_the_travel(name):
     assert "does not repeat" in objection_to(name, "plausible", {"period": 2.0 / 1.5 * MORE})
 
 
+@pytest.mark.parametrize(
+    "name", ["cogging", "cogging_harmonic", "torque_ripple", "position_dependent_friction"]
+)
+def test_a_period_must_repeat_where_the_body_is_slow_enough_to_show_it(name):
+    """A sine of 1 rad at 0.5 Hz reaches 3.1 rad/s; a bandwidth of 5 Hz shows 0.1 rad at 0.5 rad/s.
+
+    From its turning points it gets this fast within 0.013 rad.
+    """
+    time = np.arange(0.0, 20.0, 0.01)
+    places, speeds = np.sin(np.pi * time), np.pi * np.cos(np.pi * time)
+    values = {"amplitude": 0.5, "phase": 0.3, "period": 0.1}
+    sine = {"places": places, "speeds": speeds, "resolved": 0.1}
+    assert "is not seen to repeat" in objection_to(name, "plausible", values, **sine)
+    # over a period of 1 rad it gets no faster than the bandwidth shows
+    assert "seen to repeat" not in str(
+        objection_to(name, "plausible", values | {"period": 1.0}, **sine)
+    )
+    # a slow run over two periods shows them
+    slow = {
+        "places": np.r_[places, np.linspace(0.0, 0.2, 401)],
+        "speeds": np.r_[speeds, np.full(401, 0.05)],
+    }
+    assert objection_to(name, "plausible", values, **sine | slow) is None
+
+
+def test_a_gap_ends_the_way_on_which_a_period_is_visible():
+    """Two runs over 0.3 rad each that lie apart."""
+    places = np.r_[np.linspace(-1.0, -0.7, 61), np.linspace(0.7, 1.0, 61)]
+    apart = facts(places=places, speeds=np.full(122, 0.1), resolved=0.1)
+    assert apart.visible_way(0.25) == pytest.approx(0.3)
+    assert apart.visible_way(0.019) == 0.0, "too fast"
+    assert apart.visible_way(0.021) == pytest.approx(0.3)
+    assert apart.visible_way(np.inf) == pytest.approx(2.0)
+    assert facts(places=np.zeros(0), speeds=np.zeros(0)).visible_way(0.1) == 0.0
+
+
 def test_the_slowest_speed_is_that_of_a_hundredth_of_the_samples():
     speeds = np.r_[np.linspace(-1.0, -0.101, 900), np.linspace(0.1, 1.0, 901)]
     assert facts(speeds=speeds).slowest == pytest.approx(0.109, abs=1e-3)
