@@ -18,11 +18,13 @@ from ..model import Model
 from .bodies_apart import select_bodies
 from .candidates import Candidate, make_starts
 from .fit import Fit, fit_squares, free_parameters
+from .linear_start import span_of
 from .prepare import Prepared
 from .search import Base, estimate_best_start, is_rugged
 from .search_plan import PLAN, SearchPlan
 from .stated import has_moved, reset_to_stated
 from .threads import map_in_threads
+from .without_derivatives import minimise_nearby
 
 
 def search_among_draws(
@@ -102,9 +104,7 @@ class _Squares:
     def __init__(self, prepared: Prepared, base: Fit, bodies: Collection[str]) -> None:
         self._changed = select_bodies(prepared.of("fit"), bodies)
         self._residual = base.fit_residual
-        known = np.hstack([base.jacobian, base.by_shift])
-        size = np.linalg.norm(known, axis=0)
-        self._basis, _ = np.linalg.qr(known[:, size > 0] / size[size > 0])
+        self._basis = span_of(base)
 
     def of(self, model: Model) -> float:
         """Sum of squares; inf where a motion grows beyond all numbers."""
@@ -125,22 +125,19 @@ def _ranges_of(
     width of a gap, the upper half: the usual starts find small ones.
     """
     starts = make_starts(model, prepared.scales)
+    free = set(free_parameters(starts[0]))
     least, most, names = [], [], []
-    for name in free_parameters(starts[0]):
-        place, _, rest = name.partition(".")
-        effect, _, parameter = rest.rpartition(".")
-        if (effect, place) not in model.absent:
-            continue
-        values = [s.parameters[name].value for s in starts]
-        low, high = min(values), max(values)
-        if low <= 0.0:
-            continue
-        essential = model.body(place).effect(effect).parameters[parameter].search.essential
-        declared = model.declared(name)
-        low = math.sqrt(low * high) if essential else low / plan.draws_beyond
-        names.append(name)
-        least.append(max(low, declared.lower))
-        most.append(min(high * plan.draws_beyond, declared.upper))
+    for effect, at in model.absent:
+        for parameter, declared in model.body(at).effect(effect).parameters.items():
+            name = f"{at}.{effect}.{parameter}"
+            values = [s.parameters[name].value for s in starts]
+            low, high = min(values), max(values)
+            if name not in free or low <= 0.0:  # a zero has no logarithm
+                continue
+            low = math.sqrt(low * high) if declared.search.essential else low / plan.draws_beyond
+            names.append(name)
+            least.append(max(low, declared.lower))
+            most.append(min(high * plan.draws_beyond, declared.upper))
     return names, (np.log(least), np.log(most))
 
 
@@ -166,13 +163,9 @@ def _improve(
     around: Model, names: Sequence[str], x: Array, squares: _Squares, plan: SearchPlan
 ) -> Model:
     """The model at the best values near a draw."""
-    from scipy.optimize import minimize
-
-    corners = np.vstack([x, x + plan.draw_step * np.eye(len(x))])
-    best = minimize(  # type: ignore[call-overload]
+    best = minimise_nearby(
         lambda y: squares.of(_with_logarithms(around, names, y)),
         x,
-        method="Nelder-Mead",
-        options={"maxfev": plan.draw_evaluations, "initial_simplex": corners},
+        evaluations=plan.draw_evaluations,
     )
-    return _with_logarithms(around, names, best.x)
+    return _with_logarithms(around, names, best)

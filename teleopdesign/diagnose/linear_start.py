@@ -73,8 +73,7 @@ def linear_starts(
         .with_values({f"{at}.{effect.name}.{effect.strength}": 0.0, **dict(base.model.parameters)})
         .with_record_shift(base.model.record_shift)
     )
-    known = np.hstack([base.jacobian, base.by_shift])
-    basis, _ = np.linalg.qr(known / _size(known))
+    basis = span_of(base)
     left = base.fit_residual - basis @ (basis.T @ base.fit_residual)
     starts = []
     edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]
@@ -85,6 +84,13 @@ def linear_starts(
             start = models[(first + i) // len(phases)]
             starts.append(_start(start, effect, at, left, slopes[i : i + len(phases)]))
     return sorted(starts, key=lambda s: s.promised)
+
+
+def span_of(base: Fit) -> Array:
+    """Orthonormal columns (rows, p) that span what the parameters and shifts of a fit change."""
+    known = np.hstack([base.jacobian, base.by_shift])
+    basis, _ = np.linalg.qr(known / _size(known))
+    return np.asarray(basis)
 
 
 def _other_values(

@@ -83,10 +83,10 @@ class SearchPlan:
     draws: int = 200
     draws_kept: int = 4
     draw_evaluations: int = 60
+    #: first step of a search without derivatives, in the logarithm of each value: a third of it
+    simplex: float = 0.3
     #: factor by which draws go beyond the usual starts on both sides
     draws_beyond: float = 3.0
-    #: first step of the improvement, in the logarithm of a value
-    draw_step: float = 0.3
     #: part of the squares by which two fits must differ to count as two places: ten times what a
     #: rough fit leaves open
     elsewhere: float = 1e-3

@@ -23,6 +23,7 @@ from .fit import Fit, weigh_residuals
 from .prepare import Prepared, Stretch
 from .residual import residuals
 from .search_plan import PLAN, SearchPlan
+from .without_derivatives import minimise_nearby
 
 
 @dataclass(frozen=True)
@@ -132,23 +133,19 @@ class _LinearProblem:
 
     def refine(self, course: _Course, plan: SearchPlan) -> _Solved:
         """The best course near this one, within a factor of `SearchPlan.tip_near`."""
-        from scipy.optimize import minimize  # takes half a second: imported only for a gear
-
         start = np.array([v for v in (course.gap, course.swing, course.slowing) if v])
-        near = np.log(plan.tip_near)
 
         def course_at(x: Array) -> _Course:
             values = (start * np.exp(x)).tolist()
             return _Course(*([] if course.gap else [0.0]), *values)
 
-        best = minimize(  # type: ignore[call-overload]
+        best = minimise_nearby(
             lambda x: self.solve(course_at(x)).squares,
             np.zeros(len(start)),
-            method="Nelder-Mead",
-            bounds=[(-near, near)] * len(start),
-            options={"maxfev": plan.tip_refined, "initial_simplex": _simplex(len(start), 0.3)},
+            evaluations=plan.tip_refined,
+            reach=float(np.log(plan.tip_near)),
         )
-        return self.solve(course_at(best.x))
+        return self.solve(course_at(best))
 
     def model_at(
         self, solved: _Solved, transmission: Candidate, friction: Candidate, plan: SearchPlan
@@ -186,11 +183,6 @@ def _linear_problem(
     )
     basis, triangle = np.linalg.qr(slopes)
     return _LinearProblem(base, stretches, at, plan.tip_damping, left, basis, triangle)
-
-
-def _simplex(dimensions: int, size: float) -> Array:
-    """Corners (n + 1, n) of a simplex: the origin, and a step along each axis."""
-    return np.vstack([np.zeros(dimensions), size * np.eye(dimensions)])
 
 
 def _values_after(base: Fit, steps: Array) -> dict[str, float]:

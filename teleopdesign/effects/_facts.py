@@ -199,7 +199,7 @@ def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) 
 def period_is_visible(period: float, facts: RecordFacts) -> str | None:
     """A sentence where a pattern is seen only at places that are passed slowly; None: it repeats.
 
-    A body is slow near its turning points, again and again, and friction of the speed is there, too
+    A body is slow near its turning points, again and again, and so is friction of the speed.
     """
     way = facts.visible_way(period)
     if way >= REPEATS * abs(period) or way >= facts.visible_way(float("inf")):

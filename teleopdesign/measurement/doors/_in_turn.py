@@ -165,8 +165,8 @@ def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:
     steps = np.diff(stamps)
     forward = steps[steps > 0]
     longest = GOES_ON * float(np.median(forward)) if len(forward) else 0.0
-    part = np.zeros(len(stamps), dtype=np.intp)
     last, now, returns = [0], 0, 0
+    begins, parts = [0], [0]
     for row in (np.flatnonzero((steps < 0) | (steps > longest)) + 1).tolist():
         last[now] = row - 1
         after = {k: float(stamps[row] - stamps[end]) for k, end in enumerate(last) if k != now}
@@ -179,8 +179,9 @@ def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:
             now = len(last) - 1
             if now > MOST_MACHINES:
                 break
-        part[row:] = now
-    return part, returns
+        begins.append(row)
+        parts.append(now)
+    return np.repeat(np.array(parts, dtype=np.intp), np.diff([*begins, len(stamps)])), returns
 
 
 def machines_apart(log: Log) -> Log:
