@@ -16,7 +16,7 @@ from .bodies_apart import select_bodies
 from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, refer_to_command
-from .least_squares import sum_of_squares
+from .least_squares import column_sizes, sum_of_squares
 from .prepare import Prepared, Stretch, folds
 from .record_offsets import AlongRecords, follow_records
 from .residual import both_residuals
@@ -247,7 +247,7 @@ def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) 
     p = jacobian.shape[1]
     if p == 0:
         return np.zeros(0)
-    norm = np.linalg.norm(jacobian, axis=0)
+    norm = column_sizes(jacobian)
     if not (np.isfinite(norm).all() and np.isfinite(residual).all()):
         return np.full(p, np.nan)
     sensitive = norm > 0

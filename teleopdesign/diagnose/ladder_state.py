@@ -63,15 +63,23 @@ class LadderSearch:
         *,
         step: int,
         among: Collection[Candidate] | None = None,
+        body: str | None = None,
         worth: float | None = None,
         widely: bool = False,
+        misled: bool = True,
     ) -> Ranking:
-        """`rank_candidates` on top of a fit; step: number of the rung that is searched."""
+        """`rank_candidates` on top of a fit.
+
+        step: number of the rung that is searched
+        misled: whether a missing effect may have led the fit's values astray: candidates then start
+            from the user's values too
+        """
         return rank_candidates(
             base,
             self.prepared,
             among=among,
-            stated=self.stated,
+            body=body,
+            stated=self.stated if misled else None,
             worth=worth,
             widely=widely,
             criteria=self.criteria,
@@ -215,8 +223,9 @@ def look(
     rungs = (*rungs[:-1], replace(rungs[-1], fit=here))
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn, criteria=criteria)
-    widely = search.plan.draws > 0 and not is_noise(here.check_error, drawn, criteria=criteria)
-    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely)
+    more = not is_noise(here.check_error, drawn, criteria=criteria)
+    widely = more and search.plan.draws > 0
+    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely, misled=more)
     weakening = () if before is None else before.weakening
     first = None if before is None else before.first
     floors, first = _limit_floors(drawn, rungs, ranking, weakening, first, criteria)

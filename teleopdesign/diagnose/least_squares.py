@@ -85,6 +85,12 @@ def sum_of_squares(residual: Array) -> float:
     return squares if math.isfinite(squares) else math.inf
 
 
+def column_sizes(columns: Array) -> Array:
+    """Euclidean norms (p,) of columns (n, p); inf where squares overflow."""
+    with np.errstate(over="ignore"):
+        return np.asarray(np.linalg.norm(columns, axis=0))
+
+
 def gauss_newton_step(
     jacobian: Array, residual: Array, below: Array, above: Array, damping: float = 1e-3
 ) -> Array:
@@ -92,7 +98,7 @@ def gauss_newton_step(
 
     below, above: bounds of the step (p,);  returns: (p,), NaN where the Jacobian is not finite
     """
-    size = np.linalg.norm(jacobian, axis=0)
+    size = column_sizes(jacobian)
     if not np.isfinite(size).all():
         return np.full(len(size), np.nan)
     size = np.where(size > 0, size, 1.0)

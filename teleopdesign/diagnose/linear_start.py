@@ -22,6 +22,7 @@ from ..model import Model
 from ..realise.tangent_columns import Probe
 from .bodies_apart import select_bodies
 from .fit import Fit
+from .least_squares import column_sizes
 from .prepare import Prepared
 
 #: columns that pass through the friction balance in one call. The number is even, because a phase
@@ -104,7 +105,7 @@ def _other_values(
 
 
 def _size(columns: Array) -> Array:
-    size = np.linalg.norm(columns, axis=0)
+    size = column_sizes(columns)
     return np.where(size > 0, size, 1.0)
 
 

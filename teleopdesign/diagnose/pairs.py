@@ -90,9 +90,9 @@ def _best_pair(
 ) -> tuple[Rung, ...] | None:
     """The best pair of rungs added to the user's model; None where no pair is supported.
 
-    Each of the best few candidates of the ranking is added, and all candidates (or those in
-    `among`) are ranked again on top of it. A pair counts where it explains most of the missing
-    force and neither effect can be left out.
+    Each of the best few candidates of the ranking is added, and all candidates at its body (or
+    those in `among`) are ranked again on top of it. A pair counts where it explains most of the
+    missing force and neither effect can be left out.
     """
     base, floor, criteria = state.rungs[0], state.floor, search.criteria
     here = base.fit
@@ -109,7 +109,9 @@ def _best_pair(
         # all effects were ranked beside this effect before
         if frozenset(first.fit.model.effects) in state.visited:
             continue
-        beside = search.rank(first.fit, step=state.step, among=among)
+        # bodies do not act on each other along measured motions: effects of two never mask another
+        body = here.model.holder(first.candidate.at)
+        beside = search.rank(first.fit, step=state.step, among=among, body=body)
         supported = (
             r
             for r in beside.ranked

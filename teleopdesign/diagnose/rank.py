@@ -129,6 +129,7 @@ def rank_candidates(
     prepared: Prepared,
     *,
     among: Collection[Candidate] | None = None,
+    body: str | None = None,
     stated: Model | None = None,
     worth: float | None = None,
     widely: bool = False,
@@ -139,6 +140,7 @@ def rank_candidates(
 
     base: the fitted model that may lack an effect
     among: the candidates to rank; None: all that the model could take
+    body: the body whose candidates are ranked; None: all bodies
     stated: the model as its user gave it; its values are used as starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued; None:
         that of the criteria
@@ -162,9 +164,9 @@ def rank_candidates(
         separate_zeros={s.motion.file for s in prepared.stretches if s.has_zero_offset},
         measured=bodies_with_measured_force(prepared.experiment),
     )
-    if among is not None:
-        wanted = {c.key for c in among}
-        possible = tuple(c for c in possible if c.key in wanted)
+    wanted = {c.key for c in (possible if among is None else among)}
+    here = {body} if body is not None else set(base.model.bodies)
+    possible = tuple(c for c in possible if c.key in wanted and base.model.holder(c.at) in here)
     # effects with hidden states take longest, so they begin first
     fits = map_in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))

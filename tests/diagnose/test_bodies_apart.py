@@ -9,11 +9,14 @@ from cases import make_case, write_case
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import bodies_apart
 from teleopdesign.diagnose.bodies_apart import BodyByBody, select_bodies, separate_bodies
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.effort import EFFORTS
-from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.promise import Promises
+from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.diagnose.stated import reset_to_stated
+from teleopdesign.effects import EFFECTS
 
 
 @pytest.fixture(scope="module")
@@ -121,3 +124,33 @@ def test_the_values_of_a_user_come_back_at_one_body_alone(two_bodies):
     for name, value in back.items():
         here = stated if stated.locate(name)[0] == "slave" else moved
         assert value.value == here.parameters[name].value
+
+
+def test_what_is_gained_at_one_body_does_not_depend_on_effects_at_another(two_bodies):
+    """So effects of two bodies cannot mask each other: a pair is sought at one body alone."""
+    prepared, model = two_bodies
+    base = estimate(model, prepared)
+    alone, beside = (
+        fit_squares(estimate(there, prepared)) - fit_squares(estimate(here, prepared))
+        for here, there in [
+            (model, model.with_effect("bias", at="slave")),
+            (
+                model.with_effect("spring", at="master"),
+                model.with_effect("spring", at="master").with_effect("bias", at="slave"),
+            ),
+        ]
+    )
+    assert beside == pytest.approx(alone, abs=1e-6 * fit_squares(base))
+
+
+def test_a_ranking_at_one_body_has_its_candidates_alone(two_bodies):
+    prepared, model = two_bodies
+    base = estimate(model, prepared)
+    some = [Candidate(EFFECTS[n], at) for n in ("bias", "spring") for at in ("master", "slave")]
+    both = rank_candidates(base, prepared, among=some)
+    there = rank_candidates(base, prepared, among=some, body="slave")
+    mine = [r for r in both.ranked if r.candidate.at == "slave"]
+    assert [r.candidate.key for r in there.ranked] == [r.candidate.key for r in mine]
+    assert [fit_squares(r.fit) for r in there.ranked] == pytest.approx(
+        [fit_squares(r.fit) for r in mine], rel=1e-9
+    )

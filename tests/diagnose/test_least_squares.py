@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import least_squares, lsq_linear
 
-from teleopdesign.diagnose.least_squares import minimise
+from teleopdesign.diagnose.least_squares import column_sizes, gauss_newton_step, minimise
 
 
 @settings(max_examples=40)
@@ -79,3 +79,16 @@ def test_steps_that_fail_one_after_another_cost_no_derivatives():
     alone = search(residual_alone=np.arctan)
     assert alone.values == whole.values == pytest.approx([0.0], abs=1e-6)
     assert set(derivatives) < set(each) and len(derivatives) <= len(each) - 3
+
+
+def test_no_step_follows_columns_whose_squares_overflow():
+    """A motion that grows leaves finite columns of 1e200: neither a step nor a warning."""
+    grown = np.array([[1.0, 1e200], [2.0, -1e200]])
+    assert np.array_equal(column_sizes(grown), [np.sqrt(5.0), np.inf])
+    bound = np.full(2, np.inf)
+    assert np.isnan(gauss_newton_step(grown, np.ones(2), -bound, bound)).all()
+    start = np.array([0.5, 0.25])
+    stayed = minimise(
+        lambda x: (np.ones(2), grown), start, -bound, bound, tolerance=1e-6, evaluations=9
+    )
+    assert np.array_equal(stayed.values, start)

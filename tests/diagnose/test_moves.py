@@ -16,7 +16,7 @@ from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.diagnosis import SetAside
 from teleopdesign.diagnose.exchange import compare_alternatives, exchange
-from teleopdesign.diagnose.ladder_state import begin, look, search_for
+from teleopdesign.diagnose.ladder_state import LadderSearch, begin, look, search_for
 from teleopdesign.diagnose.moves import add, remove
 from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
 from teleopdesign.diagnose.rank import make_ranked
@@ -205,6 +205,36 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     }
     before = replace(stand_in, visited=frozenset(beside | {stand_in.effects}))
     assert replace_by_pair(search, before) is None
+
+
+def test_the_second_of_a_pair_is_sought_at_the_body_of_the_first(ladder, monkeypatch):
+    search, state = ladder
+    questions = []
+
+    def rank(self, base, *, body=None, **_):
+        questions.append(body)
+        return Ranking(base, ())
+
+    monkeypatch.setattr(LadderSearch, "rank", rank)
+    assert add_pair(search, state) is None
+    assert questions and set(questions) == {"device"}
+
+
+def test_candidates_start_from_the_users_values_only_where_something_is_missing(
+    ladder, monkeypatch
+):
+    search, state = ladder
+    questions = []
+
+    def rank(self, base, *, misled=True, **_):
+        questions.append(misled)
+        return state.ranking
+
+    moved = add_pair(search, state)
+    monkeypatch.setattr(LadderSearch, "rank", rank)
+    look(search, state.rungs)
+    look(search, moved.rungs, moved)
+    assert questions == [True, False]
 
 
 def test_where_no_effect_is_supported_alone_the_ladder_goes_on_by_a_pair(ladder, monkeypatch):

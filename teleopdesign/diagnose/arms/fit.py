@@ -20,6 +20,7 @@ from ...realise.tangent_columns import LinkParameter
 from ..effort import EFFORTS, Effort
 from ..error import force_error
 from ..fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
+from ..least_squares import column_sizes
 from ..prepare import Prepared, Stretch
 from ..record_offsets import apply_record_offsets
 from ..record_shift import record_shifts
@@ -251,7 +252,7 @@ def _list_inner_parameters(model: Model) -> tuple[str, ...]:
 
 def _basis(columns: Array) -> Array:
     """Orthonormal basis of the span of the columns."""
-    size = np.linalg.norm(columns, axis=0)
+    size = column_sizes(columns)
     columns = columns[:, size > 0] / size[size > 0]
     basis, s, _ = np.linalg.svd(columns, full_matrices=False)
     return np.asarray(basis[:, s > 1e-8 * s.max(initial=0.0)])
