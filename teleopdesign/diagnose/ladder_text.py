@@ -13,8 +13,8 @@ from ..standard_error import with_standard_error
 from .adequacy import records_differ
 from .constant_force import constant_force_line
 from .criteria import CRITERIA
-from .decision import helps_but_is_barred
 from .fit import Fit
+from .left_out import left_out_lines, percent
 from .noise_floor import say_floors
 from .open_parameters import open_parameters_line
 from .record_offsets import offset_groups
@@ -84,30 +84,7 @@ def command_error_text(fit: Fit) -> str | None:
         if command_error.blind
         else ""
     )
-    return f"check error at the command: {_percent(command_error.error)}{blind}"
-
-
-def _percent(error: float) -> str:
-    """An error in percent; "unknown" where it is not finite: the model is blind everywhere."""
-    return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
-
-
-#: a refused candidate is reported if its error is lower by more than this part of the last model's
-#: error: a difference that a reader can see
-LESS = 0.02
-
-
-def refused_lines(diagnosis: Diagnosis) -> list[str]:
-    """Candidates that leave clearly less force than the final model, with why each is refused."""
-    after, lines = diagnosis.after, []
-    for r in diagnosis.last.ranked:
-        why = helps_but_is_barred(diagnosis.last.base, r, diagnosis.floor)
-        if why and r.fit.check_error < (1.0 - LESS) * after.check_error:
-            lines.append(
-                f"refused: {r.candidate} ({_percent(r.fit.check_error)}; at the command "
-                f"{_percent(r.fit.at_command.error)}): {why}"
-            )
-    return lines
+    return f"check error at the command: {percent(command_error.error)}{blind}"
 
 
 def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
@@ -180,7 +157,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         lines.append(f"check error {near}")
     if diagnosis.learnable is not None:
         lines.append(f"black box: {diagnosis.learnable}")
-    lines += refused_lines(diagnosis)
+    lines += left_out_lines(diagnosis)
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
@@ -282,7 +259,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         return f"verdict: undecided, {names}: these records do not decide.{rest}"
     if silent := diagnosis.why_silent:
         return f"verdict: undecided. {silent}"
-    which = "effect that may be named" if refused_lines(diagnosis) else "candidate effect"
+    which = "effect that may be named" if left_out_lines(diagnosis) else "candidate effect"
     return (
         f"verdict: undecided. No {which} explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"

@@ -4,10 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose.stand_ins import fit, floor, ranked
 
 from teleopdesign.diagnose import constant_force, ladder_text
 from teleopdesign.diagnose.constant_force import constant_force_line
 from teleopdesign.diagnose.ladder_text import say_floors
+from teleopdesign.diagnose.left_out import left_out_lines
 from teleopdesign.report.words import _floors
 
 
@@ -45,10 +47,46 @@ def test_where_effects_are_refused_no_effect_that_may_be_named_explains_the_rest
     monkeypatch, refused, words
 ):
     """The sentence stood below a list of refused effects that would explain all of it."""
-    monkeypatch.setattr(ladder_text, "refused_lines", lambda diagnosis: refused)
+    monkeypatch.setattr(ladder_text, "left_out_lines", lambda diagnosis: refused)
     monkeypatch.setattr(ladder_text, "_nearest", lambda diagnosis: "")
     diagnosis = SimpleNamespace(
         verdict="undecided", left=8.0, more_is_missing=True, may_be_noise=False, moment=None,
         unlikely=False, rungs=[None], groups=(), why_silent="",
     )  # fmt: skip
     assert f"{words} explains the 8.0 noise floors" in ladder_text.sentence(diagnosis)
+
+
+@pytest.mark.parametrize(
+    ("open_error", "more", "message"),
+    [
+        (0.2, {}, True),
+        (0.5, {}, False),  # another candidate leaves less
+        (0.79, {"counted": 0.9}, False),  # it takes away too little to matter
+        (0.2, {"more_is_missing": False}, False),
+        (0.2, {"implausible": "its gap is no gap"}, False),  # refused for that
+    ],
+)
+def test_a_candidate_whose_values_stay_open_is_reported_where_none_that_counts_leaves_less(
+    open_error, more, message
+):
+    """ "Comes nearest" names the best candidate that counts; one that left less was not listed."""
+    reason = more.get("implausible", "")
+    rows = [
+        ranked(more.get("counted", 0.4)),
+        ranked(open_error, "spring", is_identifiable=False, implausible=reason),
+    ]
+    diagnosis = SimpleNamespace(
+        last=SimpleNamespace(ranked=rows, base=fit(0.8)),
+        after=fit(0.8),
+        floor=floor(),
+        more_is_missing=more.get("more_is_missing", True),
+    )
+    lines = [line for line in left_out_lines(diagnosis) if line.startswith("not determined")]
+    assert lines == (
+        [
+            "not determined: spring at device leaves least (20.00 %), but these records do not "
+            "determine its values"
+        ]
+        if message
+        else []
+    )

@@ -10,8 +10,9 @@ from ...by_value import ByValue
 from ...measurement.experiment import Experiment
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis
-from ..ladder_text import describe_addition, ladder_html, refused_lines, sentence
+from ..ladder_text import describe_addition, ladder_html, sentence
 from ..learnable import Learnable
+from ..left_out import left_out_lines
 from ..ranking import named_instead
 from ..record_shift import shifts_of
 from ..rung import Rung
@@ -175,5 +176,5 @@ class ArmDiagnosis(ByValue):
         if diagnosis.learnable is not None:
             lines.append(f"  black box: {diagnosis.learnable}")
         if diagnosis.more_is_missing:
-            lines += [f"  {line}" for line in refused_lines(diagnosis)]
+            lines += [f"  {line}" for line in left_out_lines(diagnosis)]
         return [*lines, *(f"  set aside: {one}" for one in diagnosis.set_aside)]
