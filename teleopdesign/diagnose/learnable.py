@@ -3,8 +3,8 @@
 The inputs are position, velocity, acceleration, direction, time and travel since the last reversal;
 the target is the low-passed residual. The trees predict records that they were not trained on. So
 the predicted force is a function of the motion, whatever its law. The rest does not repeat, or
-depends on quantities that were not measured. A complete model leaves at most this rest, and at
-least the noise floor.
+depends on quantities that were not measured, or on the motion in a way that these records are too
+few to teach. A complete model leaves at most this rest, and at least the noise floor.
 
 At a joint of an arm the inputs are the motions of all joints, because the joints are coupled. The
 commanded force is no input: otherwise it would be predicted from itself.
@@ -68,11 +68,11 @@ class Learnable:
     def __str__(self) -> str:
         left, rest = 100 * self.left, 100 * min(self.error, self.left)
         if not self.part > 0.0:
-            return f"{left:.2g} % left; no part of it follows from the motion"
+            return f"{left:.2g} % left; the trees learned none of it from the motion"
         where = f", {self.where}" if self.where else ""
         return (
             f"{left:.2g} % left; {100 * self.part:.2g} % follows from the motion{where}; "
-            f"{rest:.2g} % does not repeat"
+            f"the trees did not learn the other {rest:.2g} %"
         )
 
 
