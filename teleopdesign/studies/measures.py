@@ -157,18 +157,21 @@ def _amounts_of_claim(claim: Any, name: str) -> dict[str, Amount]:
 def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
     """what the package settles about all ports of the diagram: status and margin
 
-    "refuted" if any claim on a port is; else the weakest of the claims that settle it
+    "refuted" if any claim on a port is; else the weakest of the claims that settle it. With a
+    computer that samples these are proofs in continuous time and a search with its samples
     """
-    from ..passivity.diagram_claims import Search, diagram_claims
+    from ..passivity.diagram_claims import SEARCHED, Search, diagram_claims
     from ..passivity.linear_diagrams import WHOLE
 
     case = point.case
     search = Search(stroke, speed, tries, case.computer)
     claims = diagram_claims(case.diagram, rng=point.rng(), search=search).claims
-    whole = [s.claim for s in claims if s.topic in WHOLE] or [s.claim for s in claims]
+    # what is proved of a diagram holds in continuous time: with a computer the search counts, too
+    searched = [s for s in claims if s.topic.endswith(SEARCHED)]
+    whole = [s for s in claims if s.topic in WHOLE]
     order = ("refuted", "unknown", "evidence", "proved")
-    against = [s.claim for s in claims if s.topic.startswith("search") and s.claim.holds is False]
-    chosen = min(against or whole, key=lambda claim: order.index(claim.status))
+    settling = [*whole, *searched] if whole else claims
+    chosen = min((s.claim for s in settling), key=lambda claim: order.index(claim.status))
     return _amounts_of_claim(chosen, "passivity")
 
 
