@@ -57,6 +57,11 @@ class Simulation(ByName, ByValue):
         return list(map(str, self.data))
 
     def __getitem__(self, name: str) -> xarray.DataArray:
+        if name not in self.data and name in self.diagram.outside:
+            raise ModelError(
+                f'simulation: "{name}" comes from outside, as it was given in `inputs`: it is no '
+                "result, unless it is the force that a prescribed motion needs"
+            )
         if name not in self.data:
             raise ModelError(
                 f'simulation: no signal "{name}", has {", ".join(map(str, self.data))}'
