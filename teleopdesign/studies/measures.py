@@ -82,7 +82,11 @@ def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, f
 
 
 def _energy_drawn(point: Point, *, motion: str, force: str) -> Amount:
-    """most energy that a port has released, beyond what went in before"""
+    """most energy that a port has released, kinetic energy of a start at speed included
+
+    the start is not known to the sum: a sine of phase 0 begins at its largest speed, and its
+    kinetic energy counts as released
+    """
     from ..passivity import observe_simulation
 
     lowest = observe_simulation(point.simulation, motion=motion, force=force).lowest
