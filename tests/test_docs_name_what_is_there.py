@@ -23,7 +23,7 @@ def test_every_constant_on_a_page_is_there(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
-def test_every_file_that_an_example_reads_is_on_its_page_or_said_where(page):
+def test_every_file_that_an_example_reads_has_its_place_on_the_page(page):
     """A reader who types the page in an empty folder needs the files of `docs/examples`, too."""
     text = page.read_text(encoding="utf-8")
     blocks = re.findall(r"^```\{(?:session|shell)\}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
