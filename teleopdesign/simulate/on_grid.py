@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -41,6 +41,18 @@ def whole_steps(delay: float, step: float, what: str) -> int:
             f"{step * 1e3:g} ms: use a step that divides it"
         )
     return count
+
+
+def describe_rounding(delays: Iterable[float], steps: Iterable[float], step: float) -> str:
+    """Words on the delays (s) that a simulation takes in whole steps of another duration.
+
+    steps: number of steps of each delay;  step: s;  returns: "" where none is rounded
+    """
+    pairs = [
+        (f"{n * step * 1e3:.5g}", f"{d * 1e3:.5g}") for d, n in zip(delays, steps, strict=True)
+    ]
+    other = dict.fromkeys(f"{taken} ms for {given} ms" for taken, given in pairs if taken != given)
+    return f", delays in whole steps: {', '.join(other)}" if other else ""
 
 
 def input_table(

@@ -16,7 +16,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
 from ..plain_data import write_netcdf
-from .on_grid import Input
+from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare
 from .trajectory import Trajectory
@@ -194,6 +194,10 @@ def _dataset(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -
     }
     time = ("time", step * np.arange(len(rows)), {"units": "s"})
     scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
+    late = setup.delays[: len(timing.late)]
+    scheme += describe_rounding(
+        [setup.sampling.delay, *late], [timing.lag, *timing.late], timing.step
+    )
     if setup.program.has_code:
         scheme += ", in plain Python: a block is known as code only"
     attrs = {"diagram": setup.diagram.name, "step_s": timing.step, "scheme": scheme}
