@@ -119,7 +119,8 @@ def simulate(
     """Simulate a diagram from t = 0: all its signals over time.
 
     inputs: signals from outside (SI): a number, a function of time, a `sine`, or samples (those
-        that the computer reads: one a sample; others: one each half step); 0 by default
+        that the computer reads: one a sample; others: one each half `step`, linear in between where
+        a run needs a shorter step); 0 by default
     motion: motions that are prescribed; the force that this takes becomes a result (R_V)
     initial: state -> start, such as "L", "L_velocity" or "Z_M_presliding_bristle"; else 0
     computer: how controllers are sampled; "continuous": they are not, as in `to_iosystem`
