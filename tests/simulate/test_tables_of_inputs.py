@@ -1,4 +1,4 @@
-"""An input that is a table counts for the step that was asked for, also in a run of shorter steps."""
+"""A table of an input counts for the step that was asked for, also in a run of shorter steps."""
 
 import numpy as np
 import pytest
