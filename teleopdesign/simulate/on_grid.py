@@ -55,7 +55,7 @@ def describe_rounding(delays: Iterable[float], steps: Iterable[float], step: flo
     pairs = [
         (f"{n * step * 1e3:.5g}", f"{d * 1e3:.5g}") for d, n in zip(delays, steps, strict=True)
     ]
-    other = dict.fromkeys(f"{taken} ms for {given} ms" for taken, given in pairs if taken != given)
+    other = dict.fromkeys(f"{whole} ms for {delay} ms" for whole, delay in pairs if whole != delay)
     return f", delays in whole steps: {', '.join(other)}" if other else ""
 
 
@@ -97,7 +97,7 @@ def half_steps(timing: Timing) -> np.ndarray:
     return np.asarray(0.5 * timing.step * np.arange(2 * timing.steps + 1))
 
 
-def over_any_grid(
+def tables_as_functions(
     names: tuple[str, ...], signals: Mapping[str, Input], grid: Callable[[], np.ndarray]
 ) -> dict[str, Input]:
     """The inputs with a function for each table that has a sample at each time of the grid.

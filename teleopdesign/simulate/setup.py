@@ -232,7 +232,7 @@ class Setup:
     def arguments(self, timing: Timing) -> dict[str, Any]:
         """Inputs on the grid of a timing, in the form that the kernel takes."""
         layout = self.program.layout
-        signals = on_grid.over_any_grid(
+        signals = on_grid.tables_as_functions(
             layout.inputs, self._signals, lambda: on_grid.half_steps(self.timing(self.inner()))
         )
         # a fine grid has 10^7 rows: one column is what is held throughout
