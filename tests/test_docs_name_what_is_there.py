@@ -22,6 +22,20 @@ def test_every_constant_on_a_page_is_there(page):
         assert isinstance(reduce(getattr, last.split("."), module), (int, float)), name
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
+def test_every_file_that_an_example_reads_has_its_place_on_the_page(page):
+    """A reader who types the page in an empty folder needs the files of `docs/examples`, too."""
+    text = page.read_text(encoding="utf-8")
+    blocks = re.findall(r"^```\{(?:session|shell)\}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    typed, missing = "".join(blocks), []
+    for file in sorted((DOCS / "examples").glob("*.*")):
+        word = re.escape(file.name)
+        used = re.search(rf"(?<![\w./]){word}\b|^from {file.stem} import", typed, re.MULTILINE)
+        if used and f"{{shown}} {file.name}" not in text and f"examples/{file.name}" not in text:
+            missing.append(file.name)
+    assert not missing
+
+
 def test_the_robustness_study_is_written_in_at_most_thirty_lines():
     """Diagram, both studies, claim and both figures, as a reader types them."""
     page = (DOCS / "robustness_study.md").read_text(encoding="utf-8")

@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import sympy as sp
-from sympy.printing.latex import LatexPrinter
+from sympy.printing.latex import LatexPrinter, greek_letters_set
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.str import StrPrinter
 
 from ..realise.lti import S
+
+#: from here on a numerator or a denominator is not read as a fraction; 1/20 is
+_LONG = 10_000
 
 
 def block_symbol(name: str) -> sp.Symbol:
@@ -90,14 +93,23 @@ class _Latex(LatexPrinter):
         return _strip_plus(out)
 
 
+def _with_short_numbers(expression: sp.Expr) -> sp.Expr:
+    """The expression with six digits of each fraction that has more digits than a reader takes in.
+
+    A lever arm such as 0.1 cos(0.5) is exact in the expression, a fraction of 30 digits.
+    """
+    numbers = {x for x in expression.atoms(sp.Rational) if max(abs(x.p), x.q) >= _LONG}
+    return expression.xreplace({x: sp.Float(x, 6) for x in numbers if not x.is_Integer})
+
+
 def as_text(expression: sp.Expr) -> str:
     """The expression as plain text, such as "Z_H (Z_M + Gamma Z_H - C)^-1 Gamma"."""
-    return str(_Text().doprint(expression))
+    return str(_Text({"full_prec": False}).doprint(_with_short_numbers(expression)))
 
 
 def as_latex(expression: sp.Expr) -> str:
     """The expression as LaTeX, with the blocks in their order."""
-    return str(_Latex().doprint(expression))
+    return str(_Latex().doprint(_with_short_numbers(expression)))
 
 
 def name_as_latex(name: str) -> str:
@@ -108,6 +120,7 @@ def name_as_latex(name: str) -> str:
 def _symbol_text(name: str) -> str:
     head, _, index = name.partition("_")
     head = rf"\hat {head.removesuffix('hat')}" if head.endswith("hat") else head
+    head = sp.latex(sp.Symbol(head)) if head in greek_letters_set else head
     if not index:
         return head
     return f"{head}_{{{index}}}" if len(index) == 1 else rf"{head}_{{\mathrm{{{index}}}}}"

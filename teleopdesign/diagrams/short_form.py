@@ -9,6 +9,7 @@ from typing import Any
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
+from ..errors import ModelError
 from .haptic_interface import haptic_interface
 from .parts import AnyBlock, Control
 from .teleoperator import teleoperator
@@ -66,6 +67,19 @@ def kind_of(diagram: Diagram) -> str | None:
     for kind, form in KINDS.items():
         controls = {b.name for b in diagram.controls}
         known = controls <= set(form.controls) and set(contents) - controls <= set(form.bodies)
-        if known and form.wire(contents, analog) == diagram:
+        if known and _wires(form, contents, analog, diagram):
             return kind
     return None
+
+
+def _wires(
+    form: ShortForm, contents: Mapping[str, Content], analog: tuple[str, ...], diagram: Diagram
+) -> bool:
+    """Whether the form makes this diagram of these blocks.
+
+    Blocks with the names of a kind need not fit it: a hand of several axes, or other units.
+    """
+    try:
+        return form.wire(contents, analog) == diagram
+    except ModelError:
+        return False

@@ -57,7 +57,8 @@ class Diagram:
             if quantity not in QUANTITIES:
                 raise ModelError(
                     f'{self.name}: outside["{signal}"]: no quantity "{quantity}"'
-                    f"{did_you_mean(quantity, QUANTITIES)}"
+                    f"{did_you_mean(quantity, QUANTITIES)}; expected force (a torque too), "
+                    "position (an angle too), velocity, acceleration or dimensionless"
                 )
         made: dict[str, str] = dict.fromkeys(self.outside, "outside")
         names = [b.name for b in self.blocks]

@@ -23,10 +23,19 @@ if TYPE_CHECKING:
     import matplotlib.figure
     import xarray
 
+#: powers of frequency between which a magnitude lies, and the highest phase (deg) at its start:
+#: limits halfway between whole powers
+_STARTS = (
+    (-np.inf, -2.5, 89.0), (-2.5, -0.5, 91.0), (0.5, 2.5, 269.0), (2.5, np.inf, 271.0),
+)  # fmt: skip
+
 
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse(ByValue):
     """Magnitude and phase (degrees, unwrapped) over `case` and `frequency` (Hz).
+
+    The phase of a magnitude that falls begins from -270 to 90 degrees, of one that rises from -90
+    to 270, of a level one from -180 to 180: a mass has -180 degrees from force to position.
 
     left_out: case -> names without linear form;  output, input: signals
     """
@@ -142,7 +151,8 @@ def label_response(
     import xarray
 
     phase = np.degrees(np.unwrap(np.angle(values), axis=1))
-    phase -= 360 * np.floor((phase[:, :1] + 90) / 360)  # starting between -90 and 270 degrees
+    turns = (phase[:, 0] - _highest_start(np.abs(values), frequency)) / 360
+    phase -= 360 * np.ceil(turns)[:, None]
     dims = ("case", "frequency")
     return xarray.Dataset(
         {
@@ -151,6 +161,26 @@ def label_response(
         },
         {"case": cases, "frequency": ("frequency", frequency, {"units": "Hz"})},
     )
+
+
+def _highest_start(size: np.ndarray, frequency: np.ndarray) -> np.ndarray:
+    """Highest phase (deg) at which the phase of each magnitude (cases, n) may begin.
+
+    A magnitude that falls begins from -270 to 90 degrees, one that rises from -90 to 270, a level
+    one from -180 to 180: so a mass has -180 degrees from force to position, and 180 back. The ends
+    differ by a degree, because such a phase is computed on either side of it: a third power may
+    have 270 degrees, an integrator with a gain below 0 has 90.
+    """
+    first = np.flatnonzero(frequency > 0)[:2]
+    highest = np.full(len(size), 181.0)
+    if len(first) < 2 or not frequency[first[0]] < frequency[first[1]]:
+        return highest
+    with np.errstate(all="ignore"):
+        ratio = np.log(size[:, first[1]] / size[:, first[0]])
+    steepness = ratio / np.log(frequency[first[1]] / frequency[first[0]])
+    for least, most, high in _STARTS:
+        highest[(least < steepness) & (steepness < most)] = high
+    return highest
 
 
 def ratio_unit(diagram: Diagram, output: str, source: str) -> str:

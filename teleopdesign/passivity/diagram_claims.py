@@ -35,6 +35,9 @@ from .search.by_simulation import Computer, SimulatedMotion, search_counterexamp
 from .theorems import TopicClaim
 from .theorems.wave_channel import wave_claim
 
+#: last words of the topic of a claim that a search decides
+SEARCHED = "search by simulation"
+
 
 @check_types
 @dataclass(frozen=True)
@@ -177,7 +180,7 @@ def composed_claim(
 def _search_claim(
     whole: Diagram, port: Port, rng: np.random.Generator, search: Search
 ) -> TopicClaim:
-    topic = f"port {port}, search by simulation"
+    topic = f"port {port}, {SEARCHED}"
     statement = f"{whole.name}: the port {port} releases no energy"
     if port.motion is None:
         why = "its motion is no single body's, so that a simulation cannot prescribe it"

@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 
 import sympy as sp
+from sympy.printing.c import C99CodePrinter
 
 from ..controllers import SIGNALS, Controller, parameter_symbol
 from ..errors import ModelError
@@ -88,6 +89,13 @@ class _Ring:
         return f"    s->d{i}[s->at{i}] = {code};\n    s->at{i} = (s->at{i} + 1) % {self.size};"
 
 
+class _Code(C99CodePrinter):
+    """C code with the fewest digits that give each number again: 0.4, not 0.40000000000000002."""
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return repr(float(expr))
+
+
 def as_c_header(controller: Controller, *, period: float, name: str = "controller") -> str:
     """The controller's difference equations in a computer of that period, as text of a C header.
 
@@ -115,7 +123,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
 
     def code(expression: sp.Expr) -> str:
         numbers = sp.sympify(expression).subs(values).xreplace({sp.pi: sp.Float(math.pi)})
-        return str(sp.ccode(numbers.xreplace(fields)))
+        return str(_Code().doprint(numbers.xreplace(fields)))
 
     def stepped(group: list[sp.Symbol]) -> list[str]:
         lines = []

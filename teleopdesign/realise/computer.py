@@ -33,8 +33,22 @@ class ComputerEquations:
 
 
 def sensor_signals(diagram: Diagram) -> set[str]:
-    """Signals that the computer reads from a sensor; outside signals need none."""
-    return set(diagram.measured) - set(diagram.outside)
+    """Signals that the computer reads from a sensor.
+
+    Outside signals, and what the computer itself makes, need none.
+    """
+    return set(diagram.measured) - set(diagram.outside) - _made_signals(diagram)
+
+
+def _made_signals(diagram: Diagram) -> set[str]:
+    """Outputs of the computer's controllers, and sums of nothing but these and outside signals."""
+    made = {c.output for c in diagram.controls if not c.analog}
+    known = made | set(diagram.outside)
+    sums = [j for j in diagram.junctions if j.terms]
+    while more := {j.output for j in sums if made & set(j.terms) and known >= set(j.terms)} - made:
+        made |= more
+        known |= more
+    return made
 
 
 def computer_signals(diagram: Diagram) -> set[str]:
@@ -44,15 +58,19 @@ def computer_signals(diagram: Diagram) -> set[str]:
     """
     made = {s: p for p in diagram.parts for s in p.outputs}
     sensors, electronic = sensor_signals(diagram), _electronic_signals(diagram)
+    commanded = _made_signals(diagram) | electronic
     todo = _command_signals(diagram)
     computed: set[str] = set()
     visited: set[str] = set()
     while todo:
         name = todo.pop()
-        if name in visited or name in sensors:
+        if name in visited:
             continue
         visited.add(name)
         part = made.get(name)
+        if name in sensors:  # a sum may still hold commands, though a sensor reads it
+            todo += [s for s in getattr(part, "terms", ()) if s in commanded]
+            continue
         if isinstance(part, Moving | Attached | Linked):
             raise ModelError(
                 f'{diagram.name}: the computer uses "{name}" of {part.name}, which is not '

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import ModelError
 from ..expectations import describe_value
 from ..realise.delays import is_whole
+
+if TYPE_CHECKING:
+    from ..realise.kernel import Timing
 
 Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
 
@@ -43,6 +47,18 @@ def whole_steps(delay: float, step: float, what: str) -> int:
     return count
 
 
+def describe_rounding(delays: Iterable[float], steps: Iterable[float], step: float) -> str:
+    """Words on the delays (s) that a simulation takes in whole steps of another duration.
+
+    steps: number of steps of each delay;  step: s;  returns: "" where none is rounded
+    """
+    pairs = [
+        (f"{n * step * 1e3:.5g}", f"{d * 1e3:.5g}") for d, n in zip(delays, steps, strict=True)
+    ]
+    other = dict.fromkeys(f"{whole} ms for {delay} ms" for whole, delay in pairs if whole != delay)
+    return f", delays in whole steps: {', '.join(other)}" if other else ""
+
+
 def input_table(
     names: tuple[str, ...], signals: Mapping[str, Input], time: np.ndarray
 ) -> np.ndarray:
@@ -63,6 +79,45 @@ def input_table(
             )
         table[i] = row
     return table
+
+
+@dataclass(frozen=True, eq=False)
+class TableOverTime:
+    """Samples (n,) of an input at times (n,), s, linear in between: the same on any finer grid."""
+
+    time: np.ndarray
+    samples: np.ndarray
+
+    def __call__(self, t: np.ndarray) -> np.ndarray:
+        return np.asarray(np.interp(t, self.time, self.samples))
+
+
+def half_steps(timing: Timing) -> np.ndarray:
+    """Starts, middles and ends of the steps, s."""
+    return np.asarray(0.5 * timing.step * np.arange(2 * timing.steps + 1))
+
+
+def tables_as_functions(
+    names: tuple[str, ...], signals: Mapping[str, Input], grid: Callable[[], np.ndarray]
+) -> dict[str, Input]:
+    """The inputs with a function for each table that has a sample at each time of the grid.
+
+    grid: gives the times (n,), s, of the step that was asked for; a run may have a shorter step
+    raises ModelError: a table of one of the names has another number of samples
+    """
+    tables = {n: x for n, x in signals.items() if np.ndim(x)}  # type: ignore[arg-type]
+    if not tables:
+        return dict(signals)
+    time = grid()
+    input_table(names, tables, time)  # refuses other lengths
+    return {
+        **signals,
+        **{
+            name: TableOverTime(time, np.asarray(x, dtype=float))
+            for name, x in tables.items()
+            if np.shape(x) == time.shape  # type: ignore[arg-type]
+        },
+    }
 
 
 def _grid(time: np.ndarray) -> str:

@@ -14,7 +14,8 @@ from ..errors import ModelError, did_you_mean
 class Sampling:
     """How a computer samples positions, and when its commands act.
 
-    period: s;  delay: from a sample to the change of the command, s
+    period: s;  delay: from a sample to the change of the command, s; simulated in whole steps,
+        refused where these differ from it by more than 2 %
     encoder_step: m or rad; 0: no quantisation
     velocity: estimate of the velocity: "difference" of readings; "filtered": the difference through
         a first-order low-pass; "observer" of position, velocity and, at order 3, acceleration

@@ -14,6 +14,7 @@ from ..diagrams import Diagram, Moving, with_shared_states
 from ..errors import ModelError, did_you_mean
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
+from . import on_grid
 from .on_grid import Input, delay_in_steps, input_table, samples_of, whole_steps
 from .sampling import SAMPLED, Sampling
 from .step_ladder import StepLadder
@@ -230,10 +231,12 @@ class Setup:
 
     def arguments(self, timing: Timing) -> dict[str, Any]:
         """Inputs on the grid of a timing, in the form that the kernel takes."""
-        layout, n = self.program.layout, 2 * timing.steps + 1
+        layout = self.program.layout
+        signals = on_grid.tables_as_functions(
+            layout.inputs, self._signals, lambda: on_grid.half_steps(self.timing(self.inner()))
+        )
         # a fine grid has 10^7 rows: one column is what is held throughout
-        half = 0.5 * timing.step * np.arange(n if self._varying else 1)
-        signals = self._signals
+        half = on_grid.half_steps(timing) if self._varying else np.zeros(1)
         samples = timing.period * np.arange(timing.samples + 1)
         return {
             "inputs": input_table(layout.inputs, signals, half),

@@ -16,7 +16,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
 from ..plain_data import write_netcdf
-from .on_grid import Input
+from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare
 from .trajectory import Trajectory
@@ -57,6 +57,11 @@ class Simulation(ByName, ByValue):
         return list(map(str, self.data))
 
     def __getitem__(self, name: str) -> xarray.DataArray:
+        if name not in self.data and name in self.diagram.outside:
+            raise ModelError(
+                f'simulation: "{name}" comes from outside, as it was given in `inputs`: it is no '
+                "result, unless it is the force that a prescribed motion needs"
+            )
         if name not in self.data:
             raise ModelError(
                 f'simulation: no signal "{name}", has {", ".join(map(str, self.data))}'
@@ -114,7 +119,8 @@ def simulate(
     """Simulate a diagram from t = 0: all its signals over time.
 
     inputs: signals from outside (SI): a number, a function of time, a `sine`, or samples (those
-        that the computer reads: one a sample; others: one each half step); 0 by default
+        that the computer reads: one a sample; others: one each half `step`, linear in between where
+        a run needs a shorter step); 0 by default
     motion: motions that are prescribed; the force that this takes becomes a result (R_V)
     initial: state -> start, such as "L", "L_velocity" or "Z_M_presliding_bristle"; else 0
     computer: how controllers are sampled; "continuous": they are not, as in `to_iosystem`
@@ -189,6 +195,10 @@ def _dataset(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -
     }
     time = ("time", step * np.arange(len(rows)), {"units": "s"})
     scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
+    late = setup.delays[: len(timing.late)]
+    scheme += describe_rounding(
+        [setup.sampling.delay, *late], [timing.lag, *timing.late], timing.step
+    )
     if setup.program.has_code:
         scheme += ", in plain Python: a block is known as code only"
     attrs = {"diagram": setup.diagram.name, "step_s": timing.step, "scheme": scheme}

@@ -111,3 +111,10 @@ def test_a_name_that_is_no_name_or_a_law_that_is_code_is_refused():
     cubic = control.nlsys(None, lambda t, x, u, p: u**3, inputs=1, outputs=1)
     with pytest.raises(ModelError, match="known as code only"):
         as_c_header(from_control(cubic), period=PERIOD)
+
+
+def test_numbers_have_the_digits_that_were_given():
+    law = controller("smoothed_coulomb", {"level": 0.4, "smoothing_velocity": 0.015})
+    text = as_c_header(law.then(controller("gain", {"gain": 1e-7})), period=PERIOD)
+    assert "4e-08*velocity/(speed + 0.015)" in text
+    assert "000000000" not in text
