@@ -56,6 +56,10 @@ class Criteria:
     #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
     #: left open: a right model's error lies between one and about one and a half floors
     open: float = 1.0
+    #: part of the excess of a force over all acting forces that must stay in the sum of the model's
+    #: forces, or others cancel it: none stays where they cancel all of it, all where nothing does.
+    #: Lower: forces are named of which only a sum is known; higher: strong ones are refused
+    stays: float = 0.5
     #: share of the samples where the body slides that may be blind. A quarter: of more, a model
     #: says too little; less would refuse every saturation that was really reached
     blind: float = 0.25

@@ -21,8 +21,10 @@ from ..measurement.repeated_rows import runs_of
 from ..model import Model
 from ..realise.along_motion import measured_along
 from ..realise.traced import Along
+from .criteria import CRITERIA
 from .feedback_law import explain_computed
 from .prepare import Prepared, Stretch
+from .residual import residuals
 
 
 def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
@@ -48,7 +50,7 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
             if reason is None:
                 reason = explain_computed(effect, prepared.experiment, place)
             if reason is None and effect.role == "force":
-                reason = _explain_cancelled(effect, alongs, facts)
+                reason = _explain_cancelled(effect, alongs, facts, model)
             if reason is not None:
                 meanings[effect.name, place] = reason
     return meanings
@@ -64,24 +66,43 @@ def undetermined_of(effect: Effect, at: str, model: Model, prepared: Prepared) -
 
 
 def _explain_cancelled(
-    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], facts: RecordFacts
+    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], facts: RecordFacts, model: Model
 ) -> str | None:
-    """A sentence where a force varies along the motion by more than all acting forces; else None.
+    """A sentence where a force varies by more than all acting forces, and others cancel it.
 
-    Half of its range is compared with the largest acting force.
+    Half of its range is compared with the largest acting force, and with half of the range of all
+    forces of the model together: a force that is too large beyond the motion of the fit records
+    stays in the residual, and nothing cancels it.
     """
     law = effect.expression()
     if effect.states or law.has(SIGNALS["acting_force"]):
         return None
-    forces = [along.evaluate(law).value[s.keep] for along, s in alongs]
-    half = 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
+    half = _half_range([along.evaluate(law).value[s.keep] for along, s in alongs])
     if not half > facts.acting:
+        return None
+    stretches = [s for _, s in alongs]
+    left = residuals(model, stretches)
+    together = _half_range(
+        [_measured_force(s) - r for s, (r, _) in zip(stretches, left, strict=True)]
+    )
+    if together - facts.acting > CRITERIA.stays * (half - facts.acting):
         return None
     return (
         f"this force varies by +-{facts.text(half, 'force')} along the motion, where no more than "
         f"{facts.text(facts.acting, 'force')} act: another effect cancels it, and only the sum of "
         "the two is known"
     )
+
+
+def _half_range(forces: Sequence[np.ndarray]) -> float:
+    return 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
+
+
+def _measured_force(stretch: Stretch) -> np.ndarray:
+    """The low-passed measured force on the rows that count."""
+    m = stretch.motion
+    force: np.ndarray = m.lowpassed(m.at_rows(m.command) + m.interaction)[stretch.keep]
+    return force
 
 
 def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:

@@ -15,9 +15,15 @@ from ..effects import Effect
 from ..model import Model
 from .candidates import make_starts
 from .criteria import CRITERIA
-from .effort import EFFORTS, Effort
+from .effort import EFFORTS
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
-from .least_squares import sum_of_squares
+from .further_starts import (
+    follow_start,
+    from_smaller_strengths,
+    squares_of,
+    strength_of_new,
+    with_what_they_need,
+)
 from .linear_start import linear_starts
 from .prepare import Prepared
 from .promise import Promises
@@ -94,20 +100,25 @@ def estimate_from_starts(
     wide = rugged or any(len(e.parameters) >= PLAN.many_parameters for e in absent)
     kept = PLAN.wide_stepped if wide else PLAN.curved_stepped
     if base is not None:
-        curved = _with_strength(model) is None
+        curved = strength_of_new(model) is None
         kept = kept if curved else PLAN.stepped
         if curved and stated is not None and has_moved(base.coarse, stated):
             models += [reset_to_stated(m, stated) for m in models]
         most = PLAN.wide_predicted if wide else PLAN.curved_predicted
+        others = with_what_they_need(model, models, prepared) if curved else []
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
+        if others:
+            models += _select_promising(model, others, coarse, base, most=most, worth=worth)
         if not models:
             return keep_absent(model, base.fit)
     elif len(models) == 1:
         return estimate(model, prepared)
     if len(models) > kept + 1:
         models = _best_stepped(models, coarse, kept, promised=base is not None)
-    best = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
-    if rugged and base is not None and _squares(best) < PLAN.jolted * fit_squares(base.coarse):
+    best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
+    if base is not None and squares_of(best) > fit_squares(base.coarse):
+        best = from_smaller_strengths(model, models, best, coarse)
+    if rugged and base is not None and squares_of(best) < PLAN.jolted * fit_squares(base.coarse):
         best = _jolt(best, model.absent, coarse)
     best = _sort_elements(best, coarse)
     if base is not None and coarse is prepared:
@@ -124,7 +135,7 @@ def estimate_best_start(
         nearby
     """
     coarse = prepared.coarse
-    best = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
+    best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
     return estimate(_jolt(best, new, coarse).model, prepared, effort=EFFORTS.near)
 
 
@@ -148,16 +159,11 @@ def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
     models = make_starts(reset_to_stated(fit.model, stated, at), prepared.scales)
     if len(models) > PLAN.curved_stepped + 1:
         models = _best_stepped(models, coarse, PLAN.curved_stepped, promised=False)
-    other = min((_follow_start(m, coarse, EFFORTS.rough) for m in models), key=_squares)
-    here = _follow_start(fit.model, coarse, EFFORTS.rough)
-    if _squares(other) > (1.0 - PLAN.elsewhere) * _squares(here):
+    other = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
+    here = follow_start(fit.model, coarse, EFFORTS.rough)
+    if squares_of(other) > (1.0 - PLAN.elsewhere) * squares_of(here):
         return fit
     return min((fit, estimate(other.model, prepared, effort=EFFORTS.rough)), key=fit_squares)
-
-
-def _follow_start(model: Model, prepared: Prepared, effort: Effort) -> Solution:
-    """The rough optimum that a search from this start reaches."""
-    return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
 
 
 def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
@@ -168,13 +174,8 @@ def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
     model = best.model.in_order()
     if model is best.model:
         return best
-    there = _follow_start(model, prepared, EFFORTS.rough)
-    return there if _squares(there) <= (1.0 + PLAN.elsewhere) * _squares(best) else best
-
-
-def _squares(solution: Solution) -> float:
-    """Sum of squares that a solution leaves; inf where its motion grows beyond all numbers."""
-    return sum_of_squares(solution.residual)
+    there = follow_start(model, prepared, EFFORTS.rough)
+    return there if squares_of(there) <= (1.0 + PLAN.elsewhere) * squares_of(best) else best
 
 
 def with_parameters_of(model: Model, other: Model) -> Model:
@@ -200,7 +201,7 @@ def _select_promising(
 
     most: number of starts, for an effect that is linear in no strength
     """
-    linear = _with_strength(model)
+    linear = strength_of_new(model)
     if linear is not None:
         return _start_by_strength(models, *linear, prepared, base, worth)
     promises = Promises(prepared, base.coarse)
@@ -230,16 +231,6 @@ def _vary_starts(model: Model, ordered: list[Model]) -> list[Model]:
     return [*first.values(), *rest]
 
 
-def _with_strength(model: Model) -> tuple[Effect, str] | None:
-    """The only absent effect and its place, if it has a strength that is free; else None."""
-    absent = [(model.body(place).effect(name), place) for name, place in model.absent]
-    if len(absent) != 1 or absent[0][0].strength is None:
-        return None
-    effect, place = absent[0]
-    strength = f"{place}.{effect.name}.{effect.strength}"
-    return absent[0] if not model.parameters[strength].fixed else None
-
-
 def _start_by_strength(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Base, worth: float
 ) -> list[Model]:
@@ -265,8 +256,8 @@ def _best_stepped(
     """
     solutions = []
     for i, model in enumerate(models):
-        solution = _follow_start(model, prepared, EFFORTS.first_steps)
-        solutions.append((_squares(solution), i, solution.model))
+        solution = follow_start(model, prepared, EFFORTS.first_steps)
+        solutions.append((squares_of(solution), i, solution.model))
     solutions.sort(key=lambda f: f[:2])
     best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [there for _, _, there in best]
@@ -279,14 +270,14 @@ def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) ->
     """
     free = free_parameters(best.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
-    model, least = best.model, _squares(best)
+    model, least = best.model, squares_of(best)
     for _ in range(PLAN.sweeps):
         before = least
         for name, factor in product(names, PLAN.jolts):
             jolted = model.with_values({name: model.parameters[name].value * factor})
-            solution = _follow_start(jolted, prepared, EFFORTS.first_steps)
-            if _squares(solution) < least:
-                least, model = _squares(solution), solution.model
+            solution = follow_start(jolted, prepared, EFFORTS.first_steps)
+            if squares_of(solution) < least:
+                least, model = squares_of(solution), solution.model
         if least > (1.0 - PLAN.onward) * before:
             break
-    return best if model is best.model else _follow_start(model, prepared, EFFORTS.rough)
+    return best if model is best.model else follow_start(model, prepared, EFFORTS.rough)

@@ -64,7 +64,9 @@ WORDS: dict[str, tuple[str, ...]] = {
     "position": (
         "position", "pos", "angle", "winkel", "weg", "theta", "enc", "encoder", "phi", "q", "x",
         "actualq", "posicion", "posizione", "angulo", "angolo", "位置", "角度", "位移",
-        "위치", "각도", "положение", "угол",
+        "위치", "각도", "положение", "угол", "displacement", "displ", "disp", "stroke",
+        "verschiebung", "deplacement", "desplazamiento", "spostamento", "変位", "변위",
+        "перемещение",
     ),
     "velocity": (
         "velocity", "vel", "speed", "geschwindigkeit", "drehzahl", "omega", "qd", "dq", "xd", "v",

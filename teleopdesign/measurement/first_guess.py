@@ -132,7 +132,8 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     be distinguished from delays. A motion in one direction does not distinguish friction from a
     constant force. A pendulum that swings below its natural frequency has a force like that of a
     negative mass; a force proportional to position is added where it explains most of the remaining
-    force.
+    force. In motions of one frequency it explains no more than the inertia does. So where friction
+    brakes, a negative inertia counts only if its sign is certain beside such a force, too.
     """
     stretch = _stretch((force, position), position, sample_time)
     if stretch is None or hardly_varies(force[_inner(sample_time)]):
@@ -156,8 +157,22 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
         if np.abs(solution[0]) > _SURELY * errors[0]:
             size = float(np.abs(solution[0]) * np.std(acceleration))
             inertia.append((size, float(solution[0])))
+        brakes = solution[1] > _SURELY * errors[1]
+        if (
+            inertia
+            and inertia[-1][1] < 0.0
+            and brakes
+            and _may_be_spring(columns, place, force, sample_time)
+        ):
+            inertia.pop()
     sizes = [*(p[:2] for p in sorted(parts, key=lambda p: p[2])[:1]), *inertia[:1]]
     return bool(sizes) and max(sizes)[1] < 0.0
+
+
+def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
+    """Whether the sign of the first column's factor is open beside a force of the position."""
+    held = _least_squares(np.vstack([columns, place]), force, sample_time)
+    return held is not None and bool(np.abs(held[0][0]) <= _SURELY * held[1][0])
 
 
 def is_size(force: Array, position: Array, sample_time: float) -> bool:

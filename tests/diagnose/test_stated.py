@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose import search
+from teleopdesign.diagnose import further_starts, search
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.prepare import prepare
@@ -40,8 +40,8 @@ def test_a_value_counts_as_the_users_within_what_users_err_by(fitted, away, is_n
 def test_what_ends_at_the_users_values_is_not_sought_from_them(fitted, monkeypatch):
     prepared, fit = fitted
     solved = []
-    solve = search.solve
-    monkeypatch.setattr(search, "solve", lambda *a: solved.append(a) or solve(*a))
+    solve = further_starts.solve
+    monkeypatch.setattr(further_starts, "solve", lambda *a: solved.append(a) or solve(*a))
     assert search.from_stated(fit, prepared, stated_with(fit, 1.1), "device") is fit
     assert not solved
     search.from_stated(fit, prepared, stated_with(fit, 2.0), "device")

@@ -159,3 +159,11 @@ def test_earlier_words_are_surer_and_exact_ones_surer_than_their_beginnings():
 )
 def test_what_was_asked_for_and_what_is_another_quantity(name, wanted, other):
     assert is_wanted(name) == wanted and is_another_quantity(name) == other
+
+
+@pytest.mark.parametrize(
+    "name", ["displacement", "displ_3", "Disp", "stroke", "変位", "Verschiebung"]
+)
+def test_a_displacement_is_a_position(name):
+    assert likeness(name, "position") > 0.7
+    assert not any(likeness(name, q) for q in ("velocity", "actuator_force", "interaction_force"))

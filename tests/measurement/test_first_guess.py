@@ -114,6 +114,24 @@ def test_errors_of_first_values_count_each_second_as_one_reading():
     assert np.all((0.1 < spread) & (spread < 3.0))
 
 
+@pytest.mark.parametrize("rate", [0.3, 0.9, 1.8])
+@pytest.mark.parametrize("level", [0.2, 0.4])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_spring_with_friction_at_one_frequency_is_no_turned_inertia(rate, level, seed):
+    """A cyclic test: in cycles of one duration a spring is a negative inertia, but friction brakes.
+
+    A frictionless body with the wrong sign is turned as before.
+    """
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 13.0 / rate, 0.02)
+    turns = np.interp(t, np.linspace(0.0, t[-1], 7), [0.4, 0.4, 0.7, 0.75, 1.0, 1.05, 1.0])
+    x = turns * np.sin(2 * np.pi * rate * t + 0.3 * np.sin(0.7 * t))
+    force = x + level * np.sign(np.gradient(x)) + 0.1 * rng.standard_normal(len(t))
+    assert not is_turned(force, x, 0.02)
+    body = np.gradient(np.gradient(x, t), t) / (2 * np.pi * rate) ** 2
+    assert is_turned(-body + 0.1 * rng.standard_normal(len(t)), x, 0.02)
+
+
 @pytest.mark.parametrize("rate", [0.05, 0.18, 0.5])
 @pytest.mark.parametrize("stiffness", [0.0, 0.3, 3.0, 10.0])
 def test_a_pendulum_below_its_natural_frequency_is_no_turned_inertia(rate, stiffness):

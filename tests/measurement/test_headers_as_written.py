@@ -184,3 +184,28 @@ def test_a_broken_first_cell_does_not_move_the_first_row(tmp_path):
     assert log.names == ("t", "x", "f")
     with pytest.raises(ExperimentError, match="row 1.*abc"):
         log.read({"t": "time", "x": "position"})
+
+
+@pytest.mark.parametrize("separator", [",", "\t", " "])
+@pytest.mark.parametrize("hole", ["", "nan"])
+def test_a_row_may_end_in_a_semicolon_as_in_a_matrix(tmp_path, separator, hole):
+    """The last column held "no numbers" before."""
+    rows = [separator.join(map(str, row)) + (";" if k % 2 else "; ") for k, row in enumerate(ROWS)]
+    if hole and separator != " ":
+        rows[9] = separator.join(["0.09", "2", "-9", hole]) + ";"
+    path = tmp_path / "log.txt"
+    path.write_text("\n".join(["%" + separator.join(["time", "angle", "current", "heat"]), *rows]))
+    log = open_log(path, path.name)
+    assert log.names == ("time", "angle", "current", "heat")
+    columns = log.read(dict.fromkeys(log.names, ""))
+    for name, values in zip(log.names, np.array(ROWS).T, strict=True):
+        read = np.delete(columns[name], 9)
+        np.testing.assert_allclose(read, np.delete(values, 9))
+
+
+def test_a_semicolon_that_separates_stays(tmp_path):
+    path = tmp_path / "log.txt"
+    path.write_text("\n".join(["t;x;F;", *(f"{k},5;{k % 7};{-k};" for k in range(80))]))
+    log = open_log(path, path.name)
+    assert log.names[:3] == ("t", "x", "F")
+    assert log.read({"t": ""})["t"][2] == 2.5

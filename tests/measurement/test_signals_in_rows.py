@@ -80,3 +80,12 @@ def test_a_folder_of_runs_without_header_is_refused_as_before(tmp_path):
         write_folder(tmp_path / "runs", run1=(T, Q, U), run2=(T, Q, U))
     with pytest.raises(ExperimentError, match="found tables of the same columns"):
         write_folder(tmp_path / "angles", angle1=(T, Q, U), angle2=(T, Q, U))
+
+
+@pytest.mark.parametrize("shared", ["{}_wall3", "wall3_{}", "a_{}_wall_3"])
+def test_words_that_all_files_share_name_no_signal(tmp_path, shared):
+    """The unit of the force stands before the name of the specimen."""
+    tables = {shared.format("displ"): (Q,), shared.format("load_kN"): (U,)}
+    log = write_folder(tmp_path / "wall", **tables)
+    assert log.names == ("displ", "load_kN")
+    np.testing.assert_allclose(log.read({"load_kN": ""})["load_kN"], U, rtol=1e-5, atol=1e-9)

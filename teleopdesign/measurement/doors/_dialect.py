@@ -159,7 +159,7 @@ def _separator(lines: Sequence[str]) -> tuple[str, bool]:
 
 def cells_of(line: str, separator: str) -> list[str]:
     """The cells of a line, without spaces around them."""
-    line = line.strip("\r\n")
+    line = without_end(line.strip("\r\n"), separator)
     if separator == " ":
         return line.split()
     if '"' in line:
@@ -168,6 +168,12 @@ def cells_of(line: str, separator: str) -> list[str]:
         ]
     cells = [c.strip() for c in line.split(separator)]
     return cells
+
+
+def without_end(line: str, separator: str) -> str:
+    """A line without a semicolon that ends it and separates nothing, as in a MATLAB matrix."""
+    end = line.rstrip()
+    return end[:-1] if separator != ";" and end.endswith(";") else line
 
 
 def is_value(cell: str, comma: bool) -> bool:

@@ -33,8 +33,9 @@ def open_folder(
     stems = [t.name.split(".")[0] for t in tables]
     names = stems if len(set(stems)) == len(stems) else [t.name for t in tables]
     logs = {n: open_one(t, f"{file}/{t.name}") for n, t in zip(names, tables, strict=True)}
-    if _are_signals(logs):
-        return _log_of_signals(logs)
+    signals = dict(zip(_without_shared_words(names), logs.values(), strict=True))
+    if _are_signals(signals):
+        return _log_of_signals(signals)
     _refuse_same_columns(logs, folder, [t.name for t in tables])
     time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
     seconds = {n: seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
@@ -72,8 +73,21 @@ def _are_signals(logs: Mapping[str, Log]) -> bool:
     plain = all(
         log.names == tuple(_names_with_numbers("column", len(log.names))) for log in logs.values()
     )
-    kinds = ("position", "actuator_force")
-    return plain and all(any(likeness(n, kind) > 0 for n in logs) for kind in kinds)
+    kinds = (("position",), ("actuator_force", "interaction_force"))
+    return plain and all(any(likeness(n, k) > 0 for n in logs for k in kind) for kind in kinds)
+
+
+def _without_shared_words(names: Sequence[str]) -> list[str]:
+    """Names without the words at their ends that all share: "force_kN_test3" -> "force_kN".
+
+    The names stay as they are where one would lose all its words, or two would be the same.
+    """
+    words = [name.split("_") for name in names]
+    for end in (0, -1):
+        while all(words) and len({w[end] for w in words}) == 1:
+            words = [w[1:] if end == 0 else w[:-1] for w in words]
+    shorter = ["_".join(w) for w in words]
+    return shorter if all(shorter) and len(set(shorter)) == len(names) > 1 else list(names)
 
 
 def _names_with_numbers(name: str, count: int) -> list[str]:

@@ -25,6 +25,7 @@ from ._dialect import (
     first_lines,
     is_value,
     open_bytes,
+    without_end,
 )
 from ._in_turn import turns_of, with_machines_apart
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
@@ -175,6 +176,7 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
         if line.lstrip().startswith(COMMENTS):
             continue
         bytes_read += len(line)
+        line = without_end(line, separator)
         count += 1
         if count % 100_000 == 0:
             refuse_size(count, file)
