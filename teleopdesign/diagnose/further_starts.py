@@ -24,12 +24,14 @@ def with_what_they_need(model: Model, models: Sequence[Model], prepared: Prepare
     for name, at in model.absent:
         body = model.body(at)
         for needed in body.effect(name).needs:
-            strength = body.effect(needed).strength
+            strength = body.effect(needed).strength if body.has(needed) else None
             full = f"{at}.{needed}.{strength}"
-            if strength is None or model.parameters[full].fixed:
+            # another effect of its role may stand in for it; a contact's needs no start
+            value = model.parameters.get(full)
+            if value is None or value.fixed:
                 continue
             size = prepared.scales[model.declared(full).quantity]
-            if model.parameters[full].value < PLAN.taken_away * size:
+            if value.value < PLAN.taken_away * size:
                 values[full] = size
     return [m.with_values(values) for m in models] if values else []
 

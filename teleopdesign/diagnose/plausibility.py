@@ -23,7 +23,7 @@ from ..realise.along_motion import measured_along
 from ..realise.traced import Along
 from .criteria import CRITERIA
 from .feedback_law import explain_computed
-from .prepare import Prepared, Stretch
+from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
 
 
@@ -83,7 +83,7 @@ def _explain_cancelled(
     stretches = [s for _, s in alongs]
     left = residuals(model, stretches)
     together = _half_range(
-        [_measured_force(s) - r for s, (r, _) in zip(stretches, left, strict=True)]
+        [measured_force(s) - r for s, (r, _) in zip(stretches, left, strict=True)]
     )
     if together - facts.acting > CRITERIA.stays * (half - facts.acting):
         return None
@@ -96,13 +96,6 @@ def _explain_cancelled(
 
 def _half_range(forces: Sequence[np.ndarray]) -> float:
     return 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
-
-
-def _measured_force(stretch: Stretch) -> np.ndarray:
-    """The low-passed measured force on the rows that count."""
-    m = stretch.motion
-    force: np.ndarray = m.lowpassed(m.at_rows(m.command) + m.interaction)[stretch.keep]
-    return force
 
 
 def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:

@@ -6,6 +6,7 @@ friction says little of it, and one linear step beside a bristle gives a spring 
 
 import numpy as np
 import pytest
+from cases import make_case, write_case
 from diagnose.made_records import write_made
 from diagnose.test_slip_elements import slip
 
@@ -108,3 +109,23 @@ def test_a_structure_that_yields_has_a_spring_and_an_element_that_slips(tmp_path
     assert fit.check_error < 0.01
     stiffness = fit.model.parameters["device.spring.stiffness"]
     assert abs(stiffness.value - 16.0) < 3.0 * stiffness.stderr < 1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "at", "before"),
+    [
+        ("contact_hardening", "environment", ()),
+        ("tip_friction", "slave", ("backlash",)),
+        ("maxwell_slip", "slave", ()),
+    ],
+)
+def test_an_effect_may_need_what_has_no_level_or_another_of_its_role(tmp_path, name, at, before):
+    """A contact has no level at its place, and a gap stands in for a compliance."""
+    rng = np.random.default_rng(3)
+    write_case(make_case(rng, "null", kind="teleoperator"), tmp_path / "case")
+    experiment = load_experiment(tmp_path / "case")
+    model = Model.from_experiment(experiment)
+    for one in (*before, name):
+        model = model.with_effect(one, at=at)
+    starts = with_what_they_need(model, [model], prepare(experiment).coarse)
+    assert starts == []  # nothing was taken away
