@@ -68,11 +68,11 @@ class Learnable:
     def __str__(self) -> str:
         left, rest = 100 * self.left, 100 * min(self.error, self.left)
         if not self.part > 0.0:
-            return f"{left:.2g} % left; the trees learned none of it from the motion"
+            return f"{left:.2g} % left; nothing was learned from the motion"
         where = f", {self.where}" if self.where else ""
         return (
             f"{left:.2g} % left; {100 * self.part:.2g} % follows from the motion{where}; "
-            f"the trees did not learn the other {rest:.2g} %"
+            f"{rest:.2g} % was not learned"
         )
 
 

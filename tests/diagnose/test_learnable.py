@@ -115,13 +115,10 @@ def test_an_answer_holds_what_could_be_learned_and_gives_it_back(diagnosis, expe
 
 def test_the_shares_of_the_sentence_add_up():
     learned = Learnable(left=0.094, error=0.054, alone=0.2, where="below 0.005 m/s")
-    sentence = (
-        "9.4 % left; 4 % follows from the motion, below 0.005 m/s; the trees did not learn the "
-        "other 5.4 %"
-    )
+    sentence = "9.4 % left; 4 % follows from the motion, below 0.005 m/s; 5.4 % was not learned"
     assert str(learned) == sentence
     nothing = Learnable(left=0.05, error=0.06, alone=0.2)
-    assert nothing.part == 0.0 and "learned none of it" in str(nothing)
+    assert nothing.part == 0.0 and "nothing was learned" in str(nothing)
     assert learnable_from(learnable_data(learned, None)) == learned
 
 
