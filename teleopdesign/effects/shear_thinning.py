@@ -5,8 +5,8 @@
 Lubricated gears, pre-stressed bearings and industrial robots have such friction: the friction of
 the lubricant film flattens as speed grows. From n = 1 on the law is `viscous`, at n = 0 `coulomb`.
 Speeds over more than a decade distinguish it from these two together. In seals and in contacts that
-stick, the friction of the film comes beside `coulomb`: a power law alone represents both. The
-effect looks like `actuator_saturation`.
+stick, the friction of the film comes beside `coulomb`; where nothing sticks, friction begins with
+the speed, and the law has all the force of both. The effect looks like `actuator_saturation`.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -47,6 +47,7 @@ EFFECT = Effect(
     absent={"drag": 0.0},
     counts_as=frozenset({"viscous"}),
     after=frozenset({"coulomb"}),
+    takes_over=frozenset({"coulomb", "viscous"}),
     plausible=plausible,
     source="power law of a lubricant in gears and bearings; Waiboer, Aarts, Jonker, Multibody "
     "Dynamics (ECCOMAS, Madrid 2005)",
