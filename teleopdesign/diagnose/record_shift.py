@@ -259,7 +259,9 @@ class RecordShift:
             late = "the force was measured, and the filter of its sensor has this effect"
             if not self.measured:
                 late = "no machine moves before its command, so the log is late"
-            return f"{text}{', at its bound' if self.at_bound else ''}; {late}"
+            if self.at_bound:
+                late = "at its bound: an effect that the model lacks may have this effect"
+            return f"{text}; {late}"
         if self.is_like_a_delay:
             return f"{text}; a delay of less than a row looks the same"
         return text

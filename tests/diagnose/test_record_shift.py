@@ -16,7 +16,7 @@ from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.record_shift import shifts_of
+from teleopdesign.diagnose.record_shift import RecordShift, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
@@ -416,3 +416,14 @@ def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
     (shift,) = [f for f in findings if f.topic == "time shift"]
     assert shift.concern == "note"
     assert "delay of the logger" in shift.sentence
+
+
+@pytest.mark.parametrize("measured", [False, True])
+@pytest.mark.parametrize(("late", "doubtful"), [(0.05, True), (0.02, False)])
+def test_a_log_that_is_late_by_the_most_that_is_searched_may_lack_an_effect(
+    late, doubtful, measured
+):
+    """A slip element, fitted by Dahl's law, seemed to be a log late by the whole 50 ms."""
+    shift = RecordShift("device", late, 1e-3, 1e-3, False, 0.05, measured)
+    assert ("an effect that the model lacks" in str(shift)) == doubtful
+    assert ("log is late" in str(shift)) == (not doubtful and not measured)
