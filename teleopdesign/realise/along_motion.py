@@ -105,7 +105,7 @@ def residual_along(
     if (held := body.tip_level()) != 0:
         structures = [make_rubbing_structure(effect, held) for effect in structures]
     level, along = level_along(body, along)
-    low, high = bound_friction(body, level, motion, along)
+    low, high = bound_friction(body, level, motion, along, needed)
     for effect in structures:
         needed = needed - _force(effect, along, (needed, low, high))
     friction = balance_friction(motion, needed, low, high)

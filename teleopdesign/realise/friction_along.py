@@ -32,9 +32,12 @@ def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
 
 
 def bound_friction(
-    body: Body, level: sp.Expr, motion: Motion, along: Along
+    body: Body, level: sp.Expr, motion: Motion, along: Along, needed: Traced
 ) -> tuple[Traced, Traced]:
-    """Least and largest friction at each row; they coincide where the motion is certain."""
+    """Least and largest friction at each row; they coincide where the motion is certain.
+
+    needed: force that friction balances; it tells where hidden states start
+    """
     n = len(motion.time)
     if level == 0:
         none = along.constant(np.zeros(n))
@@ -51,7 +54,9 @@ def bound_friction(
     backward = towards(-1.0) if level.has(_DIRECTION) else forward
     shapes = along.present(body.effects, "friction_shape")
     if shapes:
-        return shape_bounds(shapes[0], motion, along, forward=forward, backward=backward)
+        return shape_bounds(
+            shapes[0], motion, along, forward=forward, backward=backward, needed=needed
+        )
     return _bound_sliding(motion, forward, backward)
 
 

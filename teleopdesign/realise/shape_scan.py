@@ -1,5 +1,9 @@
 """Bounds of the friction of a shape along a measured motion: its hidden states, row by row.
 
+A record may begin while friction holds the body, or in the middle of a motion. So the states start
+where friction balances the force that the first rows need: all of them at the same part of what
+they have when the body slides.
+
 A shape has one state with an affine rate, or several states that each follow the motion up to a
 stop. Where the motion is not certain, friction lies between two bounds. Both have tangents.
 """
@@ -30,6 +34,10 @@ from .scan import (
 )
 from .traced import Along, Traced, in_rows, joined_rows
 
+#: periods of the bandwidth whose mean tells the force at the start: half a period is the shortest
+#: change that the band shows. Longer: states start where they are later
+AT_START = 0.5
+
 
 def _signals_of_shape(effect: Effect) -> list[str]:
     """Signals of a shape's laws, except those that every scan has."""
@@ -40,7 +48,7 @@ def _shape_module(
     effect: Effect,
     names: Names,
     *,
-    start: list[str],
+    start: tuple[list[str], list[str]],
     advance: list[str],
     slope: sp.Expr,
     weights: list[str],
@@ -49,7 +57,8 @@ def _shape_module(
 ) -> str:
     """Source of the bounds of a shape's friction, and of their tangents, at each sample.
 
-    start: code of the states at rest;  advance: code of their step over a sample
+    start: code of the states when the body slides, and of column j of their tangents
+    advance: code of their step over a sample
     slope: derivative of the force by position
     weights: code of the derivatives of the force by the states, once for all columns
     tangents: code of the step of column j of the states' tangents
@@ -64,9 +73,15 @@ def _shape_module(
 
 @jitted
 def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
-          forward, dforward, backward, dbackward, low, dlow, high, dhigh):
+          part, dpart, forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape
-{indent(start, 4)}
+    u_velocity = 1.0
+    u_level = max(forward[0] if part >= 0.0 else backward[0], 1e-12)
+{indent([f"u_{n} = {n}_[0]" for n in used], 4)}
+{indent(start[0], 4)}
+    for j in range(p):
+        dlevel = dforward[j, 0] if part >= 0.0 else dbackward[j, 0]
+{indent(start[1], 8)}
     for k in range(n):
         u_velocity = (position[k] - position[max(k - 1, 0)]) / h
         ahead = u_velocity >= 0.0
@@ -101,7 +116,21 @@ def _shape_source(effect: Effect) -> str:
     return _shape_module(
         effect,
         names,
-        start=["dz = np.zeros(p)", "z = 0.0"],
+        start=(
+            [
+                *assignments({"a": a, "b": b}, names),
+                *slope_lines("a", a, by, names),
+                *slope_lines("b", b, by, names),
+                "sliding = -b / a",
+                "z = part * sliding",
+                "dz = np.zeros(p)",
+            ],
+            [
+                f"da = a_level * dlevel + {slope_of_column(effect, 'a')}",
+                f"db = b_level * dlevel + {slope_of_column(effect, 'b')}",
+                "dz[j] = dpart[j] * sliding - part * (db + sliding * da) / a",
+            ],
+        ),
         advance=[
             *assignments({"a": a, "b": b}, names),
             *slope_lines("a", a, by, names),
@@ -141,7 +170,7 @@ def _stop_tangents(effect: Effect) -> list[str]:
     """Code of column j of each state's tangents; at a stop they are those of the stop."""
     lines: list[str] = []
     for i in range(len(effect.states)):
-        by_stop = f"s{i}_level * dlevel + {slope_of_column(effect, f's{i}')}"
+        by_stop = _slope_of_stop(effect, i)
         by_rate = f"r{i}_level * dlevel + {slope_of_column(effect, f'r{i}')}"
         lines += [
             f"if held_{i}:",
@@ -150,6 +179,11 @@ def _stop_tangents(effect: Effect) -> list[str]:
             f"    dz[{i}, j] += h * ({by_rate})",
         ]
     return lines
+
+
+def _slope_of_stop(effect: Effect, i: int) -> str:
+    """Code of column j of the tangent of a state's stop."""
+    return f"s{i}_level * dlevel + {slope_of_column(effect, f's{i}')}"
 
 
 @lru_cache(maxsize=64)
@@ -171,7 +205,18 @@ def _stopped_source(effect: Effect) -> str:
     return _shape_module(
         effect,
         names,
-        start=[f"dz = np.zeros(({m}, p))", *(f"z_{i} = 0.0" for i in range(m))],
+        start=(
+            [
+                *assignments(laws, names),
+                *slopes,
+                *(f"z_{i} = part * max(s{i}, 0.0)" for i in range(m)),
+                f"dz = np.zeros(({m}, p))",
+            ],
+            [
+                f"dz[{i}, j] = dpart[j] * s{i} + part * ({_slope_of_stop(effect, i)})"
+                for i in range(m)
+            ],
+        ),
         advance=[*assignments(laws, names), *slopes, *_stop_lines(m)],
         slope=sp.Add(
             *(sp.diff(law, z) * sp.diff(laws[f"r{i}"], velocity) for i, z in enumerate(states))
@@ -190,19 +235,27 @@ def _shape_of(effect: Effect) -> tuple[str, tuple[str, ...]]:
 
 
 def shape_bounds(
-    effect: Effect, motion: Motion, along: Along, *, forward: Traced, backward: Traced
+    effect: Effect,
+    motion: Motion,
+    along: Along,
+    *,
+    forward: Traced,
+    backward: Traced,
+    needed: Traced,
 ) -> tuple[Traced, Traced]:
     """Bounds of the friction of a shape, driven by the measured motion.
 
     It has one hidden state, or several that each follow the motion up to a separate stop.
     forward, backward: friction level in that direction
+    needed: force that friction balances
     The bounds coincide where the motion is certain. Elsewhere they lie to either side by the force
     that half a step of the position causes in the bristle, and never exceed the level.
     """
     source, used = _shape_of(effect)
     scan = compile_source(source, "shape")
     places, parameters = columns_of(effect, along.columns), len(along.columns)
-    moving = joined_rows(forward, backward, more=places[places >= 0].tolist())
+    part = _part_at_start(needed, forward, backward, motion)
+    moving = joined_rows(forward, backward, part, more=places[places >= 0].tolist())
     rows = list(range(parameters) if moving is None else moving)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
     dlow, dhigh = np.empty((len(rows), len(low))), np.empty((len(rows), len(low)))
@@ -215,6 +268,8 @@ def shape_bounds(
         motion.direction,
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in used],
+        float(part.value[0]),
+        part.tangent[rows, 0].copy(),
         forward.value,
         contiguous(forward.tangent[rows]),
         backward.value,
@@ -225,3 +280,19 @@ def shape_bounds(
         dhigh,
     )
     return in_rows(low, dlow, rows, parameters), in_rows(high, dhigh, rows, parameters)
+
+
+def _part_at_start(needed: Traced, forward: Traced, backward: Traced, motion: Motion) -> Traced:
+    """Friction that the first rows need, over its level in that direction: (1,), -1 to 1.
+
+    It is a mean over the time that the bandwidth resolves, against noise.
+    """
+    count = max(1, min(len(motion.time), round(AT_START / (motion.bandwidth * motion.sample_time))))
+    force, slopes = needed.value[:count].mean(), needed.tangent[:, :count].mean(axis=1)
+    there = forward if force >= 0.0 else backward
+    level = there.value[0]
+    if not abs(force) < level:  # it slides, or there is no friction
+        return Traced(np.array([np.sign(force)]), np.zeros((len(slopes), 1)), ())
+    part = force / level
+    tangent = (slopes - part * there.tangent[:, 0]) / level
+    return Traced(np.array([part]), tangent[:, None], joined_rows(needed, there))

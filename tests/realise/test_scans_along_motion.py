@@ -115,15 +115,43 @@ def test_elements_that_slip_in_turn_are_those_of_a_loop_by_hand():
     values |= {f"maxwell_slip.level_{i + 2}": p for i, p in enumerate(part)}
     motion = recorded()
     body = body_of("coulomb", "maxwell_slip", values=values | {"coulomb.level": level})
-    along = residual_along(body, motion).friction.value
+    whole = residual_along(body, motion)
+    along, needed = whole.friction.value, whole.residual.value + whole.friction.value
     most = np.array([level - sum(part), *part])
-    force, forces = np.zeros(4), []
+    at_start = round(0.5 / motion.bandwidth / motion.sample_time)
+    force, forces = most * np.clip(needed[:at_start].mean() / level, -1.0, 1.0), []
     for step in np.diff(motion.position, prepend=motion.position[0]):
         force = np.clip(force + np.array(stiffness) * step, -most, most)
         forces.append(force.sum())
     moving = motion.direction != 0
     np.testing.assert_allclose(along[moving], np.array(forces)[moving], atol=1e-9)
     assert np.ptp(along) > 1.5 * level and moving.mean() > 0.9
+
+
+@pytest.mark.parametrize(("shape", "left"), [("presliding", 0.02), ("maxwell_slip", 0.2)])
+@pytest.mark.parametrize("cut", [350, 600, 900, 1300])
+def test_a_record_that_begins_in_the_middle_has_the_friction_of_the_whole(shape, left, cut):
+    """It was zero there, and wrong by up to 0.5 N until the body slid.
+
+    What several elements have each, their sum does not tell.
+    """
+    values = {
+        "presliding": {"presliding.stiffness": 400.0},
+        "maxwell_slip": {
+            "maxwell_slip.stiffness_1": 150.0, "maxwell_slip.stiffness_2": 900.0,
+            "maxwell_slip.level_2": 0.2,
+        },
+    }[shape]  # fmt: skip
+    body = body_of("coulomb", shape, values=values | {"coulomb.level": 0.5})
+    t = np.arange(3000) / RATE
+    x = 1e-3 * np.sin(3.0 * t) + 4e-4 * np.sin(7.0 * t)  # it slides and turns
+    silent = residual_along(body, motion_along(x, 0.0 * x, resolution=1e-6))
+    # the command that leaves nothing
+    needed = -silent.residual.value
+    whole = residual_along(body, motion_along(x, needed, resolution=1e-6)).friction.value
+    part = residual_along(body, motion_along(x[cut:], needed[cut:], resolution=1e-6))
+    assert np.ptp(whole) > 0.7
+    assert np.abs(part.friction.value - whole[cut:])[100:-100].max() < left
 
 
 def test_where_a_reading_tells_no_motion_friction_is_what_balances_within_a_step():
@@ -155,7 +183,10 @@ def test_where_a_reading_tells_no_motion_elements_are_open_by_the_sum_of_their_s
     motion = replace(motion, direction=np.where(still, 0, 1))
     known = measured_along(body, motion)
     level = known.constant(np.full(n, 0.5))
-    low, high = shape_bounds(EFFECTS["maxwell_slip"], motion, known, forward=level, backward=level)
+    low, high = shape_bounds(
+        EFFECTS["maxwell_slip"], motion, known, forward=level, backward=level,
+        needed=known.constant(np.zeros(n)),
+    )  # fmt: skip
     middle = sum(stiffness) * (motion.position - motion.position[0])
     half = np.where(still, sum(stiffness) * step / 2, 0.0)
     np.testing.assert_allclose(high.value, np.minimum(middle + half, 0.5), atol=1e-9)
