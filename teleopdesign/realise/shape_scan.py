@@ -75,13 +75,7 @@ def _shape_module(
 def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
           part, dpart, forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape
-    u_velocity = 1.0
-    u_level = max(forward[0] if part >= 0.0 else backward[0], 1e-12)
-{indent([f"u_{n} = {n}_[0]" for n in used], 4)}
-{indent(start[0], 4)}
-    for j in range(p):
-        dlevel = dforward[j, 0] if part >= 0.0 else dbackward[j, 0]
-{indent(start[1], 8)}
+{indent(_start_lines(used, *start), 4)}
     for k in range(n):
         u_velocity = (position[k] - position[max(k - 1, 0)]) / h
         ahead = u_velocity >= 0.0
@@ -108,6 +102,19 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 """
 
 
+def _start_lines(used: list[str], states: list[str], tangents: list[str]) -> list[str]:
+    """Code that starts the states, and column j of their tangents, at a part of sliding."""
+    return [
+        "u_velocity = 1.0",
+        "u_level = max(forward[0] if part >= 0.0 else backward[0], 1e-12)",
+        *(f"u_{n} = {n}_[0]" for n in used),
+        *states,
+        "for j in range(p):",
+        "    dlevel = dforward[j, 0] if part >= 0.0 else dbackward[j, 0]",
+        *(f"    {line}" for line in tangents),
+    ]
+
+
 @lru_cache(maxsize=64)
 def _shape_source(effect: Effect) -> str:
     """Source for a shape with one state and an affine rate: exact over each sample."""
@@ -121,14 +128,16 @@ def _shape_source(effect: Effect) -> str:
                 *assignments({"a": a, "b": b}, names),
                 *slope_lines("a", a, by, names),
                 *slope_lines("b", b, by, names),
-                "sliding = -b / a",
+                # a state that nothing limits starts at zero
+                "sliding = -b / a if a != 0.0 else 0.0",
                 "z = part * sliding",
                 "dz = np.zeros(p)",
             ],
             [
                 f"da = a_level * dlevel + {slope_of_column(effect, 'a')}",
                 f"db = b_level * dlevel + {slope_of_column(effect, 'b')}",
-                "dz[j] = dpart[j] * sliding - part * (db + sliding * da) / a",
+                "dz[j] = dpart[j] * sliding",
+                "dz[j] -= part * (db + sliding * da) / a if a != 0.0 else 0.0",
             ],
         ),
         advance=[
