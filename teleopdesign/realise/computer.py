@@ -42,13 +42,18 @@ def sensor_signals(diagram: Diagram) -> set[str]:
 
 def _made_signals(diagram: Diagram) -> set[str]:
     """Outputs of the computer's controllers, and sums of nothing but these and outside signals."""
-    made = {c.output for c in diagram.controls if not c.analog}
+    made = {c.output for c in diagram.controls if not c.analog and not _is_plant(c, diagram)}
     known = made | set(diagram.outside)
     sums = [j for j in diagram.junctions if j.terms]
     while more := {j.output for j in sums if made & set(j.terms) and known >= set(j.terms)} - made:
         made |= more
         known |= more
     return made
+
+
+def _is_plant(block: Control, diagram: Diagram) -> bool:
+    """Whether the block is a plant that is code: a sensor measures its output."""
+    return block.is_code and block.output in set(diagram.measured) - set(diagram.outside)
 
 
 def computer_signals(diagram: Diagram) -> set[str]:
@@ -102,7 +107,7 @@ def held_signals(
 
 
 def _command_signals(diagram: Diagram) -> list[str]:
-    plants = (c for c in diagram.controls if c.is_code and c.output in sensor_signals(diagram))
+    plants = (c for c in diagram.controls if _is_plant(c, diagram))
     commands = [part.command for part in diagram.blocks if isinstance(part, Moving)]
     return [*commands, *(s for c in plants for s in (c.input, *c.others))]
 
