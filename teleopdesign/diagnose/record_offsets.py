@@ -52,7 +52,10 @@ class RecordOffsets:
     slopes: tuple[Array, ...]
 
     def cleared(self, parts: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
-        """Residuals (rows) and tangents (p, rows), orthogonal to the slopes of the offsets."""
+        """Residuals (rows) and tangents (p, rows), orthogonal to the slopes of the offsets.
+
+        Where a motion grew beyond all numbers, they stay as they are: every search rejects them.
+        """
         slopes = np.concatenate(self.slopes, axis=1)
         rows = np.vstack(
             [
@@ -60,7 +63,7 @@ class RecordOffsets:
                 np.concatenate([d for _, d in parts], axis=1),
             ]
         )
-        if len(slopes):
+        if len(slopes) and np.isfinite(slopes).all() and np.isfinite(rows).all():
             rows = rows - np.linalg.lstsq(slopes.T, rows.T, rcond=1e-10)[0].T @ slopes
         ends = np.cumsum([len(r) for r, _ in parts])[:-1]
         return [(part[0], part[1:]) for part in np.split(rows, ends, axis=1)]
@@ -88,8 +91,10 @@ def find_offsets(
                 slopes[k][i] = (residual(moved_body, motion, k) - here[k]) / step
         if turn == TURNS or not steps:
             break
-        whole = np.concatenate(slopes, axis=1)
-        change = np.linalg.lstsq(whole.T, np.concatenate(here), rcond=1e-10)[0]
+        whole, left = np.concatenate(slopes, axis=1), np.concatenate(here)
+        if not (np.isfinite(whole).all() and np.isfinite(left).all()):
+            break  # a motion grew beyond all numbers: no offset can be estimated from it
+        change = np.linalg.lstsq(whole.T, left, rcond=1e-10)[0]
         values = {n: v - float(c) for (n, v), c in zip(values.items(), change, strict=True)}
         if "friction_level" in values:
             values["friction_level"] = max(values["friction_level"], LEAST - 1.0)

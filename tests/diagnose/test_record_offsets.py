@@ -13,7 +13,7 @@ from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.record_offsets import follow_records, offset_groups
+from teleopdesign.diagnose.record_offsets import find_offsets, follow_records, offset_groups
 from teleopdesign.diagnose.residual import both_residuals, residuals
 
 BIAS, LEVEL = 0.15, 0.8  # N, and of the rod's friction
@@ -142,3 +142,21 @@ def test_experiment_files_declare_it(tmp_path):
     experiment = td.load_experiment(tmp_path)
     assert experiment.check_records[0].offset_names == {"bias", "friction_level"}
     assert experiment.fit_records[0].offset_names == frozenset()
+
+
+@pytest.mark.parametrize("beyond", ["from the start", "with the offset"])
+def test_a_motion_beyond_all_numbers_has_no_offset(rod, model, beyond):
+    """A candidate whose tip runs away left NaN; the least squares of its offset then failed."""
+    prepared = prepare(changed(rod, {"bias"}))
+    (stretch,) = prepared.of("check")
+    motion, rows = stretch.motion, len(stretch.keep)
+
+    def residual(body, there, k):
+        moved = not np.array_equal(there.interaction, motion.interaction)
+        return np.full(rows, np.nan if moved or beyond == "from the start" else 1.0)
+
+    offsets = find_offsets(model.body("device"), [motion], {"bias"}, residual)
+    assert offsets.values == {"bias": 0.0}
+    left = np.arange(float(rows))
+    ((cleared, tangent),) = offsets.cleared([(left, np.full((2, rows), np.inf))])
+    assert np.array_equal(cleared, left) and np.isinf(tangent).all()
