@@ -30,6 +30,7 @@ from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
 from .record_offsets import apply_record_offsets
 from .record_shift import shift_data
+from .repeats import repeats_data
 from .rung import Rung
 
 
@@ -67,6 +68,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "model_parameters": parameter_rows(diagnosis.after, _added_places(diagnosis)),
         "left_over_noise_floors": make_plain(diagnosis.left),
         **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
+        "repeats": repeats_data(diagnosis.repeats),
         "one_moment": _moment(diagnosis.moment),
         "on_all_records": make_plain(diagnosis.on_all_records),
         "at_bound": list(diagnosis.after.at_bound),

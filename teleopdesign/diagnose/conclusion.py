@@ -32,6 +32,7 @@ from .plausibility import implausible_effects
 from .prepare import Prepared
 from .probability import probable
 from .ranking import REFUSALS
+from .repeats import repeatability
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
 from .stand_in import check_error_on_all
@@ -71,13 +72,14 @@ def conclude(
     search.progress("what could be learned")
     trees = learnable(model, search.whole, beside=beside, seed=search.seed)
     last, whole = rungs[-1].fit, search.whole
+    repeats = repeatability(model, whole, beside=beside)
     floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
     if floor is not state.floor:  # the remaining error is noise, at all times
         moment = None
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,
-        verdict=verdict(rungs, floor, moment, trees=trees, criteria=criteria),
+        verdict=verdict(rungs, floor, moment, trees=trees, repeats=repeats, criteria=criteria),
         rungs=rungs,
         last=state.ranking,
         estimated=estimated,
@@ -86,6 +88,7 @@ def conclude(
         moment=moment,
         learnable=trees,
         near_reversals=error_near_reversals(model, search.whole),
+        repeats=repeats,
         left_out=search.plan.omissions(),
         undetermined=find_undetermined(rungs, search.whole),
         set_aside=_select_left_out(set_aside, rungs),

@@ -25,6 +25,7 @@ from .learnable import Learnable
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
 from .ranking import REFUSALS, Ranked
+from .repeats import Repeatability
 from .rung import Rung
 
 
@@ -53,14 +54,35 @@ def removed_share(errors: Sequence[float], floor: float, open_part: float = 1.0)
     return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 
 
-def open_to_others(trees: Learnable | None, after: Fit, *, criteria: Criteria = CRITERIA) -> float:
+def open_to_others(
+    trees: Learnable | None,
+    after: Fit,
+    repeats: Repeatability | None = None,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> float:
     """Part of the squares left by a fit that another effect could explain, 0 to 1.
 
-    Another effect would be a function of the motion. If a black box that predicts the force from
+    Another effect would be a function of the motion, so neither a residual that differs from pass
+    to pass of the same motion nor one that cannot be learned from the motion hides one; the smaller
+    part counts.
+    trees: errors of the black box;  repeats: of the fit's residual;  None: not known
+    """
+    repeating = 1.0
+    if repeats is not None and repeats.left > 0.0:
+        same = float(np.clip((repeats.repeating / repeats.left) ** 2, criteria.missed, 1.0))
+        repeating = 1.0 - repeats.share * (1.0 - same)
+    return min(repeating, _open_to_trees(trees, after, criteria))
+
+
+def _open_to_trees(trees: Learnable | None, after: Fit, criteria: Criteria) -> float:
+    """Part of the squares left by a fit that a black box could learn, or would not detect, 0 to 1.
+
+    If a black box that predicts the force from
     the motion alone leaves no more than the model, it would detect any force as large as the
     residual; if it leaves twice the squares, it would not. A residual that it would detect but
     cannot learn does not repeat, except for a part (`Criteria.missed`) that it may miss.
-    trees: errors of the black box; 1 is returned without one
+    returns: 1 without a black box
     """
     error = after.check_error
     if trees is None or not (error > 0.0 and trees.left > 0.0):
@@ -265,19 +287,20 @@ def verdict(
     moment: Moment | None = None,
     *,
     trees: Learnable | None = None,
+    repeats: Repeatability | None = None,
     criteria: Criteria = CRITERIA,
 ) -> str:
     """ "effects_missing", "model_adequate" or "undecided".
 
     moment: from `moment_above_noise`; a residual at one moment only is no missing physics
-    trees: without them, another effect could explain all that is left
+    trees, repeats: without both, another effect could explain all that is left
     """
     added = [r for r in rungs if r.added is not None]
     if not added:
         adequate = is_adequate(rungs[-1].fit, floor, criteria=criteria) or moment is not None
         return "model_adequate" if adequate else "undecided"
     last = rungs[-1].fit
-    open_part = open_to_others(trees, last, criteria=criteria)
+    open_part = open_to_others(trees, last, repeats, criteria=criteria)
     part = explained_share(rungs[0].fit, last, floor, open_part=open_part)
     if part < criteria.mostly or all(r.alternatives for r in added):
         return "undecided"

@@ -19,6 +19,7 @@ from .noise_floor import NoiseFloor
 from .one_moment import Moment
 from .prepare import Prepared
 from .ranking import Ranking
+from .repeats import Repeatability
 from .rung import Rung
 from .silent_records import why_silent
 
@@ -83,6 +84,7 @@ class Diagnosis(ByValue):
     named: accepted effects that are probable enough to be called missing
     learnable: how much of the residual a black box can learn; None without the extra `learn`
     near_reversals: the check error near reversals of the motion; None where there are none
+    repeats: how far the residual repeats with the motion; None where no motion is repeated
     left_out: parts of a full search that this one left out, in words
     undetermined: what the records cannot determine about the accepted effects
     set_aside: effects that were accepted first and removed again, because the final errors do not
@@ -107,6 +109,7 @@ class Diagnosis(ByValue):
     named: tuple[Candidate, ...] = ()
     learnable: Learnable | None = None
     near_reversals: NearReversals | None = None
+    repeats: Repeatability | None = None
     left_out: tuple[str, ...] = ()
     undetermined: tuple[Undetermined, ...] = ()
     set_aside: tuple[SetAside, ...] = ()
@@ -146,7 +149,8 @@ class Diagnosis(ByValue):
     @property
     def unlikely(self) -> bool:
         """Whether the verdict is undecided only because no effect is probable enough."""
-        of_rungs = verdict(self.rungs, self.floor, self.moment, trees=self.learnable)
+        trees, repeats = self.learnable, self.repeats
+        of_rungs = verdict(self.rungs, self.floor, self.moment, trees=trees, repeats=repeats)
         return self.verdict == "undecided" and of_rungs == "effects_missing"
 
     @property

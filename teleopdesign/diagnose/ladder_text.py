@@ -157,6 +157,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         lines.append(f"check error {near}")
     if diagnosis.learnable is not None:
         lines.append(f"black box: {diagnosis.learnable}")
+    if diagnosis.repeats is not None:
+        lines.append(f"repeats: {diagnosis.repeats}")
     lines += left_out_lines(diagnosis)
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]

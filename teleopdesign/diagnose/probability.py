@@ -106,7 +106,7 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
     ]
     steps.append((None, diagnosis.last))
     last, floor = diagnosis.after, diagnosis.floor_of_belief
-    open_part = open_to_others(diagnosis.learnable, last)
+    open_part = open_to_others(diagnosis.learnable, last, diagnosis.repeats)
     evidence = []
     for rung, ranking in steps:
         share = shares(ranking, rung)

@@ -50,6 +50,7 @@ class Page:
     left: float
     learnable: str
     near_reversals: str
+    repeats: str
     ladder: tuple[LadderRow, ...]
     added: tuple[AddedEffect, ...]
     views: tuple[BodyView, ...]
@@ -95,6 +96,7 @@ def page_of(
         left=diagnosis.left,
         learnable=sentence_of(diagnosis.learnable),
         near_reversals=sentence_of(diagnosis.near_reversals),
+        repeats=sentence_of(diagnosis.repeats),
         ladder=ladder,
         added=added_effects(diagnosis, rows),
         views=body_views(diagnosis, tuple(r.name for r in ladder)),

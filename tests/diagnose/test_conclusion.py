@@ -61,6 +61,7 @@ def concluded(monkeypatch):
         table = Table(error)
         stubs = {
             "learnable": lambda *_, **__: None,
+            "repeatability": lambda *_, **__: None,
             "find_undetermined": lambda *_: (),
             "check_error_on_all": lambda *_: None,
             "error_near_reversals": lambda model, _: model,  # to show of which model it is

@@ -21,6 +21,7 @@ from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
 from ..prepare import Prepared, prepare
 from ..ranking import Ranking
+from ..repeats import read_repeats
 from ..rung import Replaced, Rung, restore_replaced
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
@@ -92,6 +93,7 @@ def restore_diagnosis(
         on_all_records=content.get("on_all_records"),
         learnable=learnable_from(content),
         near_reversals=read_near_reversals(content),
+        repeats=read_repeats(content),
         named=tuple(c for c in steps.added if c is not None and c.key in _named_effects(content)),
         open=tuple(
             OpenQuestion(added, tuple((c, evaluate_fit(m, prepared)) for c, m in others))

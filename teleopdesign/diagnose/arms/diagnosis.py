@@ -175,6 +175,8 @@ class ArmDiagnosis(ByValue):
             lines.append(f"  check error {near}")
         if diagnosis.learnable is not None:
             lines.append(f"  black box: {diagnosis.learnable}")
+        if diagnosis.repeats is not None:
+            lines.append(f"  repeats: {diagnosis.repeats}")
         if diagnosis.more_is_missing:
             lines += [f"  {line}" for line in left_out_lines(diagnosis)]
         return [*lines, *(f"  set aside: {one}" for one in diagnosis.set_aside)]

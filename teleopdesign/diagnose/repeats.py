@@ -1,0 +1,206 @@
+"""Repeatability: by how much the residual differs where a body makes the same motion again.
+
+A force that follows from the motion is the same again when the motion and its past are the same.
+So the part of a residual that differs from pass to pass is no force of the motion: it is noise, a
+change with time, or something that was not measured, and no effect of the motion explains it. Half
+of the squares of the difference of two passes are those of one pass. The rest of the residual
+repeats: there something is missing from the model, even if no candidate describes it.
+
+Residuals are compared, not forces: the model takes out what small differences of the two motions
+change. Where the model lacks a force that changes suddenly, such as at the end of a gap, such
+differences count as not repeated. So the part that repeats is known to be at least as stated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.signal import correlate
+
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..model import Model
+from .prepare import Prepared, Stretch, measured_force
+from .residual import residuals
+
+#: rms difference of two motions, of the position over that of the motion about its mean and of the
+#: velocity over the velocity, up to which they are the same. Passes of position-controlled machines
+#: differ by 0.0006 to 0.04, different parts of one multisine by 0.3 and more. A higher limit
+#: compares motions that differ: then more of the residual seems not to repeat
+SAME = 0.05
+#: periods of the bandwidth that a pass holds at least, and cycles of the motion: in a shorter pass
+#: the state of hidden parts, such as a bristle, may come from a different past
+PERIODS, CYCLES = 8.0, 1.0
+#: part of the rows that must be passed again for a statement: fewer do not stand for the records
+LEAST_SHARE = 0.1
+
+
+@dataclass(frozen=True)
+class Repeatability:
+    """Relative force errors on the rows whose motion is repeated, and their share of all rows.
+
+    error: part of the force that differs from one pass to another (rms of one pass)
+    left: error of the model on the same rows
+    share: part of the rows of all records, 0 to 1
+    """
+
+    error: float
+    left: float
+    share: float
+
+    @property
+    def repeating(self) -> float:
+        """Part of the model's error that is the same on each pass, at least."""
+        return float(np.sqrt(max(self.left**2 - self.error**2, 0.0)))
+
+    def __str__(self) -> str:
+        error, left, share = 100 * self.error, 100 * self.left, 100 * self.share
+        return (
+            f"{error:.2g} % of the force differs from pass to pass over the same motion "
+            f"({share:.0f} % of the rows); of {left:.2g} % left there, "
+            f"{100 * self.repeating:.2g} % repeats"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """Motion, residual and force of a stretch on the rows that count, which are evenly spaced.
+
+    body: its name, with the spacing of the rows (s): only courses that share both are compared
+    signals: positions and velocities (2 k, rows), of the body and of the joints beside it
+    weight: number of rows of the record that each row stands for
+    length: rows of a pass
+    """
+
+    body: tuple[str, float]
+    signals: Array
+    residual: Array
+    force: Array
+    weight: float
+    length: int
+
+
+def repeatability(
+    model: Model, prepared: Prepared, *, beside: Sequence[Sequence[Motion]] = ()
+) -> Repeatability | None:
+    """How far the residual of a model repeats; None where too little of a motion is repeated.
+
+    beside: of each stretch, the motions of an arm's other joints: they must repeat as well
+    """
+    courses = list(_list_courses(model, prepared, beside))
+    squares = np.zeros(3)
+    compared = whole = 0.0
+    for course in courses:
+        alike = [other for other in courses if other.body == course.body]
+        covered = np.zeros(len(course.force), dtype=bool)
+        for first in _list_starts(len(course.force), course.length):
+            here = slice(first, first + course.length)
+            residual, force = course.residual[here], course.force[here]
+            passes = [other.residual[there] for other, there in _find_again(course, here, alike)]
+            if not passes:
+                continue
+            apart = np.mean([np.sum((residual - again) ** 2) for again in passes])
+            squares += course.weight * np.array([apart, residual @ residual, force @ force])
+            covered[here] = True
+        whole += course.weight * len(covered)
+        compared += course.weight * float(covered.sum())
+    if not (whole and compared > LEAST_SHARE * whole and squares[2] > 0.0):
+        return None
+    error, left = np.sqrt(squares[:2] / squares[2] / (2.0, 1.0))
+    if not (np.isfinite(error) and np.isfinite(left)):
+        return None
+    return Repeatability(float(error), float(left), compared / whole)
+
+
+def repeats_data(repeats: Repeatability | None) -> dict[str, Any] | None:
+    """The entry `repeats` of an answer."""
+    if repeats is None:
+        return None
+    return {"error": repeats.error, "left": repeats.left, "share": repeats.share}
+
+
+def read_repeats(content: Mapping[str, Any]) -> Repeatability | None:
+    """The repeatability of an answer that `repeats_data` wrote; None: there is none."""
+    entry = content.get("repeats")
+    if entry is None:
+        return None
+    return Repeatability(float(entry["error"]), float(entry["left"]), float(entry["share"]))
+
+
+def _list_courses(
+    model: Model, prepared: Prepared, beside: Sequence[Sequence[Motion]]
+) -> Iterator[_Course]:
+    stretches = prepared.stretches
+    left = [residual for residual, _ in residuals(model, stretches)]
+    for i, (s, residual) in enumerate(zip(stretches, left, strict=True)):
+        strides = np.unique(np.diff(s.keep))
+        if len(strides) != 1:
+            continue
+        spacing = float(strides[0]) * s.motion.sample_time
+        motions = (s.motion, *(beside[i] if beside else ()))
+        signals = np.array([x[s.keep] for m in motions for x in (m.position, m.velocity)])
+        seconds = max(PERIODS / prepared.bandwidth, CYCLES * _cycle(s))
+        length = int(min(seconds / spacing, len(s.keep) // 2))
+        if length < 2:
+            continue
+        # as many digits as a clock has: spacings that agree to rounding are the same
+        body = (s.motion.body, float(f"{spacing:.9g}"))
+        yield _Course(body, signals, residual, measured_force(s), s.weight, length)
+
+
+def _cycle(stretch: Stretch) -> float:
+    """Mean time (s) from one reversal to the next in the same direction; inf: no such time."""
+    direction = stretch.motion.direction[stretch.motion.direction != 0]
+    reversals = np.count_nonzero(np.diff(direction))
+    seconds = len(stretch.motion.time) * stretch.motion.sample_time
+    return 2.0 * seconds / reversals if reversals else float("inf")
+
+
+def _list_starts(rows: int, length: int) -> list[int]:
+    """First rows of passes that cover all rows, each of them at most twice."""
+    count = -(-rows // length)
+    return [round(k) for k in np.linspace(0, rows - length, count)]
+
+
+def _find_again(
+    course: _Course, here: slice, others: Sequence[_Course]
+) -> Iterator[tuple[_Course, slice]]:
+    """Each course and its rows that repeat the motion of these rows, where they do it best.
+
+    Rows that overlap with the pass itself do not count.
+    """
+    for other in others:
+        if other.signals.shape[1] < course.length:
+            continue
+        apart = _differences(course.signals[:, here], other.signals)
+        if other is course:
+            apart[max(here.start - course.length + 1, 0) : here.stop] = np.inf
+        alike = np.flatnonzero(apart < SAME**2)
+        for near in np.split(alike, 1 + np.flatnonzero(np.diff(alike) > 1)):
+            if len(near):
+                first = int(near[np.argmin(apart[near])])
+                yield other, slice(first, first + course.length)
+
+
+def _differences(signals: Array, others: Array) -> Array:
+    """Mean square difference of a pass and each place of a course, over the pass's motion.
+
+    signals: (2 k, length), positions and velocities in turn;  others: (2 k, rows)
+    returns: (rows - length + 1,); inf where a signal of the pass does not change
+    """
+    length = signals.shape[1]
+    apart = np.zeros(others.shape[1] - length + 1)
+    for i, (mine, theirs) in enumerate(zip(signals, others, strict=True)):
+        mean = float(mine.mean())
+        here, there = mine - mean, theirs - mean
+        sums = np.concatenate([[0.0], np.cumsum(there**2)])
+        crossed = correlate(there, here, mode="valid", method="fft")
+        squares = here @ here + sums[length:] - sums[:-length] - 2.0 * crossed
+        size = float(here @ here) if i % 2 == 0 else float(mine @ mine)
+        if not size > 0.0:
+            return np.full_like(apart, np.inf)
+        apart += np.maximum(squares, 0.0) / size
+    return apart / len(signals)

@@ -1,0 +1,132 @@
+"""The residual where a motion is made again: noise differs from pass to pass, no missing force."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.made_records import write_made
+
+from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose.decision import open_to_others
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.repeats import (
+    Repeatability,
+    read_repeats,
+    repeatability,
+    repeats_data,
+)
+
+NOISE, EXACT = 0.3, 1e-6  # N m, in each reading of the torque
+PERIOD = 2.5  # s
+LATER = 30.0  # s, of the check record
+
+
+def again(t):
+    """A path that begins anew after each period."""
+    w = 2 * np.pi / PERIOD
+    return 0.5 * np.sin(w * t) + 0.2 * np.sin(2 * w * t + 1.0) + 0.1 * np.cos(5 * w * t)
+
+
+def never(t):
+    return 0.5 * np.sin(2.6 * t) + 0.3 * np.sin(0.7 * t * (1 + 0.1 * t)) + 0.1 * np.cos(9.1 * t)
+
+
+def fitted(folder, path, force=lambda t, x, v: 0.0 * t, noise=NOISE):
+    """The model of a body with friction, fitted to records that also have this force."""
+    write_made(
+        folder / "made",
+        {"fit": [(15.0, path)], "check": [(10.0, lambda t: path(t + LATER))]},
+        lambda t, x, v: 2.0 * np.sign(v) + 1.0 * v + force(t, x, v),
+        effects="coulomb = {}\nviscous = {}", step=1e-5, noise=noise, rate=400,
+    )  # fmt: skip
+    experiment = load_experiment(folder / "made")
+    prepared = prepare(experiment)
+    fit = estimate(Model.from_experiment(experiment), prepared)
+    return fit, prepared, repeatability(fit.model, prepared)
+
+
+def test_what_noise_adds_does_not_repeat(tmp_path):
+    """Without noise the filter of the readings leaves 0.9 % of the force, on each pass the same."""
+    fit, _, repeats = fitted(tmp_path / "noisy", again)
+    *_, exact = fitted(tmp_path / "exact", again, noise=EXACT)
+    assert repeats.share > 0.9
+    assert repeats.left == pytest.approx(fit.check_error, rel=0.2)
+    assert exact.error < 0.1 * exact.left
+    assert repeats.error == pytest.approx(np.sqrt(repeats.left**2 - exact.left**2), rel=0.15)
+
+
+def test_a_missing_force_of_the_place_repeats_and_the_noise_beside_it_does_not(tmp_path):
+    def wave(t, x, v):
+        return 0.4 * np.sin(12.0 * x)
+
+    _, _, alone = fitted(tmp_path / "alone", again)
+    fit, prepared, repeats = fitted(tmp_path / "beside", again, wave)
+    assert repeats.left > 2.0 * alone.left
+    assert repeats.error == pytest.approx(alone.error, rel=0.15)
+    # without noise all that is left is the missing force
+    *_, clean = fitted(tmp_path / "clean", again, wave, noise=EXACT)
+    assert repeats.repeating == pytest.approx(clean.left, rel=0.05)
+    assert clean.error < 0.1 * clean.left
+
+
+def test_a_force_that_drifts_differs_from_pass_to_pass(tmp_path):
+    *_, steady = fitted(tmp_path / "steady", again, noise=EXACT)
+    *_, drifting = fitted(tmp_path / "drifting", again, lambda t, x, v: 0.05 * t, noise=EXACT)
+    assert steady.error < 0.1 * steady.left
+    assert drifting.error > 0.5 * drifting.left
+
+
+def test_a_motion_that_is_never_made_again_says_nothing(tmp_path):
+    assert fitted(tmp_path, never)[2] is None
+
+
+def test_a_joint_beside_that_moves_otherwise_ends_the_comparison(tmp_path):
+    fit, prepared, repeats = fitted(tmp_path, again)
+    motions = [s.motion for s in prepared.stretches]
+    same = repeatability(fit.model, prepared, beside=[[m] for m in motions])
+    assert same == repeats
+    paths = [never(m.time + k * LATER) for k, m in enumerate(motions)]
+    others = [
+        replace(m, position=x, velocity=np.gradient(x, m.sample_time))
+        for m, x in zip(motions, paths, strict=True)
+    ]
+    assert repeatability(fit.model, prepared, beside=[[m] for m in others]) is None
+
+
+@pytest.mark.parametrize("way", [-1.0, 1e3])
+def test_axis_and_unit_do_not_matter(tmp_path, way):
+    fit, prepared, repeats = fitted(tmp_path, again)
+    motions = [s.motion for s in prepared.stretches]
+    turned = [replace(m, position=way * m.position, velocity=way * m.velocity) for m in motions]
+    assert repeatability(fit.model, prepared, beside=[[m] for m in turned]) == repeats
+
+
+def test_a_repeatability_returns_from_an_answer():
+    repeats = Repeatability(error=0.02, left=0.03, share=0.6)
+    content = json.loads(json.dumps({"repeats": repeats_data(repeats)}))
+    assert read_repeats(content) == repeats
+    assert read_repeats({}) is read_repeats({"repeats": repeats_data(None)}) is None
+    assert str(repeats) == (
+        "2 % of the force differs from pass to pass over the same motion (60 % of the rows); "
+        "of 3 % left there, 2.2 % repeats"
+    )
+
+
+@pytest.mark.parametrize(
+    ("error", "share", "part"),
+    [
+        (0.3, 1.0, 0.5),  # nothing repeats: half may be missed, as by a black box
+        (0.3, 0.4, 1 - 0.4 * 0.5),  # only where the motion was made again
+        (0.3 * 0.3**0.5, 1.0, 0.7),
+        (0.0, 1.0, 1.0),
+    ],
+)
+def test_what_does_not_repeat_hides_no_other_effect(error, share, part):
+    class After:
+        check_error = 0.3
+
+    repeats = Repeatability(error=error, left=0.3, share=share)
+    assert open_to_others(None, After, repeats) == pytest.approx(part)
+    assert open_to_others(None, After) == 1.0
