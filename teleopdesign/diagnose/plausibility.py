@@ -146,6 +146,7 @@ def record_facts(
         sweep=max(float(np.ptp(m.position)) for m in motions),
         step=min(float(s.motion.step) for s in stretches),
         stroke=_stroke(stretches),
+        reversals=sum(_count_reversals(s) for s in stretches),
         force=float(max(measured)),
         acting=float(max(measured)) + _force_of_motion(numbers["inertia"], stretches),
         speed=speed,
@@ -187,6 +188,12 @@ def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
     return [np.concatenate(positions) for positions in groups.values()]
 
 
+def _count_reversals(stretch: Stretch) -> int:
+    """Number of reversals of a stretch; rows without a sure direction do not count."""
+    directions = stretch.motion.direction
+    return int(np.count_nonzero(np.diff(directions[directions != 0])))
+
+
 def _stroke(stretches: Sequence[Stretch]) -> float:
     """Mean time of motion one way (s), over all stretches; inf where there is one direction."""
     moving, runs, ways = 0.0, 0, set()
@@ -195,6 +202,6 @@ def _stroke(stretches: Sequence[Stretch]) -> float:
         if not len(directions):
             continue
         moving += len(directions) * s.motion.sample_time
-        runs += 1 + int(np.count_nonzero(np.diff(directions)))
+        runs += 1 + _count_reversals(s)
         ways |= set(directions.tolist())
     return moving / runs if len(ways) > 1 else float("inf")

@@ -37,6 +37,8 @@ ALIKE = 0.9
 #: occurs twice. With less travel, any slow force of the position fits; a higher limit would exclude
 #: long true periods
 REPEATS = 1.5
+#: reversals from which a loop of hysteresis closes: at the second one the body has come and gone
+LOOP = 2
 #: steps of the readings in the shortest period that they can show: two, as for any sampled signal
 READ = 2.0
 #: a function of the place whose deviation from a straight line is below this part of its variation
@@ -57,6 +59,7 @@ class RecordFacts:
         bristle, begin anew at each stretch
     step: of the position readings
     stroke: mean time of motion between two reversals (s); inf: the motion never reverses
+    reversals: of all stretches together
     force: largest size of the measured force, actuator and interaction together
     acting: `force` plus the largest force of the inertia and of an arm's links: no sensor measures
         the forces on a body that swings or coasts
@@ -82,6 +85,7 @@ class RecordFacts:
     acting: float = float("inf")
     stuck: float = float("inf")
     resolved: float = 0.0
+    reversals: float = float("inf")
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
 
@@ -173,6 +177,11 @@ def slip_is_observable(subject: str, ways: Sequence[float], facts: RecordFacts) 
         return (
             f"{subject} deflects once only where the motion never reverses: the record shows no "
             "loop, and the effect imitates the beginning of friction in a record"
+        )
+    if facts.reversals < LOOP:
+        return (
+            f"{subject} deflects back once only where the motion reverses once: no loop closes, "
+            "and the effect imitates a force of the position"
         )
     # a deflection of less than half a step is never read
     if any(0.5 * facts.step < way < facts.sweep for way in ways):

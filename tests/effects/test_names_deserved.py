@@ -117,6 +117,17 @@ def test_where_the_motion_never_turns_round_no_loop_and_no_cycle_is_there():
     )
 
 
+@pytest.mark.parametrize("name", ["presliding", "maxwell_slip"])
+def test_one_reversal_closes_no_loop(name):
+    """A slow sweep of a wrist and part of its way back got two false names of friction."""
+    bristles = {f"stiffness_{k}": 10.0 for k in range(1, 5)} | {
+        f"level_{k}": 0.1 for k in (2, 3, 4)
+    }
+    values = bristles if name == "maxwell_slip" else {"stiffness": 10.0}
+    assert "no loop closes" in objection_to(name, "plausible", values, reversals=1)
+    assert objection_to(name, "plausible", values, reversals=2) is None
+
+
 def test_nothing_is_reported_where_nothing_can_be_held_against_the_records():
     assert objection_to("presliding", "plausible", {"stiffness": 0.0}) is None, (
         "there is no bristle"
