@@ -68,17 +68,15 @@ def conclude(
             steady = steady[: steady.index(rung)]
         if len(steady) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
-    model = rungs[-1].fit.model
-    search.progress("what could be learned")
-    trees = learnable(model, search.whole, beside=beside, seed=search.seed)
     last, whole = rungs[-1].fit, search.whole
-    repeats = repeatability(model, whole, beside=beside)
+    search.progress("what could be learned")
+    trees = learnable(last.model, whole, beside=beside, seed=search.seed)
+    repeats = repeatability(last.model, whole, beside=beside)
     floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
-    if floor is not state.floor:  # the remaining error is noise, at all times
-        moment = None
+    moment = moment if floor is state.floor else None  # else all that is left is noise
     diagnosis = Diagnosis(
         experiment=search.experiment,
-        prepared=search.whole,
+        prepared=whole,
         verdict=verdict(rungs, floor, moment, trees=trees, repeats=repeats, criteria=criteria),
         rungs=rungs,
         last=state.ranking,
@@ -87,10 +85,10 @@ def conclude(
         sensor_floor=None if floor is state.floor else state.floor,
         moment=moment,
         learnable=trees,
-        near_reversals=error_near_reversals(model, search.whole),
+        near_reversals=error_near_reversals(last.model, whole),
         repeats=repeats,
         left_out=search.plan.omissions(),
-        undetermined=find_undetermined(rungs, search.whole),
+        undetermined=find_undetermined(rungs, whole),
         set_aside=_select_left_out(set_aside, rungs),
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
     )

@@ -123,6 +123,18 @@ class Criteria:
     #: tenth: its own errors add as much. Lower: a slow log's scatter is called missing physics;
     #: higher: physics is called scatter
     repeats: float = 0.1
+    #: rms difference of two motions, of the position over that of the motion about its mean and of
+    #: the velocity over the velocity, up to which they are one motion that is made again. Passes of
+    #: position-controlled machines differ by 0.0006 to 0.04, different parts of one multisine by
+    #: 0.3 and more. Higher: motions that differ are compared, and more seems not to repeat
+    one_motion: float = 0.05
+    #: periods of the bandwidth that a pass holds at least, beside one cycle of the motion. Lower:
+    #: the state of hidden parts, such as a bristle, comes from another past; higher: short logs
+    #: have no two passes
+    pass_periods: float = 8.0
+    #: part of the rows that must be passed again for a statement on what repeats: fewer do not
+    #: stand for the records
+    passed_again: float = 0.1
     #: check error over fit error from which the text says that the records differ: 0.7 to 1.6 on
     #: nine recordings of real machines. Lower: said of chance; higher: of other machines only
     differ: float = 3.0

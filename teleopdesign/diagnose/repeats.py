@@ -23,19 +23,9 @@ from scipy.signal import correlate
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
+from .criteria import CRITERIA
 from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
-
-#: rms difference of two motions, of the position over that of the motion about its mean and of the
-#: velocity over the velocity, up to which they are the same. Passes of position-controlled machines
-#: differ by 0.0006 to 0.04, different parts of one multisine by 0.3 and more. A higher limit
-#: compares motions that differ: then more of the residual seems not to repeat
-SAME = 0.05
-#: periods of the bandwidth that a pass holds at least, and cycles of the motion: in a shorter pass
-#: the state of hidden parts, such as a bristle, may come from a different past
-PERIODS, CYCLES = 8.0, 1.0
-#: part of the rows that must be passed again for a statement: fewer do not stand for the records
-LEAST_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -107,7 +97,7 @@ def repeatability(
             covered[here] = True
         whole += course.weight * len(covered)
         compared += course.weight * float(covered.sum())
-    if not (whole and compared > LEAST_SHARE * whole and squares[2] > 0.0):
+    if not (whole and compared > CRITERIA.passed_again * whole and squares[2] > 0.0):
         return None
     error, left = np.sqrt(squares[:2] / squares[2] / (2.0, 1.0))
     if not (np.isfinite(error) and np.isfinite(left)):
@@ -142,7 +132,7 @@ def _list_courses(
         spacing = float(strides[0]) * s.motion.sample_time
         motions = (s.motion, *(beside[i] if beside else ()))
         signals = np.array([x[s.keep] for m in motions for x in (m.position, m.velocity)])
-        seconds = max(PERIODS / prepared.bandwidth, CYCLES * _cycle(s))
+        seconds = max(CRITERIA.pass_periods / prepared.bandwidth, _cycle(s))
         length = int(min(seconds / spacing, len(s.keep) // 2))
         if length < 2:
             continue
@@ -178,7 +168,7 @@ def _find_again(
         apart = _differences(course.signals[:, here], other.signals)
         if other is course:
             apart[max(here.start - course.length + 1, 0) : here.stop] = np.inf
-        alike = np.flatnonzero(apart < SAME**2)
+        alike = np.flatnonzero(apart < CRITERIA.one_motion**2)
         for near in np.split(alike, 1 + np.flatnonzero(np.diff(alike) > 1)):
             if len(near):
                 first = int(near[np.argmin(apart[near])])

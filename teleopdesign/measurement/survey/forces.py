@@ -33,6 +33,7 @@ from .copies import pulls_back
 from .derivative import is_velocity, unwrap_column, wrap_of
 from .force_candidates import is_speed, possible_forces
 from .force_entry import describe_force, force_to_si
+from .scatter import state_scatter
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
 #: with the name or unit of a force
@@ -76,6 +77,7 @@ def describe_forces(
     _warn_of_size(survey, force, x, h)
     if measured:
         survey.channels["actuator_force"]["measured"] = True
+    state_scatter(survey, force)
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
     # in the unit of the log: the balance of forces does not depend on the scale of the motion
