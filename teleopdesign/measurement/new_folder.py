@@ -18,8 +18,10 @@ from .first_guess import FirstGuess, guess_from
 from .motion import SHORTEST as SEGMENT
 from .record import read_record
 from .record_clock import FEWEST, SHORTEST
+from .reversals import runs_one_way
 from .survey import Survey, spans_of
 from .survey.content import sample_time_of
+from .survey.derivative import unwrap_column, wrap_of
 from .toml_table import Table
 from .toml_text import comment_text, inline_text, string_text
 
@@ -135,16 +137,18 @@ def _records(
 
 
 def _why_whole(survey: Survey, parts: FitAndCheck) -> str:
-    """Why a log is not cut into these parts; "" where it may be: both are long enough and move."""
+    """Why a log is not cut into these parts; "" where both are long enough and reverse."""
     if min(_lasting(survey, *part) for part in parts) < _shortest(survey):
         return "too short to be cut into"
     x = survey.columns[survey.channels["position"]["column"]].values
-    step = reading_step(x)
+    step, unwrapped = reading_step(x), unwrap_column(x, wrap_of(x))
     for begin, end in parts:
-        part = x[(survey.time >= begin) & (survey.time < end)]
-        if len(part) and rests(part, step):
-            rest = f"from {begin:g} to {min(end, survey.duration):.4g} s"
-            return f"the body rests {rest}, so that the log is not cut into"
+        inside = (survey.time >= begin) & (survey.time < end)
+        when = f"from {begin:g} to {min(end, survey.duration):.4g} s"
+        if inside.any() and rests(x[inside], step):
+            return f"the body rests {when}, so that the log is not cut into"
+        if inside.any() and runs_one_way(unwrapped[inside]):
+            return f"the body moves one way {when}, so that the log is not cut into"
     return ""
 
 

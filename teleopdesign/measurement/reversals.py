@@ -9,6 +9,17 @@ from numpy.typing import NDArray
 
 from .filtering import Array
 
+#: part of its travel by which a body comes back at most where it runs one way: noise of readings
+#: and overshoot at an end. More: a record with one short return counts as one way
+BACK = 0.05
+
+
+def runs_one_way(position: Array) -> bool:
+    """Whether a body hardly comes back on its way; position: (n,), without leaps of whole turns."""
+    forth = position - np.minimum.accumulate(position)  # how far it is ahead of where it was
+    back = np.maximum.accumulate(position) - position
+    return bool(min(forth.max(), back.max()) <= BACK * np.ptp(position))
+
 
 @dataclass(frozen=True)
 class SinceReversal:

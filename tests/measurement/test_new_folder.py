@@ -212,6 +212,22 @@ def test_a_log_is_not_cut_where_the_body_rests_in_a_part(dither, tmp_path):
     assert any("the body rests from 3.594 to 5.99 s" in note for note in survey.notes)
 
 
+@pytest.mark.parametrize(("sweeps", "uses"), [(1, ["fit"]), (4, ["fit", "check"])])
+def test_a_log_is_not_cut_where_a_part_runs_one_way(sweeps, uses, tmp_path):
+    """Of one sweep forth and back, the check record was a part of the way back."""
+    t = 0.01 * np.arange(2400)
+    phase = np.mod(sweeps * t / t[-1], 1.0)
+    angle = 3.0 * np.minimum(2.0 * phase, 2.0 - 2.0 * phase)
+    torque = 0.1 * np.sign(np.gradient(angle)) + 0.05 * np.sin(2.0 * angle)
+    log = tmp_path / "sweep.csv"
+    rows = np.column_stack([t, np.round(angle, 4), torque])
+    np.savetxt(log, rows, delimiter=",", header="t_s,angle_rad,torque_Nm", comments="")
+    survey = survey_of(log)
+    records = written(make_folder(survey, [log], tmp_path / "made", title="sweep"))["records"]
+    assert [r["use"] for r in records] == uses
+    assert any("the body moves one way from" in note for note in survey.notes) == (sweeps == 1)
+
+
 @pytest.mark.parametrize(("lengths", "uses"), [((1.3, 0.4, 0.5), 1), ((1.3, 0.4, 1.2), 2)])
 def test_pauses_and_short_trials_do_not_make_a_part_long_enough(lengths, uses, tmp_path):
     """Of three trials in 4 s, the check record held 0.97 s: it was written, and then refused."""
