@@ -15,6 +15,7 @@ from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
+from ..diagnose.repeats import Repeatability, repeatability
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
@@ -59,7 +60,21 @@ def check_excitation(
         if mine or never:
             findings.append(_summary(mine, never, poor, base, floor.value, place))
             findings += _look_alikes(mine, place)
+    if (repeats := repeatability(base.model, prepared)) is not None:
+        findings.append(_describe_passes(repeats))
     return tuple(findings)
+
+
+def _describe_passes(repeats: Repeatability) -> Finding:
+    """A finding on what no model can explain, because it differs over the same motion."""
+    return Finding(
+        "what repeats",
+        "fine",
+        f"a motion is made again in {100 * repeats.share:.0f} % of the rows. There "
+        f"{100 * repeats.error:.2g} % of the force differs from pass to pass, which no model of "
+        f"the motion explains; your model leaves {100 * repeats.left:.2g} %.",
+        {"error": repeats.error, "left": repeats.left, "share": repeats.share},
+    )
 
 
 def _drop_folds(prepared: Prepared) -> Prepared:
