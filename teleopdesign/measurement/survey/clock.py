@@ -112,6 +112,7 @@ def time_column(
         if not scores:
             guesses["sample_rate"] = (
                 "no column rises as a time does: the sample rate is assumed to be 1000 Hz"
+                f"{_perhaps_coarse(raw)}"
             )
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
@@ -202,6 +203,15 @@ def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
         return False
     steps = np.diff(values[np.isfinite(values)])
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
+
+
+def _perhaps_coarse(raw: Mapping[str, Array]) -> str:
+    """Which column may be a time in which most rows share a stamp, as the end of a guess."""
+    for name, values in raw.items():
+        steps = np.diff(values[np.isfinite(values)])
+        if np.all(steps >= 0) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES:
+            return f"; {name!r} never falls and may be a coarse time"
+    return ""
 
 
 def _is_unit_of_time(name: str) -> bool:
