@@ -65,6 +65,11 @@ def _name(prepared: Prepared, body: str, quantity: str) -> str:
     return channel_label(prepared.experiment, f"{body}.{quantity}")
 
 
+def _is_alone(prepared: Prepared, balance: ForceBalance) -> bool:
+    """Whether no force of a hand on this body is in the log."""
+    return f"{balance.body}.interaction_force" not in prepared.experiment.channels
+
+
 def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     """A finding where friction drives or inertia is negative: a channel has the wrong sign."""
     inertia = balance.strengths["inertia"]
@@ -92,8 +97,8 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     evidence = f"the inertia is {inertia.value:.3g} {unit}{drives}"
     if against and not turned:
         evidence = f"the force that balances {lead} is {balance.gain.value:.3g} times it"
-    alone = f"{balance.body}.interaction_force" not in prepared.experiment.channels
-    hand = " A hand that moves the device and is not logged looks the same." if alone else ""
+    looks = " A hand that moves the device and is not logged looks the same."
+    hand = looks if _is_alone(prepared, balance) else ""
     yield Finding(
         "signs",
         "warning",
@@ -253,7 +258,7 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     elif less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
         concern, remedy = "note", "columns are shifted, or something between them is compliant"
-    elif less > CLOCK.latest and balance.left > EXPLAINED:
+    elif _is_alone(prepared, balance) and less > CLOCK.latest and balance.left > EXPLAINED:
         concern, remedy = "note", "hardly any logger is so late, and a hand that is not logged, or "
         remedy += "a force that the model lacks, may look the same: no delay before you know it"
     elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:
