@@ -62,3 +62,17 @@ def test_the_speeds_and_errors_of_two_axes_without_names_are_no_forces():
     assert survey.channels["actuator_force"]["column"] == "current [A]"
     assert survey.unused["column 7"].startswith("a velocity by its signs")
     assert survey.unused["column 2"].startswith("another position: 'column")
+
+
+def test_the_error_of_a_speed_loop_is_no_force():
+    """A loop of speed: set value, reading, error, and the sum of the errors, no header."""
+    t = 0.02 * np.arange(300)
+    reading = 0.3 + 0.25 * np.random.default_rng(7).standard_normal(len(t))
+    error = np.round(12.0 - 3.4 * reading, 4)
+    signals = (np.full(len(t), 12.0), np.round(reading, 4), error, 30.0 + 0.02 * np.cumsum(error))
+    table = {f"column {k + 1}": x for k, x in enumerate(signals)} | {"column 5": t}
+    with pytest.raises(ExperimentError, match="are taken for a velocity, --force"):
+        look(table, time="column 5", position="column 4")
+    names = {"column 2": "torque"}
+    survey = look({names.get(n, n): x for n, x in table.items()}, time="column 5")
+    assert survey.channels["actuator_force"]["column"] == "torque", "a virtual damper"

@@ -54,7 +54,7 @@ def possible_forces(
             not may_be_set_point(c)
             or not any(repeats_mostly(c.values, other) for other in set_points)
         ),
-        lambda c: not is_speed(c, survey),
+        lambda c: not is_speed(c, survey, velocity),
         lambda c: not is_acceleration(c, rate, h),
         lambda c: c.name not in paths,
         # nor is the position of another axis, or its error
@@ -104,13 +104,19 @@ def _is_nameless(column: SurveyedColumn) -> bool:
     return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
 
 
-def is_speed(column: SurveyedColumn, survey: Survey) -> bool:
-    """Whether a column is a velocity by a word of its name, or by the steps of the position.
+def is_speed(column: SurveyedColumn, survey: Survey, velocity: str | None = None) -> bool:
+    """Whether a column is a velocity by a word of its name, or by its numbers.
 
-    A symbol is no such word: "v" may be a voltage as well.
+    A symbol is no such word: "v" may be a voltage as well. By its numbers it has the sign of each
+    step of the position, or it is the velocity once more: in another unit, or a control error.
+
+    velocity: the column of the velocity, if there is one
     """
     if place_of_steps(column, survey) is not None:
         return True
+    if velocity not in (None, column.name) and not _names_force(column):
+        if is_copy(column.values, survey.columns[velocity].values):
+            return True
     word = any(len(w) > 1 and likeness(w, "velocity") >= SURE_NAME for w in words_of(column.name))
     return word and is_velocity(column)
 

@@ -146,9 +146,9 @@ def _other_force(survey: Survey, velocity: str | None) -> str:
     """Which columns, taken for velocities or set points, may be the force, for a message."""
     used = columns_in_use(survey)
     others = [c for n, c in survey.columns.items() if n not in used and moves(c)]
-    names = [c.name for c in others if is_speed(c, survey)]
+    names = [c.name for c in others if is_speed(c, survey, velocity)]
     if velocity is not None and not is_velocity(survey.columns[velocity]):
-        names.insert(0, velocity)
+        names = [velocity, *(n for n in names if n != velocity)]
     position = survey.channels["position"]["column"]
     x = survey.columns[position].values
     x = unwrap_column(x, wrap_of(x))
