@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ExperimentError, quote
-from ...quantity import measures, si_factor
+from ...quantity import is_several_times, measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
@@ -120,6 +120,8 @@ def time_column(
             name, why = _clock_without_name(rising, len(raw))
             guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+    if name in choices.units and is_several_times(choices.units[name]):
+        return name, choices.units[name]
     if unit is None and _is_unit_of_time(name):
         unit = unit_of_text(bare_name(name))
     if unit is None or not measures(unit, "time"):
