@@ -8,6 +8,7 @@ degrees, turns and rpm are converted. Currents and voltages become forces by a c
 """
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -33,6 +34,12 @@ _ANGLE = _Kind("an angle", ("rad", "deg"))
 _NUMBER = _Kind("a number without dimension", ("1", "%"))
 _TEMPERATURE = _Kind("a temperature", ("K", "mK"))
 _PER_KELVIN = _Kind("a part per kelvin", ("1/K", "%/K"))
+
+#: several times a unit of time: ticks of a clock of 8 kHz are "125 us" or "1/8000 s"
+_SEVERAL = re.compile(
+    r"\s*(?P<number>\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)(?:\s*/\s*(?P<parts>[1-9]\d*))?"
+    r"\s+(?P<unit>[A-Za-zµμ]+)\s*"
+)
 
 # quantity -> (on a prismatic axis, on a revolute axis)
 QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
@@ -114,8 +121,13 @@ def to_si(
 def si_factor(
     unit: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
 ) -> float:
-    """Factor from `unit` to the SI unit of `quantity`; arguments and errors as for `to_si`."""
+    """Factor from `unit` to the SI unit of `quantity`; arguments and errors as for `to_si`.
+
+    A time may be several times a unit, as ticks of a clock are: "125 us", "1/8000 s".
+    """
     kind = _kind(quantity, axis, where)
+    if quantity == "time" and unit is not None and (seconds := _several_times(unit)):
+        return seconds
     expected = f"expected {kind.noun} such as " + " or ".join(quote(u) for u in kind.units)
     if unit is None:
         if quantity in ("dimensionless", "angle"):
@@ -172,6 +184,19 @@ def is_unit(text: str) -> bool:
     except NotAUnit:
         return False
     return True
+
+
+def is_several_times(text: str) -> bool:
+    """Whether a text is a number above zero and a unit of time: "125 us", "1/8000 s"."""
+    return _several_times(text) > 0.0
+
+
+def _several_times(text: str) -> float:
+    """A number times a unit of time, in s; 0 for any other text."""
+    match = _SEVERAL.fullmatch(text)
+    if match is None or not measures(match["unit"], "time"):
+        return 0.0
+    return float(match["number"]) / int(match["parts"] or 1) * parse_unit(match["unit"]).scale
 
 
 def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:

@@ -37,6 +37,9 @@ ONE_SCALE, OFF_SCALE = 0.15, 2.0
 CLEAR = 0.2
 #: part of the force that is left unexplained, above which a shift is not the only mistake
 UNEXPLAINED = 0.25
+#: part of the force that is left unexplained, up to which a shift that is larger than that of a
+#: usual logger is believed
+EXPLAINED = 0.03
 #: part of the force that is left unexplained, above which there is no finding on signs, units,
 #: shifts
 NOTHING = 0.9
@@ -60,6 +63,11 @@ def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
 
 def _name(prepared: Prepared, body: str, quantity: str) -> str:
     return channel_label(prepared.experiment, f"{body}.{quantity}")
+
+
+def _is_alone(prepared: Prepared, balance: ForceBalance) -> bool:
+    """Whether no force of a hand on this body is in the log."""
+    return f"{balance.body}.interaction_force" not in prepared.experiment.channels
 
 
 def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
@@ -89,11 +97,13 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     evidence = f"the inertia is {inertia.value:.3g} {unit}{drives}"
     if against and not turned:
         evidence = f"the force that balances {lead} is {balance.gain.value:.3g} times it"
+    looks = " A hand that moves the device and is not logged looks the same."
+    hand = looks if _is_alone(prepared, balance) else ""
     yield Finding(
         "signs",
         "warning",
         f"{wrong} has the opposite sign: as recorded, {evidence}. All forces on a body and its "
-        "position are positive the same way.",
+        f"position are positive the same way.{hand}",
         {
             "gain": balance.gain.value,
             "inertia": inertia.value,
@@ -248,6 +258,9 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     elif less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
         concern, remedy = "note", "columns are shifted, or something between them is compliant"
+    elif _is_alone(prepared, balance) and less > CLOCK.latest and balance.left > EXPLAINED:
+        concern, remedy = "note", "hardly any logger is so late, and a hand that is not logged, or "
+        remedy += "a force that the model lacks, may look the same: no delay before you know it"
     elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:
         concern, remedy = "note", "a diagnosis counts up to a row of it as a delay of the logger"
     elif set(late) == {"actuator_force"} and 0.0 < seconds <= CLOCK.latest:

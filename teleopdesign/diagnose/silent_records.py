@@ -8,6 +8,7 @@ from .constant_force import describe_constant_force, lacks_scale
 from .jitter import describe_jitter, is_much_jitter
 from .prepare import Prepared
 from .unknown_drive import describe_work
+from .unsigned_force import describe_unsigned
 
 
 def why_silent(prepared: Prepared, model: Model) -> str:
@@ -26,6 +27,8 @@ def why_silent(prepared: Prepared, model: Model) -> str:
         )
     if work := describe_work(prepared.experiment):
         return work
+    if size := describe_unsigned(prepared.experiment):
+        return size
     much = is_much_jitter(prepared.of("fit"), prepared.experiment)
     return describe_jitter() if much else ""
 

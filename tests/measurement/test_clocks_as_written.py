@@ -147,3 +147,22 @@ def test_rows_equal_to_the_one_before_are_marked_from_the_second_row_on():
     assert _repeats(columns, channels, np.array([0, 2, 3]), {"t", "x", "u"}).tolist() == [
         *(False, False, True)
     ]
+
+
+def test_of_two_clocks_that_of_the_position_is_the_time():
+    """A bench logs its sensors and its drive with a clock each; rows come when either is read."""
+    late = 0.003 * np.random.default_rng(3).random(ROWS)
+    table = {"sensor_time [ms]": 1e3 * (T + late), "pressure [RAW]": np.cos(T)}
+    table |= {"motor_position [deg]": Q, "motor_current [mA]": U, "motor_time [ms]": 1e3 * T}
+
+    def look(columns, **choices):
+        return survey_log(log_of(columns), "log", Choices(**choices))
+
+    survey = look(table)
+    assert survey.channels["time"]["column"] == "motor_time [ms]"
+    assert "of two clocks, 'sensor_time" in survey.guesses["channels.time.column"]
+    assert look(table, time="sensor_time [ms]").channels["time"]["column"] == "sensor_time [ms]"
+    plain = {n.replace("motor_position", "angle"): x for n, x in table.items()}
+    survey = look(plain)
+    assert survey.channels["time"]["column"] == "sensor_time [ms]"
+    assert "channels.time.column" not in survey.guesses

@@ -11,7 +11,7 @@ from teleopdesign.measurement.survey.axes import (
     of_another_axis,
     same_but_axis,
 )
-from teleopdesign.measurement.survey.clock import _clock_without_name
+from teleopdesign.measurement.survey.candidate_clocks import clock_without_name
 from teleopdesign.measurement.survey.derivative import DERIVATIVE, is_mean_rate, rate_agreement
 
 RNG = np.random.default_rng(3)
@@ -67,9 +67,9 @@ def test_stamps_beside_a_count_of_rows_are_the_time():
     assert "column 1" in survey.unused
     # counts of a motor that speeds up; and three columns, of which no position would be left
     counts = np.round(np.cumsum(100.0 + 0.1 * rows))
-    assert _clock_without_name({"rows": rows, "counts": counts}, 4)[0] == "rows"
-    assert _clock_without_name({"rows": rows, "stamps": stamps}, 3)[0] == "rows"
-    assert _clock_without_name({"rows": rows, "stamps": stamps}, 4)[0] == "stamps"
+    assert clock_without_name({"rows": rows, "counts": counts}, 4)[0] == "rows"
+    assert clock_without_name({"rows": rows, "stamps": stamps}, 3)[0] == "rows"
+    assert clock_without_name({"rows": rows, "stamps": stamps}, 4)[0] == "stamps"
 
 
 def test_a_command_that_is_constant_in_the_first_log_is_chosen_by_its_name():

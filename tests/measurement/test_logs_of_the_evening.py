@@ -142,9 +142,12 @@ def test_a_velocity_in_units_says_that_a_guessed_time_is_wrong():
     table = {"Frame": np.arange(ROWS), "Angle [deg]": 40 * Q, "Current [A]": U}
     speed = np.gradient(40 * Q, T)
     why = look({**table, "Velocity [deg/s]": speed}).guesses["channels.time.unit"]
-    assert "requires steps of 0.005 s: --sample-rate 200" in why
+    assert "requires steps of 0.005 s: --unit 'Frame=5000 us'" in why
+    stated = look({**table, "Velocity [deg/s]": speed}, units={"Frame": "5000 us"})
+    assert stated.duration == pytest.approx(T[-1])
+    assert "channels.time.unit" not in stated.guesses
     why = look({**table, "Velocity [deg/s]": 5 * speed}).guesses["channels.time.unit"]
-    assert "--sample-rate" not in why
+    assert "requires" not in why
 
 
 def test_a_stated_rate_is_printed_once(tmp_path, monkeypatch, capsys):

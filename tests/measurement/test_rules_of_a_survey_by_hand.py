@@ -9,6 +9,7 @@ from teleopdesign.measurement.survey import (
     Choices,
     Survey,
     balance,
+    candidate_clocks,
     clock,
 )
 
@@ -195,12 +196,12 @@ def test_among_several_clocks_that_of_the_position_is_the_time():
     raw = {"a.stamp": RISING, "b.stamp": RISING, "a.force": RISING, "b.position": RISING}
     clocks = {"a.force": "a.stamp", "b.position": "b.stamp", "a.stamp": "a.stamp"}
     log = log_of(raw, {**clocks, "b.stamp": "b.stamp"})
-    assert clock._busiest_clock(log, raw, Choices()) == "b.stamp"
-    assert clock._busiest_clock(log, raw, Choices(position="a.force")) == "a.stamp"
+    assert candidate_clocks.busiest_clock(log, raw, Choices()) == "b.stamp"
+    assert candidate_clocks.busiest_clock(log, raw, Choices(position="a.force")) == "a.stamp"
     wanted = {"a.stamp": RISING, "b.stamp": RISING, "a.cmd_pos": RISING, "b.pos": RISING}
     log = log_of(wanted, {"a.cmd_pos": "a.stamp", "b.pos": "b.stamp", "a.stamp": "a.stamp",
                           "b.stamp": "b.stamp"})  # fmt: skip
-    assert clock._busiest_clock(log, wanted, Choices()) == "b.stamp"
+    assert candidate_clocks.busiest_clock(log, wanted, Choices()) == "b.stamp"
 
 
 def test_columns_lie_on_the_grid_of_the_time_each_by_its_clock():

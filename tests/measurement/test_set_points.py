@@ -3,17 +3,30 @@
 import numpy as np
 import pytest
 
+from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.measurement.survey.set_point import follows, has_numbers_of, lags, settles_at
+from teleopdesign.measurement.survey.content import SurveyedColumn
+from teleopdesign.measurement.survey.set_point import (
+    follows,
+    has_numbers_of,
+    is_sent_to_places,
+    lags,
+    settles_at,
+)
 
 T = 0.01 * np.arange(1500)
 WANTED = 40.0 * np.sign(np.sin(1.3 * T)) + 15.0 * np.sin(2.9 * T)
 
 
-def look(columns):
+def look(columns, **choices):
     log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, remarks=())
-    return survey_log(log, "log", Choices())
+    return survey_log(log, "log", Choices(**choices))
+
+
+def column_of(name, values):
+    """A column without a unit, as a survey holds it."""
+    return SurveyedColumn(name, values, values, None)
 
 
 def controlled():
@@ -133,3 +146,45 @@ def test_a_position_settles_at_steps_of_its_set_point_and_a_relay_switches_in_mo
     swing = np.sin(3.0 * T)
     assert not settles_at(swing, -np.sign(swing)), "a relay"
     assert not settles_at(0.3 * path, wanted), "a gear lies between"
+
+
+def sent_by_pulses(low=1200.0, high=1800.0, levels=2):
+    """Pulse width and angle (deg) of a hobby servo that is sent to two places, or to several."""
+    steps = np.random.default_rng(3).integers(0, levels, 15) if levels > 2 else np.arange(15) % 2
+    pulse = low + (high - low) * steps[(T // 1.0).astype(int)] / (levels - 1)
+    angle = [20.0]
+    for wanted in 0.1 * (pulse[:-1] - low) + 20.0:
+        angle.append(angle[-1] + float(np.clip(0.2 * (wanted - angle[-1]), -2.0, 2.0)))
+    return pulse, np.round(angle, 1)
+
+
+@pytest.mark.parametrize("name", ["pwm", "cmd", "u", "servo", "column 2"])
+@pytest.mark.parametrize("levels", [2, 5])
+def test_the_pulses_of_a_servo_that_rests_at_a_place_for_each_of_them_are_no_force(name, levels):
+    pulse, angle = sent_by_pulses(levels=levels)
+    assert is_sent_to_places(angle, column_of(name, pulse))
+    with pytest.raises(ExperimentError, match=f"--force '{name}' overrules this"):
+        look({"t": T, name: pulse, "angle [deg]": angle})
+    survey = look({"t": T, name: pulse, "angle [deg]": angle}, actuator_force=name)
+    assert survey.channels["actuator_force"]["column"] == name, "the user knows"
+
+
+def test_forces_about_zero_and_forces_by_name_or_unit_may_hold_a_body_at_places():
+    pulse, angle = sent_by_pulses()
+    assert not is_sent_to_places(angle, column_of("pwm", pulse - 1500.0)), "a spring"
+    assert not is_sent_to_places(angle, column_of("pwm", pulse - 1200.0)), "from rest to a place"
+    for name in ("torque", "current", "pwm [N m]"):
+        survey = look({"t": T, name: pulse, "angle [deg]": angle})
+        assert survey.channels["actuator_force"]["column"] == name
+    assert not is_sent_to_places(np.cumsum(pulse - 1500.0), column_of("pwm", pulse)), (
+        "it never rests"
+    )
+    swing = np.sin(3.0 * T)
+    assert not is_sent_to_places(swing, column_of("u", 3.0 - np.sign(swing))), "a relay"
+
+
+def test_the_reason_names_the_pulses_beside_another_force():
+    pulse, angle = sent_by_pulses()
+    survey = look({"t": T, "pwm": pulse, "angle [deg]": angle, "load [mA]": np.gradient(angle)})
+    assert survey.channels["actuator_force"]["column"] == "load [mA]"
+    assert survey.unused["pwm"].startswith("a set point: 'angle [deg]' rests at a place")

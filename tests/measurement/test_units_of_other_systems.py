@@ -9,7 +9,7 @@ from teleopdesign.measurement.column_names import unfit_unit, unit_in_name
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.value_text import motor_constant
-from teleopdesign.quantity import to_si
+from teleopdesign.quantity import is_unit, to_si
 
 T = np.arange(1500) / 500.0
 Q = 0.5 * np.sin(2 * np.pi * 0.7 * T) + 0.1 * np.sin(2 * np.pi * 2.3 * T)
@@ -153,3 +153,34 @@ def test_a_unit_that_is_typed_is_read_as_one_in_a_name():
     assert survey.channels["actuator_force"]["unit"] == "ozf*in"
     with pytest.raises(ExperimentError, match="found 'oz-inn', expected a unit"):
         look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-inn"})
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("125 us", 125e-6), ("1/8000 s", 125e-6), ("1.25e-4 s", 125e-6), ("0.5 ms", 5e-4)],
+)
+def test_ticks_of_a_clock_are_several_times_a_unit_of_time(text, seconds):
+    ticks = np.round(T / seconds) + 7000.0
+    survey = look({"ticks": ticks, "angle_rad": Q, "u [Nm]": U}, units={"ticks": text})
+    assert survey.channels["time"] == {"column": "ticks", "unit": text}
+    assert survey.duration == pytest.approx(T[-1], abs=2 * seconds)
+    table = {"ticks": ticks, "x": Q, "u": U}
+    units = {"ticks": text, "x": "rad", "u": "Nm"}
+    experiment = td.experiment(
+        table, axis="revolute", time="ticks", position="x", actuator_force="u", units=units
+    )
+    assert experiment.records[0].sample_time == pytest.approx(T[1], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "text", ["8 kHz", "0 us", "-1 us", "1/0 s", "3 N", "12", "5 5 us", "2 rad"]
+)
+def test_other_numbers_before_a_unit_are_no_unit(text):
+    with pytest.raises(ExperimentError, match='"125 us" for the ticks of a clock'):
+        look({"ticks": 8e3 * T, "angle_rad": Q, "u [Nm]": U}, units={"ticks": text})
+
+
+def test_several_times_a_unit_of_time_is_no_unit_of_a_position_or_of_a_column_by_name():
+    with pytest.raises(ExperimentError, match="expected one of a position"):
+        look({"t": T, "angle_rad": Q, "u [Nm]": U}, units={"angle_rad": "125 us"})
+    assert not is_unit("10 ms"), "a name may say that there is a row every 10 ms"

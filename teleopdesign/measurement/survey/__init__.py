@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ...errors import ExperimentError, did_you_mean
-from ...quantity import is_unit
+from ...quantity import is_several_times, is_unit
 from ..column_names import as_unit
 from ..doors._log import Log, join_names
 from ..record_clock import FEWEST
@@ -119,10 +119,11 @@ def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
                 f"{file}: unit of {column!r}: no such column, found {join_names(raw)}"
                 f"{did_you_mean(column, raw)}"
             )
-        if unit != "counts" and not is_unit(unit):
+        if unit != "counts" and not is_unit(unit) and not is_several_times(unit):
             raise ExperimentError(
                 f"{file}: unit of {column!r}: found {unit!r}, expected a unit such as "
-                f'"deg", "mm", "N*m" or "A"{did_you_mean(unit, UNITS)}'
+                f'"deg", "mm", "N*m" or "A", or "125 us" for the ticks of a clock'
+                f"{did_you_mean(unit, UNITS)}"
             )
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ExperimentError, quote
-from ...quantity import measures, si_factor
+from ...quantity import is_several_times, measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
@@ -17,19 +17,16 @@ from ..signed_numbers import sign_code_of
 from ..stamp_unit import unit_in_place_of, unit_of_steps
 from ..time_grid import clock_of
 from ..wrapped_stamps import seconds_since_first, unwrap_stamps
+from .candidate_clocks import (
+    busiest_clock,
+    clock_of_position,
+    clock_without_name,
+    position_by_name,
+)
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
-#: times as uneven as another column that a first column without a name may rise. Two: the stamps of
-#: a logger spread by a third of a step at most, the angle of a motor at ripple by its whole step
-FAR_LESS_EVEN = 2.0
-#: part of its usual step by which all steps of a clock beside a count of rows may differ, but for a
-#: twentieth at either end: a machine that speeds up or turns back differs by more, and so does a
-#: ripple of its speed
-AS_EVEN_AS_A_CLOCK, AT_EITHER_END = 0.02, 0.05
-#: fewest columns of a log whose count of rows leaves a clock, a position and a force
-FEWEST_BESIDE_A_COUNT = 4
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
 FEWEST_CHANGES = 3
 #: names of a column that holds the time from one row to the next, and the part of their median by
@@ -106,19 +103,27 @@ def time_column(
     if choices.time is not None:
         name = choices.time
     elif log.clocks:
-        name = _busiest_clock(log, raw, choices)
+        name = busiest_clock(log, raw, choices)
     else:
         scores = {n: max(likeness(n, "time"), SURE_NAME * _is_unit_of_time(n)) for n in rising}
         if not scores:
             guesses["sample_rate"] = (
                 "no column rises as a time does: the sample rate is assumed to be 1000 Hz"
+                f"{_perhaps_coarse(raw)}"
             )
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
         if scores[name] == 0.0:
-            name, why = _clock_without_name(rising, len(raw))
+            name, why = clock_without_name(rising, len(raw))
             guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
+        elif (near := clock_of_position(name, scores, raw, choices)) is not None:
+            name, (first, beside) = near, (name, position_by_name(raw, choices))
+            guesses["channels.time.column"] = (
+                f"{name!r} is read as the time: of two clocks, {first!r} has no word of {beside!r}"
+            )
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+    if name in choices.units and is_several_times(choices.units[name]):
+        return name, choices.units[name]
     if unit is None and _is_unit_of_time(name):
         unit = unit_of_text(bare_name(name))
     if unit is None or not measures(unit, "time"):
@@ -146,47 +151,6 @@ def rate_of_steps(raw: Mapping[str, Array], log: Log, choices: Choices) -> tuple
     return None
 
 
-def _clock_without_name(rising: Mapping[str, Array], width: int) -> tuple[str, str]:
-    """The time among columns that always rise, where no name tells it, and why it is the time.
-
-    The first one, unless it rises far less evenly than another: the angle of a motor that turns one
-    way rises, too. A column that counts rows is the time only as the first one, and not beside
-    stamps of a clock.
-
-    width: number of columns of the log
-    """
-    first, *others = rising
-    if width >= FEWEST_BESIDE_A_COUNT and _counts_rows(rising[first]):
-        stamps = [n for n in others if _is_stamp(rising[n])]
-        if stamps:
-            return stamps[0], f"as even as a clock, beside {first!r}, which counts the rows"
-    uneven = {n: _unevenness(rising[n]) for n in others if not _counts_rows(rising[n])}
-    even = min(uneven, key=lambda n: uneven[n], default=first)
-    if even != first and FAR_LESS_EVEN * uneven[even] < _unevenness(rising[first]):
-        return even, "the column that rises most evenly"
-    return first, "the first column that always rises"
-
-
-def _unevenness(x: Array) -> float:
-    """Median deviation of a column's steps from their median, over it; inf where that is zero."""
-    steps = np.diff(x[np.isfinite(x)])
-    usual = float(np.median(steps))
-    return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else float("inf")
-
-
-def _is_stamp(x: Array) -> bool:
-    """Whether whole numbers rise as evenly as the stamps of a clock, and are no count of rows."""
-    steps = np.diff(x[np.isfinite(x)])
-    usual = float(np.median(steps))
-    low, high = np.quantile(steps, [AT_EITHER_END, 1.0 - AT_EITHER_END])
-    even = usual > 1.0 and float(high - low) < AS_EVEN_AS_A_CLOCK * usual
-    return bool(even and np.all(steps > 0) and np.array_equal(x, np.round(x)))
-
-
-def _counts_rows(x: Array) -> bool:
-    return bool(np.all(np.diff(x[np.isfinite(x)]) == 1.0))
-
-
 def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
     """Whether a time by its name or unit rises once its wraps and late seconds are mended."""
     unit = log.units.get(name)
@@ -204,19 +168,19 @@ def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
 
 
+def _perhaps_coarse(raw: Mapping[str, Array]) -> str:
+    """Which column may be a time in which most rows share a stamp, as the end of a guess."""
+    for name, values in raw.items():
+        steps = np.diff(values[np.isfinite(values)])
+        if np.all(steps >= 0) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES:
+            return f"; {name!r} never falls and may be a coarse time"
+    return ""
+
+
 def _is_unit_of_time(name: str) -> bool:
     """Whether a name consists only of a unit of time: "ms", "Sekunden"."""
     unit = unit_of_text(bare_name(name))
     return unit is not None and unit != "counts" and measures(unit, "time")
-
-
-def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
-    """The clock of the position, among several clocks of a log."""
-    if choices.position is not None:
-        return log.clocks[choices.position]
-    scores = {n: likeness(n.rpartition(".")[2], "position") - 0.6 * is_wanted(n) for n in raw}
-    best = max(scores, key=lambda n: (scores[n], len(raw[n])))
-    return log.clocks[best]
 
 
 def duration_of(

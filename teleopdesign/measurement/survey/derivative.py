@@ -17,6 +17,10 @@ DERIVATIVE = 0.9
 #: correlation from which a column is the derivative of a velocity beside it, and no force: numbers
 #: of a planned path agree to their digits, and friction of 1 % of the force lowers it below
 EXACT = 0.9999
+#: part of the rows in which a speed that was computed from two rows has the sign of their step;
+#: least part of the rows with a step, and without one; fewest rows with a step either way; and
+#: rows that are compared
+SAME_SIGNS, BOTH_KINDS, EITHER_WAY, MOST_STEPS = 0.99, 0.05, 5, 20_000
 #: words in names of accelerations
 ACCELERATIONS = frozenset(
     "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot ddtheta".split()
@@ -180,6 +184,32 @@ def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
     if min(len(forward), len(backward)) < (1.0 - ONE_WAY) * len(v):
         return True
     return float(forward.mean() * backward.mean()) <= 0.0
+
+
+def has_signs_of_steps(position: SurveyedColumn, column: SurveyedColumn) -> bool:
+    """Whether a column has the sign of each step of a position, and is zero where that is at rest.
+
+    It is the speed that a program computed from two rows, or this speed with the other sign, as
+    that of a control error. Where its clock is uneven, it is no derivative on the clock of the log.
+    A force moves a body later, and holds it at rest.
+    """
+    if len(position.readings) != len(column.readings) or is_no_velocity(column):
+        return False
+    x, v = position.readings[:MOST_STEPS], column.readings[:MOST_STEPS]
+    rows = np.isfinite(x) & np.isfinite(v)
+    x, v = x[rows], v[rows]
+    if len(x) < 2:
+        return False
+    at_rest = np.diff(x) == 0.0
+    moved = 1.0 - float(np.mean(at_rest))
+    if min(moved, 1.0 - moved) < BOTH_KINDS:
+        return False
+    if np.mean(at_rest == (v[1:] == 0.0)) < SAME_SIGNS:
+        return False
+    steps, signs = np.sign(np.diff(unwrap_column(x, wrap_of(x)))), np.sign(v[1:])
+    if min(np.count_nonzero(steps > 0.0), np.count_nonzero(steps < 0.0)) < EITHER_WAY:
+        return False
+    return max(float(np.mean(steps == s * signs)) for s in (1.0, -1.0)) >= SAME_SIGNS
 
 
 def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:

@@ -18,8 +18,14 @@ from .content import (
     sample_time_of,
 )
 from .copies import is_copy, repeats_mostly
-from .derivative import EXACT, derivative_factor, is_acceleration, is_velocity
-from .set_point import has_numbers_of, may_be_set_point
+from .derivative import (
+    EXACT,
+    derivative_factor,
+    has_signs_of_steps,
+    is_acceleration,
+    is_velocity,
+)
+from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
 
 
 def possible_forces(
@@ -33,6 +39,7 @@ def possible_forces(
     h = sample_time_of(survey)
     everything = {n: c for n, c in survey.columns.items() if moves(c)}
     paths = _planned_paths(everything, h)
+    places = [survey.columns[name].values for name in places_of_steps(survey)]
     rate = None if velocity is None else survey.columns[velocity].values
     rules: tuple[Callable[[SurveyedColumn], bool], ...] = (
         lambda c: not rises(c.readings),
@@ -42,14 +49,16 @@ def possible_forces(
         # the error of a controller is the position once more
         lambda c: _names_force(c) or not is_copy(c.values, x),
         # neither a set point nor a commanded speed is a force
-        lambda c: not (may_be_set_point(c) and has_numbers_of(c.values, x)),
+        lambda c: not is_set_point(c, x),
         lambda c: (
             not may_be_set_point(c)
             or not any(repeats_mostly(c.values, other) for other in set_points)
         ),
-        lambda c: not is_speed(c),
+        lambda c: not is_speed(c, survey, velocity),
         lambda c: not is_acceleration(c, rate, h),
         lambda c: c.name not in paths,
+        # nor is the position of another axis, or its error
+        lambda c: not _is_nameless(c) or not any(is_copy(c.values, other) for other in places),
     )
     return {
         name: column
@@ -57,6 +66,12 @@ def possible_forces(
         if all(rule(column) or is_unit_of(column.unit, "force") for rule in rules)
         and not rises(column.readings)
     }
+
+
+def is_set_point(column: SurveyedColumn, x: Array) -> bool:
+    """Whether a column is a set point of a position x (n,), in its unit or in another one."""
+    same = may_be_set_point(column) and has_numbers_of(column.values, x)
+    return same or is_sent_to_places(x, column)
 
 
 def _names_force(column: SurveyedColumn) -> bool:
@@ -89,7 +104,45 @@ def _is_nameless(column: SurveyedColumn) -> bool:
     return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
 
 
-def is_speed(column: SurveyedColumn) -> bool:
-    """Whether a word of a name says velocity; a symbol does not: "v" may be a voltage as well."""
+def is_speed(column: SurveyedColumn, survey: Survey, velocity: str | None = None) -> bool:
+    """Whether a column is a velocity by a word of its name, or by its numbers.
+
+    A symbol is no such word: "v" may be a voltage as well. By its numbers it has the sign of each
+    step of the position, or it is the velocity once more: in another unit, or a control error.
+
+    velocity: the column of the velocity, if there is one
+    """
+    if place_of_steps(column, survey) is not None:
+        return True
+    if velocity not in (None, column.name) and not _names_force(column):
+        if is_copy(column.values, survey.columns[velocity].values):
+            return True
     word = any(len(w) > 1 and likeness(w, "velocity") >= SURE_NAME for w in words_of(column.name))
     return word and is_velocity(column)
+
+
+def place_of_steps(column: SurveyedColumn, survey: Survey) -> str | None:
+    """The column of whose steps another one has the signs, as its speed; None: there is none.
+
+    It is the position, or among columns without names also that of another axis.
+    """
+    position = survey.channels["position"]["column"]
+    if column.name == position or _names_force(column):
+        return None
+    others = {n: c for n, c in survey.columns.items() if n != column.name and moves(c)}
+    if not _is_nameless(column):
+        others = {position: survey.columns[position]}
+    return next((n for n, c in others.items() if _is_place(c, column, position)), None)
+
+
+def _is_place(place: SurveyedColumn, column: SurveyedColumn, position: str) -> bool:
+    """Whether a column is the position or has no name, and its steps have the signs of another."""
+    return (place.name == position or _is_nameless(place)) and has_signs_of_steps(place, column)
+
+
+def places_of_steps(survey: Survey) -> dict[str, str]:
+    """The columns without a name whose speed is in the log, but for the position: name -> speed."""
+    position = survey.channels["position"]["column"]
+    nameless = [c for c in survey.columns.values() if _is_nameless(c) and moves(c)]
+    speeds = {c.name: place_of_steps(c, survey) for c in nameless}
+    return {place: n for n, place in speeds.items() if place is not None and place != position}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ...errors import ExperimentError
 from ...quantity import si_factor
@@ -31,7 +31,7 @@ from .content import (
 )
 from .copies import pulls_back
 from .derivative import is_velocity, unwrap_column, wrap_of
-from .force_candidates import is_speed, possible_forces
+from .force_candidates import is_set_point, is_speed, possible_forces
 from .force_entry import describe_force, force_to_si
 from .scatter import state_scatter
 
@@ -145,15 +145,27 @@ def _find_driving_force(
 
 
 def _other_force(survey: Survey, velocity: str | None) -> str:
-    """Which columns were taken for velocities and may be the force nonetheless, for a message."""
+    """Which columns, taken for velocities or set points, may be the force, for a message."""
     used = columns_in_use(survey)
-    names = [n for n, c in survey.columns.items() if n not in used and moves(c) and is_speed(c)]
+    others = [c for n, c in survey.columns.items() if n not in used and moves(c)]
+    names = [c.name for c in others if is_speed(c, survey, velocity)]
     if velocity is not None and not is_velocity(survey.columns[velocity]):
-        names.insert(0, velocity)
+        names = [velocity, *(n for n in names if n != velocity)]
+    position = survey.channels["position"]["column"]
+    x = survey.columns[position].values
+    x = unwrap_column(x, wrap_of(x))
+    wanted = [c.name for c in others if is_set_point(c, x)]
+    return _explain_overruling(names, "a velocity") + _explain_overruling(
+        wanted, f"a set point of {position!r}"
+    )
+
+
+def _explain_overruling(names: Sequence[str], kind: str) -> str:
+    """How to choose columns as a force that were taken for something else; "": there are none."""
     if not names:
         return ""
     what = "are" if len(names) > 1 else "is"
-    return f"; {join_names(names)} {what} taken for a velocity, --force {names[0]!r} overrules this"
+    return f"; {join_names(names)} {what} taken for {kind}, --force {names[0]!r} overrules this"
 
 
 def _constant_columns(survey: Survey) -> str:

@@ -239,9 +239,12 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
     slower /= si_factor(unit, quantity="position", axis=survey.axis)
     if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME_TIME:
         return
+    clock = survey.channels["time"]
+    tick = 1e6 * si_factor(clock["unit"], quantity="time") / slower
+    stated = f"{clock['column']}={float(f'{tick:.3g}'):g} us"
     survey.guesses["channels.time.unit"] = (
         f"{why}; but {velocity!r} in {velocity_unit} requires steps of {h / slower:.3g} s: "
-        f"--sample-rate {float(f'{slower / h:.3g}'):g}"
+        f"--unit {stated!r}"
     )
 
 

@@ -11,10 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..column_names import WANTED, likeness, words_of
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of
 from .derivative import DERIVATIVE
+
+Indices = NDArray[np.intp]
 
 #: part of a log by which a machine may be late behind its set point
 LATEST = 0.1
@@ -24,6 +27,13 @@ APART = 1.0 - DERIVATIVE**2
 #: holds at whose ends the position rests: between fewer, a position that starts and ends at rest
 #: moves from one value to another under any force
 FEWEST_HOLDS = 3
+#: least size of a set point over its largest one, from which it is surely no force: a hobby servo
+#: takes pulses of 500 to 2500 us (0.2), and counts of a converter begin above zero. A force so far
+#: from zero at all times leaves no free body at rest. A higher limit reads such pulses as a force
+NEVER_ZERO = 0.15
+#: likeness of a name to that of a force, from which it is no set point whatever the numbers are:
+#: "torque", "current", "effort". "pwm", "u" and "cmd" name pulses of a set point as well
+FORCE_NAME = 0.85
 
 
 def followed_columns(flat: Mapping[str, Array]) -> dict[str, str]:
@@ -64,14 +74,48 @@ def settles_at(position: Array, column: Array) -> bool:
     At the ends of the holds the position has the numbers of the column, and moves slower than on
     the average. A relay has only two values as well, but it switches where the position is fast.
     """
-    ends = np.flatnonzero(np.diff(column))  # the last row of each hold, without that of the log
-    ends = ends[ends > 0]
-    if len(ends) < FEWEST_HOLDS or 2 * len(ends) > len(column):
+    ends = _ends_of_holds(column)
+    if not _rests_at(ends, position):
         return False
     held, spread = column[ends], float(np.var(column[ends]))
+    return float(np.mean((position[ends] - held) ** 2)) < APART * spread
+
+
+def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
+    """Whether a position rests at a place of its own for each value that another column holds.
+
+    The places are in proportion to the values, and the values keep away from zero: pulse widths of
+    a hobby servo, or counts of a converter, are a set point in another unit than the position.
+    """
+    if column.unit is not None and is_unit_of(column.unit, "force"):
+        return False
+    values = column.values
+    if likeness(column.name, "actuator_force") >= FORCE_NAME or not np.ptp(values) > 0.0:
+        return False
+    if values.min() * values.max() <= 0.0:
+        return False
+    if np.abs(values).min() < NEVER_ZERO * np.abs(values).max():
+        return False
+    ends = _ends_of_holds(values)
+    if not _rests_at(ends, position) or not np.ptp(values[ends]) > 0.0:
+        return False
+    line = np.polynomial.Polynomial.fit(values[ends], position[ends], 1)
+    apart = float(np.mean((position[ends] - line(values[ends])) ** 2))
+    return apart < APART * float(np.var(position[ends]))
+
+
+def _ends_of_holds(column: Array) -> Indices:
+    """The last row of each hold of a column, without that of the log."""
+    ends = np.flatnonzero(np.diff(column))
+    return ends[ends > 0]
+
+
+def _rests_at(ends: Indices, position: Array) -> bool:
+    """Whether a position is slower than on the average at the ends of enough holds."""
+    if len(ends) < FEWEST_HOLDS or 2 * len(ends) > len(position):
+        return False
     change = np.abs(np.diff(position))
-    at_rest = float(np.mean(change[ends - 1])) < float(np.mean(change))
-    return at_rest and float(np.mean((position[ends] - held) ** 2)) < APART * spread
+    return float(np.mean(change[ends - 1])) < float(np.mean(change))
 
 
 def has_numbers_of(column: Array, position: Array) -> bool:

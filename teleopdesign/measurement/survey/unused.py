@@ -33,8 +33,8 @@ from .derivative import (
     unwrap_column,
     wrap_of,
 )
-from .force_candidates import is_speed
-from .set_point import follows, has_numbers_of, may_be_set_point
+from .force_candidates import is_speed, place_of_steps, places_of_steps
+from .set_point import follows, has_numbers_of, is_sent_to_places, may_be_set_point
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
@@ -108,12 +108,18 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
             return why
     if may_be_set_point(column) and has_numbers_of(column.values, unwrap_column(x, jump)):
         return f"has the numbers of {position!r}: a set point, or the same reading once more"
+    if is_sent_to_places(unwrap_column(x, jump), column):
+        return f"a set point: {position!r} rests at a place of its own for each of its values"
     h = sample_time_of(survey)
     rate = np.gradient(unwrap_column(x, jump), h)
     if name not in survey.explained and is_acceleration(column, rate, h):
         return f"an acceleration of {position!r}"
-    if is_speed(column) and name not in survey.explained:
-        return "a velocity by its name, and no force"
+    if is_speed(column, survey) and name not in survey.explained:
+        place = place_of_steps(column, survey)
+        by = "its name" if place is None else f"its signs, those of the steps of {place!r}"
+        return f"a velocity by {by}, and no force"
+    if (speed := places_of_steps(survey).get(name)) and name not in survey.explained:
+        return f"another position: {speed!r} has the signs of its steps"
     if name not in survey.explained and is_copy(column.values, unwrap_column(x, jump)):
         return f"{position!r} times a constant plus a constant: another unit, or a control error"
     again = _set_point_again(column, survey, unwrap_column(x, jump))
