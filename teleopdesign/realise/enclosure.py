@@ -77,7 +77,8 @@ def enclosure_of(
             if depend & changed:
                 values[at] = operation(*[values[i] for i in arguments])
         changed = 0  # not where a step raised: these values are computed anew
-        return values[last]
+        value: Enclosure = values[last]
+        return value
 
     return evaluate
 
