@@ -18,6 +18,8 @@ from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.diagnose.together import _leave_the_same, add_together
 
 SPRING, BIAS, DRAG = map(candidate, ("spring", "bias", "quadratic_drag"))
+#: it leaves as much as a bias
+TWIN = candidate("coulomb_asymmetry")
 
 
 @pytest.fixture
@@ -30,7 +32,7 @@ def use(monkeypatch):
         gains, sizes = {"quadratic_drag": 0.05, **dict(alone)}, dict(free)
         table = Table(
             lambda names: (
-                rule("spring" in names, "bias" in names)
+                rule("spring" in names, not names.isdisjoint({"bias", "coulomb_asymmetry"}))
                 - sum(gain for name, gain in gains.items() if name in names)
             )
         )
@@ -160,11 +162,11 @@ def test_where_noise_is_left_a_pair_replaces_what_may_imitate_two_effects(
     assert added(in_place(table, lone=lone, least=0.1)) == expected
 
 
-def together(table, **more):
-    """What `add_together` makes of a state with drag alone, which was ranked beside both."""
+def together(table, among=(SPRING, BIAS), **more):
+    """What `add_together` makes of a state with drag alone, which was ranked beside these."""
     search = searched(table)
     state = table.state(table.rungs("quadratic_drag"), **more)
-    first = search.rank(state.rungs[0].fit, step=1, among=(SPRING, BIAS))
+    first = search.rank(state.rungs[0].fit, step=1, among=among)
     rungs = (state.rungs[0], replace(state.rungs[1], ranking=first))
     return add_together(search, replace(state, rungs=rungs))
 
@@ -194,6 +196,13 @@ def test_effects_are_chosen_beside_the_users_model_not_beside_the_last(use):
 def test_at_least_two_are_needed_and_explain_most_of_what_the_rungs_leave(use, rule):
     assert together(use(rule)) is None
     assert added(together(use(leaves(0.6)))) == {"spring", "bias"}
+
+
+def test_what_leaves_exactly_as_much_as_one_of_them_is_an_alternative_to_it(use):
+    """Only one of the two is added, whichever is ranked first."""
+    moved = together(use(masked), among=(SPRING, BIAS, TWIN))
+    found = {r.added: set(r.alternatives) for r in moved.rungs[1:]}
+    assert found in ({SPRING: set(), BIAS: {TWIN}}, {SPRING: set(), TWIN: {BIAS}})
 
 
 def test_none_is_implausible_or_leaves_more_than_a_tone(use):
