@@ -201,8 +201,8 @@ def test_at_least_two_are_needed_and_explain_most_of_what_the_rungs_leave(use, r
 def test_what_leaves_exactly_as_much_as_one_of_them_is_an_alternative_to_it(use):
     """Only one of the two is added, whichever is ranked first."""
     moved = together(use(masked), among=(SPRING, BIAS, TWIN))
-    found = {r.added: set(r.alternatives) for r in moved.rungs[1:]}
-    assert found in ({SPRING: set(), BIAS: {TWIN}}, {SPRING: set(), TWIN: {BIAS}})
+    alternatives = {r.added: set(r.alternatives) for r in moved.rungs[1:]}
+    assert alternatives in ({SPRING: set(), BIAS: {TWIN}}, {SPRING: set(), TWIN: {BIAS}})
 
 
 def test_none_is_implausible_or_leaves_more_than_a_tone(use):

@@ -54,7 +54,7 @@ def test_a_small_excess_is_not_named(at_speed):
         assert bool(words) == (part > 1.0)
 
 
-def test_what_lies_around_reversals_is_said_whatever_the_speeds():
+def test_what_lies_around_reversals_is_named_whatever_the_speeds():
     """Within 0.1 s: three rows to each side of the turn, which count every 30 ms."""
     turns = range(50, ROWS, 50)
     near = np.zeros(ROWS)
