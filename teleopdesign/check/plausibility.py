@@ -18,6 +18,7 @@ from ..measurement.soundness.signal import channel_label
 from ..model import Model
 from ..quantity import unit_of
 from ..standard_error import with_standard_error
+from .clock_drift import find_drift, report_drift
 from .force_balance import ForceBalance, force_balances
 from .force_timing import phase_of_shift
 from .swapped_columns import check_swapped
@@ -55,7 +56,7 @@ def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
     for place, balance in balances.items():
         doubts = [*_signs(prepared, balance), *_gain(model, prepared, balance)]
         if not doubts:
-            doubts = [*_units(model, balance), *_shifts(prepared, balance)]
+            doubts = [*_units(model, balance), *_shifts(model, prepared, balance)]
         findings += doubts or [_report_agreement(model, place, balance)]
         findings += _calibration(prepared, balance)
     return tuple(findings)
@@ -234,8 +235,14 @@ def _poor_guess(
     )
 
 
-def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
+def _shifts(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     """A finding on channels that are late or early by half a sample or more."""
+    if balance.shifts and balance.left <= UNEXPLAINED:
+        stretches = [s for s in prepared.of("fit") if s.motion.body == balance.body]
+        drift = find_drift(model.body(balance.body), stretches, balance)
+        if drift is not None:
+            yield report_drift(_name(prepared, balance.body, drift.channel), balance, drift)
+            return
     h = max(s.motion.sample_time for s in prepared.of("fit") if s.motion.body == balance.body)
     late = {n: e.value for n, e in balance.shifts.items() if e.sure and abs(e.value) >= 0.5 * h}
     if not late:

@@ -36,7 +36,7 @@ class Criteria:
     weakened: float = 0.8
     #: part of the squares of a measured acceleration from which jitter of the clock leaves nothing
     #: to tell: an estimated inertia is smaller by this part. Of simulated devices jitter makes 0.01
-    #: to 0.20 of them where it is a tenth of a row, 0.17 to 0.73 where it is half a row; 0.003 at
+    #: to 0.20 of them where it is a tenth of a row, 0.28 to 1.04 where it is half a row; 0.003 at
     #: most on eight recordings of real machines. Higher: tips are named that weaken the jitter;
     #: lower: effects are missed that its floor leaves visible
     jitter: float = 0.25

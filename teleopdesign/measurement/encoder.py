@@ -131,15 +131,18 @@ def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
     if count < PIECES:
         return 0.0
     pieces = x[: count * PIECE].reshape(count, PIECE)
-    speed = np.sqrt(np.mean(np.diff(pieces, axis=1) ** 2, axis=1)) / sample_time
     scatter = np.sqrt(np.mean(np.diff(pieces, DIFFERENCE, axis=1) ** 2, axis=1))
     scatter /= np.sqrt(comb(2 * DIFFERENCE, DIFFERENCE))  # gain of the difference for white noise
-    fast = speed >= np.quantile(speed, 0.75)
-    slow = speed <= np.quantile(speed, 0.25)
+    # over several rows the motion is much larger than the scatter, which would choose the pieces
+    moved = np.mean((pieces[:, DIFFERENCE:] - pieces[:, :-DIFFERENCE]) ** 2, axis=1)
+    fast = moved >= np.quantile(moved, 0.75)
+    slow = moved <= np.quantile(moved, 0.25)
     rest = max(0.29 * step, float(np.median(scatter[slow])))
     # less than twice the scatter at rest may be rounding alone
     if np.median(scatter[fast]) < 2.0 * rest:
         return 0.0
-    squares = np.median(speed[fast] ** 2) - np.median(speed[slow] ** 2)
+    # readings next to each other differ by their scatter too, not by the motion alone
+    steps = np.mean(np.diff(pieces, axis=1) ** 2, axis=1) - 2.0 * scatter**2
+    squares = (np.median(steps[fast]) - np.median(steps[slow])) / sample_time**2
     more = np.median(scatter[fast] ** 2) - rest**2
-    return float(np.sqrt(max(float(more / squares), 0.0)))
+    return float(np.sqrt(more / squares)) if more > 0.0 and squares > 0.0 else 0.0

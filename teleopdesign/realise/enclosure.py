@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from math import inf
+from operator import or_
 from typing import Any
 
 import sympy as sp
@@ -42,26 +43,42 @@ def enclosure_of(
 ) -> Callable[[Sequence[Enclosure]], Enclosure]:
     """The law as a function of one interval for each variable.
 
+    The function keeps its last values: parts whose variables are as before are not computed anew.
+
     smooth: raise `Singular` where the law divides by zero, or takes a root or logarithm of zero
     raises ModelError: the law has a function without a known bound
     """
     places: dict[sp.Basic, int] = {v: i for i, v in enumerate(variables)}
-    steps: list[tuple[Callable[..., Any], tuple[int, ...]]] = []
+    steps: list[tuple[int, int, Callable[..., Any], tuple[int, ...]]] = []
+    # of each place one bit for each variable that its value depends on
+    depends = [1 << i for i in range(len(variables))]
+    constant = 1 << len(variables)
 
     def place(node: sp.Basic) -> int:
         if node not in places:
             arguments = tuple(place(a) for a in _arguments(node))
-            places[node] = len(variables) + len(steps)
-            steps.append((_operation(node, smooth), arguments))
+            places[node] = len(depends)
+            depends.append(reduce(or_, (depends[i] for i in arguments), 0) or constant)
+            operation = _operation(node, smooth)
+            steps.append((places[node], depends[-1], operation, arguments))
         return places[node]
 
     last = place(sp.sympify(law))
+    values: list[Any] = [None] * len(depends)
+    changed = 2 * constant - 1
 
     def evaluate(enclosures: Sequence[Enclosure]) -> Enclosure:
-        values = list(enclosures)
-        for operation, arguments in steps:
-            values.append(operation(*(values[i] for i in arguments)))
-        return values[last]
+        nonlocal changed
+        for i, enclosure in enumerate(enclosures):
+            if values[i] != enclosure:
+                values[i] = enclosure
+                changed |= 1 << i
+        for at, depend, operation, arguments in steps:
+            if depend & changed:
+                values[at] = operation(*[values[i] for i in arguments])
+        changed = 0  # not where a step raised: these values are computed anew
+        value: Enclosure = values[last]
+        return value
 
     return evaluate
 

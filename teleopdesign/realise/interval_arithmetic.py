@@ -120,10 +120,14 @@ def absolute(x: Enclosure) -> Enclosure:
 
 def multiply(x: Enclosure, y: Enclosure) -> Enclosure:
     """Product of two intervals."""
-    if x[0] >= 0.0 and y[0] >= 0.0:
-        return multiply_floats(x[0], y[0])[0], multiply_floats(x[1], y[1])[1]
-    parts = [multiply_floats(a, b) for a in x for b in y]
-    return min(p[0] for p in parts), max(p[1] for p in parts)
+    if x[0] < 0.0 <= y[0]:
+        x, y = y, x
+    if x[0] < 0.0:
+        parts = [multiply_floats(a, b) for a in x for b in y]
+        return min(p[0] for p in parts), max(p[1] for p in parts)
+    # x is not negative: which of its ends counts follows from the sign of each end of y
+    below, above = x[0] if y[0] >= 0.0 else x[1], x[1] if y[1] >= 0.0 else x[0]
+    return multiply_floats(below, y[0])[0], multiply_floats(above, y[1])[1]
 
 
 def reciprocal(x: Enclosure) -> Enclosure:

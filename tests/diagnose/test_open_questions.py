@@ -89,7 +89,8 @@ def test_a_question_holds_as_many_as_can_be_distinguished_at_once():
 def test_an_undecided_verdict_asks_for_what_gains_and_counts():
     gains, loses = replace(ranked(0.9), score=0.1), replace(ranked(0.9, "spring"), score=-0.1)
     unsure = ranked(0.5, "viscous", is_identifiable=False)
-    last = (gains, unsure, loses)
+    same = replace(ranked(1.0, "bias"), score=0.0)  # it changes nothing
+    last = (gains, unsure, same, loses)
     (question,) = open_questions(diagnosis(last=last, verdict="undecided"))
     assert (question.added, names(question)) == (None, ["stribeck"])
     assert open_questions(diagnosis(last=last)) == ()

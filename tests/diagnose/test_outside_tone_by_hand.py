@@ -80,6 +80,14 @@ def test_a_swing_of_the_whole_record_is_no_tone():
     assert _frequency([(one, left)]) == pytest.approx(6.0, abs=0.01)
 
 
+@pytest.mark.parametrize("size", [1e-9, 1e-4, 1e6])
+def test_a_tone_in_any_unit_has_the_same_frequency(size):
+    """Beside a swing of the whole record, which is larger and no tone."""
+    one = stretch(10.0)
+    left = at_rows(one, both(sine(6.0), sine(0.05, 3.0)))
+    assert _frequency([(one, size * left)]) == pytest.approx(_frequency([(one, left)]), abs=1e-6)
+
+
 def test_where_nothing_is_left_there_is_no_frequency():
     one = stretch(10.0)
     few = SimpleNamespace(motion=one.motion, keep=one.keep[:2])

@@ -9,6 +9,7 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from teleopdesign.errors import ModelError
+from teleopdesign.realise import enclosure as enclosure_module
 from teleopdesign.realise.enclosure import Singular, enclosure_of
 from teleopdesign.realise.extremes import TIGHTNESS, least_value
 
@@ -67,6 +68,37 @@ def test_no_value_of_a_law_leaves_its_interval(law, x, y, shares):
         except OverflowError:
             continue
         assert low <= value <= high
+
+
+@settings(max_examples=100)
+@given(law=laws, places=st.lists(st.tuples(ranges, ranges), min_size=2, max_size=6))
+def test_boxes_looked_at_before_change_no_interval(law, places):
+    """Also where only one range differs from the last, and where the last divided by zero."""
+    for smooth in (False, True):
+        kept = enclosure_of(law, [X, Y], smooth=smooth)
+        for x, y in [(a, b) for a, _ in places for _, b in places]:
+            box = [tuple(x), tuple(y)]
+            try:
+                anew = enclosure_of(law, [X, Y], smooth=smooth)(box)
+            except Singular:
+                with pytest.raises(Singular):
+                    kept(box)
+                continue
+            assert kept(box) == anew
+
+
+def test_a_part_whose_ranges_are_as_before_is_not_computed_anew(monkeypatch):
+    """A search halves one range at a time; the sines of laws take most of its time."""
+    calls = []
+    wave = enclosure_module.enclose_wave
+    monkeypatch.setattr(
+        enclosure_module, "enclose_wave", lambda f, x: calls.append(x) or wave(f, x)
+    )
+    interval_of = enclosure_of(Y * sp.sin(X) + Y, [X, Y])
+    for high in (1.0, 2.0, 3.0):
+        interval_of([(0.0, 0.5), (0.0, high)])
+    assert calls == [(0.0, 0.5)]
+    assert interval_of([(0.0, 0.0), (0.0, 3.0)]) == (0.0, 3.0) and len(calls) == 2
 
 
 @settings(max_examples=50)

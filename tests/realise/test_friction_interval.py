@@ -52,7 +52,7 @@ def bodies(draw):
     return body_of(values, errors)
 
 
-def levels_at(body, rng, number, errors):
+def levels_at(body, rng, number, errors, reach=REACH):
     """The level at random signals within the reach and parameters within their errors."""
     symbols = [*SIGNALS.values(), *body.symbols().values()]
     law = sp.lambdify(symbols, body.level(), "numpy")
@@ -61,9 +61,9 @@ def levels_at(body, rng, number, errors):
     signals = {n: rng.uniform(-1, 1, number) for n in SIGNALS} | {
         "direction": direction,
         "velocity": direction * speed,
-        "position": rng.uniform(REACH.low, REACH.high, number),
+        "position": rng.uniform(reach.low, reach.high, number),
         "time": rng.choice([0.0, 1.0, 1000.0], number) * rng.uniform(0, 1, number),
-        "acting_force": rng.uniform(-REACH.command, REACH.command, number),
+        "acting_force": rng.uniform(-reach.command, reach.command, number),
     }
     parameters = []
     for name in body.symbols():
@@ -140,6 +140,24 @@ def test_a_wave_of_unknown_phase_counts_for_its_amplitude(reach):
     interval = friction_interval(body_of(WAVE, WAVE_ERRORS), reach, errors=2.0)
     assert interval.lowest.low == pytest.approx(0.9 * (1 - 0.24), rel=1e-4)
     assert interval.highest.high == pytest.approx(1.1 * (1 + 0.24) + 0.4, rel=1e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("asymmetry", [-0.1, 0.15])
+def test_a_wave_beside_a_load_over_every_motion_holds_all_levels(asymmetry):
+    """The laws that take longest: sampled over places and loads up to 100 m and 1000 N."""
+    load = {"coefficient": 0.2, "driving_difference": 0.1, "extra_at_rest": 0.3}
+    load |= {"stribeck_velocity": 0.05, "output_share": 0.0}
+    values = WAVE | {f"load_dependent_friction.{n}": v for n, v in load.items()}
+    values["coulomb_asymmetry.half_difference"] = asymmetry
+    errors = WAVE_ERRORS | {"load_dependent_friction.coefficient": 0.01}
+    body = body_of(values, errors)
+    interval = friction_interval(body, None, errors=2.0)
+    assert interval.highest.low == inf
+    assert interval.lowest.low == pytest.approx(0.9 * (1 - 0.24) - abs(asymmetry), rel=1e-4)
+    wide = replace(REACH, low=-100.0, high=100.0, command=1e3, peak_speed=10.0)
+    levels = levels_at(body, np.random.default_rng(5), 20000, errors=2.0, reach=wide)
+    assert interval.lowest.low <= levels.min()
 
 
 def test_a_parameter_stays_within_its_declared_bounds():

@@ -56,6 +56,22 @@ def test_a_product_lies_between_the_floats_next_to_it(a, b):
     hold(multiply_floats(a, b), Fraction(a) * Fraction(b), apart=2)
 
 
+ends = st.sampled_from([0.0, inf, -inf, 1.0]) | st.floats(-1e9, 1e9)
+intervals = (
+    st.tuples(ends, ends).map(sorted).map(tuple).filter(lambda x: x[0] < inf and x[1] > -inf)
+)
+
+
+@given(intervals, intervals)
+@example((0.0, 0.0), (-inf, inf))
+@example((-2.0, 0.0), (0.0, 3.0))
+@example((-2.0, 3.0), (-5.0, 0.1))
+def test_a_product_of_intervals_reaches_from_the_least_to_the_largest_of_its_corners(x, y):
+    corners = [multiply_floats(a, b) for a in x for b in y]
+    expected = min(c[0] for c in corners), max(c[1] for c in corners)
+    assert multiply(x, y) == expected == multiply(y, x)
+
+
 @given(near_one, near_one)
 def test_a_product_of_usual_size_is_rounded_once_and_is_itself_where_it_is_a_float(a, b):
     exact = Fraction(a) * Fraction(b)
