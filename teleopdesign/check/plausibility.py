@@ -8,19 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Literal
 
 from ..diagnose.feedback_law import describe_computed
 from ..diagnose.prepare import Prepared
-from ..diagnose.record_shift import CLOCK
 from ..finding import Finding
-from ..measurement.soundness.signal import channel_label
 from ..model import Model
 from ..quantity import unit_of
 from ..standard_error import with_standard_error
-from .clock_drift import find_drift, report_drift
 from .force_balance import ForceBalance, force_balances
-from .force_timing import phase_of_shift
+from .late_channels import check_lateness, is_without_hand, label_of
 from .swapped_columns import check_swapped
 from .unit_slips import NEAR, POWERS, scale_of_forces, slips
 
@@ -36,11 +32,6 @@ ONE_SCALE, OFF_SCALE = 0.15, 2.0
 #: decades by which a device's known values may differ from those of a slip of units, where the slip
 #: is below `FAR`: first values are commonly 20 % off, and turns are 0.8 decades off radians
 CLEAR = 0.2
-#: part of the force that is left unexplained, above which a shift is not the only mistake
-UNEXPLAINED = 0.25
-#: part of the force that is left unexplained, up to which a shift that is larger than that of a
-#: usual logger is believed
-EXPLAINED = 0.03
 #: part of the force that is left unexplained, above which there is no finding on signs, units,
 #: shifts
 NOTHING = 0.9
@@ -56,19 +47,10 @@ def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
     for place, balance in balances.items():
         doubts = [*_signs(prepared, balance), *_gain(model, prepared, balance)]
         if not doubts:
-            doubts = [*_units(model, balance), *_shifts(model, prepared, balance)]
+            doubts = [*_units(model, balance), *check_lateness(model, prepared, balance)]
         findings += doubts or [_report_agreement(model, place, balance)]
         findings += _calibration(prepared, balance)
     return tuple(findings)
-
-
-def _name(prepared: Prepared, body: str, quantity: str) -> str:
-    return channel_label(prepared.experiment, f"{body}.{quantity}")
-
-
-def _is_alone(prepared: Prepared, balance: ForceBalance) -> bool:
-    """Whether no force of a hand on this body is in the log."""
-    return f"{balance.body}.interaction_force" not in prepared.experiment.channels
 
 
 def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
@@ -86,20 +68,20 @@ def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
         return
     if describe_computed(prepared.experiment, balance.body):
         return  # the spring and the damper of a controller, against which a hand moves the device
-    lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other or ""))
+    lead, other = (label_of(prepared, balance.body, q) for q in (balance.lead, balance.other or ""))
     if against:
         wrong = lead if turned else other
     elif balance.other:
-        wrong = _name(prepared, balance.body, "position")
+        wrong = label_of(prepared, balance.body, "position")
     else:
-        wrong = f"{lead} or {_name(prepared, balance.body, 'position')}"
+        wrong = f"{lead} or {label_of(prepared, balance.body, 'position')}"
     unit = unit_of("inertia", prepared.experiment.axis(balance.body))
     drives = f" and friction drives with {-braking.value:.3g} W" if braking and brakes < 0 else ""
     evidence = f"the inertia is {inertia.value:.3g} {unit}{drives}"
     if against and not turned:
         evidence = f"the force that balances {lead} is {balance.gain.value:.3g} times it"
     looks = " A hand that moves the device and is not logged looks the same."
-    hand = looks if _is_alone(prepared, balance) else ""
+    hand = looks if is_without_hand(prepared, balance) else ""
     yield Finding(
         "signs",
         "warning",
@@ -121,7 +103,7 @@ def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[F
         return
     if 1 / FAR < gain.value < FAR:
         return
-    lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other))
+    lead, other = (label_of(prepared, balance.body, q) for q in (balance.lead, balance.other))
     inertia = model.body(balance.body).parameters["inertia"].value
     ratio = balance.strengths["inertia"].value / inertia if inertia else float("nan")
     wrong = "one of the two is"
@@ -146,7 +128,7 @@ def _calibration(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]
         return
     if not 1 / FAR < gain.value < FAR or 1 / CALIBRATED < gain.value < CALIBRATED:
         return
-    lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other))
+    lead, other = (label_of(prepared, balance.body, q) for q in (balance.lead, balance.other))
     yield Finding(
         "force scales",
         "note",
@@ -233,65 +215,6 @@ def _poor_guess(
         {f"ratio.{n}": r for n, r in ratios.items()},
         balance.body,
     )
-
-
-def _shifts(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
-    """A finding on channels that are late or early by half a sample or more."""
-    if balance.shifts and balance.left <= UNEXPLAINED:
-        stretches = [s for s in prepared.of("fit") if s.motion.body == balance.body]
-        drift = find_drift(model.body(balance.body), stretches, balance)
-        if drift is not None:
-            yield report_drift(_name(prepared, balance.body, drift.channel), balance, drift)
-            return
-    h = max(s.motion.sample_time for s in prepared.of("fit") if s.motion.body == balance.body)
-    late = {n: e.value for n, e in balance.shifts.items() if e.sure and abs(e.value) >= 0.5 * h}
-    if not late:
-        return
-    parts = [
-        f"{_name(prepared, balance.body, n)} "
-        + _describe_lateness(t, h, "the forces" if n == "position" else "the motion")
-        for n, t in late.items()
-    ]
-    concern: Literal["note", "warning"] = "warning"
-    first, seconds = next(iter(late.items()))
-    where = _name(prepared, balance.body, first)
-    remedy = f'write delay = {{ value = {1e3 * seconds:.3g}, unit = "ms" }} at channels.{where}'
-    less = max(map(abs, late.values()))
-    turned = phase_of_shift(prepared.of("fit"), balance.body, less)
-    if turned > 1.0:
-        concern = "note"
-        remedy = f"on a motion of one frequency this is a phase of {turned:.2g} rad, and a wrong "
-        remedy += "gain or a missing force may look the same: no delay before you know it"
-    elif less < h or balance.left > UNEXPLAINED or len(late) > 1:
-        # a shift by whole samples alone does not explain it: something between force and motion may
-        concern, remedy = "note", "columns are shifted, or something between them is compliant"
-    elif _is_alone(prepared, balance) and less > CLOCK.latest and balance.left > EXPLAINED:
-        concern, remedy = "note", "hardly any logger is so late, and a hand that is not logged, or "
-        remedy += "a force that the model lacks, may look the same: no delay before you know it"
-    elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:
-        concern, remedy = "note", "a diagnosis counts up to a row of it as a delay of the logger"
-    elif set(late) == {"actuator_force"} and 0.0 < seconds <= CLOCK.latest:
-        remedy += ", or leave it to a diagnosis"
-    elif late.get("actuator_force", 0.0) < 0:
-        # a cause before its effect: physics does that too
-        concern, remedy = "note", "the actuator is late, or the position is logged late"
-    numbers = {f"{n}.lag": t for n, t in late.items()}
-    numbers |= {"left": balance.left, "unshifted": balance.unshifted, "sample_time": h}
-    shares = f"{100 * balance.unshifted:.2g} -> {100 * balance.left:.2g} % of the force in motion"
-    text = " and ".join(parts)
-    yield Finding(
-        "time shift",
-        concern,
-        f"{text}: {remedy} ({shares} left unexplained).",
-        numbers,
-        balance.body,
-    )
-
-
-def _describe_lateness(seconds: float, sample_time: float, behind: str) -> str:
-    samples = seconds / sample_time
-    word = "lags" if seconds > 0 else "leads"
-    return f"{word} {behind} by {1e3 * abs(seconds):.2g} ms ({abs(samples):.1f} samples)"
 
 
 def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Finding:
