@@ -7,14 +7,18 @@ of the squares of the difference of two passes are those of one pass. The rest o
 repeats: there something is missing from the model, even if no candidate describes it.
 
 Residuals are compared, not forces: the model takes out what small differences of the two motions
-change. Where the model lacks a force that changes suddenly, such as at the end of a gap, such
-differences count as not repeated. So the part that repeats is known to be at least as stated.
+change. What the model lacks changes with the place, so two motions are the same only if one is
+ahead of the other by no more than the bandwidth resolves. Where a force that changes suddenly is
+missing, such as at the end of a gap, differences still count as not repeated.
+
+In two short passes, noise is alike by chance. How much is seen from the differences of the passes
+themselves: their squares, and how long they stay alike.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -35,23 +39,28 @@ class Repeatability:
     error: part of the force that differs from one pass to another (rms of one pass)
     left: error of the model on the same rows
     share: part of the rows of all records, 0 to 1
+    squares: part of all squares that the model leaves, on the same rows, 0 to 1
+    chance: relative force error that seems to repeat by chance, if all of `left` is noise
     """
 
     error: float
     left: float
     share: float
+    squares: float = 1.0
+    chance: float = 0.0
 
     @property
     def repeating(self) -> float:
-        """Part of the model's error that is the same on each pass, at least."""
-        return float(np.sqrt(max(self.left**2 - self.error**2, 0.0)))
+        """Part of the model's error that is the same on each pass; 0 where this may be chance."""
+        same = float(np.sqrt(max(self.left**2 - self.error**2, 0.0)))
+        return same if same > self.chance else 0.0
 
     def __str__(self) -> str:
         error, left, share = 100 * self.error, 100 * self.left, 100 * self.share
+        same = f"{100 * self.repeating:.2g} % repeats" if self.repeating else "none surely repeats"
         return (
             f"{error:.2g} % of the force differs from pass to pass over the same motion "
-            f"({share:.0f} % of the rows); of {left:.2g} % left there, "
-            f"{100 * self.repeating:.2g} % repeats"
+            f"({share:.0f} % of the rows); of {left:.2g} % left there, {same}"
         )
 
 
@@ -63,6 +72,7 @@ class _Course:
     signals: positions and velocities (2 k, rows), of the body and of the joints beside it
     weight: number of rows of the record that each row stands for
     length: rows of a pass
+    resolved: s by which one motion may be ahead of another that is the same
     """
 
     body: tuple[str, float]
@@ -71,6 +81,7 @@ class _Course:
     force: Array
     weight: float
     length: int
+    resolved: float
 
 
 def repeatability(
@@ -82,7 +93,7 @@ def repeatability(
     """
     courses = list(_list_courses(model, prepared, beside))
     squares = np.zeros(3)
-    compared = whole = 0.0
+    compared = whole = every = left_there = by_chance = 0.0
     for course in courses:
         alike = [other for other in courses if other.body == course.body]
         covered = np.zeros(len(course.force), dtype=bool)
@@ -92,9 +103,14 @@ def repeatability(
             passes = [other.residual[there] for other, there in _find_again(course, here, alike)]
             if not passes:
                 continue
-            apart = np.mean([np.sum((residual - again) ** 2) for again in passes])
+            between = [residual - again for again in passes]
+            apart = np.mean([d @ d for d in between])
             squares += course.weight * np.array([apart, residual @ residual, force @ force])
+            alone = np.mean([_alike_by_chance(d / np.sqrt(2.0)) for d in between])
+            by_chance += 2.0 * course.weight**2 * float(alone) / len(passes)
             covered[here] = True
+        every += course.weight * float(course.residual @ course.residual)
+        left_there += course.weight * float(np.sum(course.residual[covered] ** 2))
         whole += course.weight * len(covered)
         compared += course.weight * float(covered.sum())
     if not (whole and compared > CRITERIA.passed_again * whole and squares[2] > 0.0):
@@ -102,14 +118,28 @@ def repeatability(
     error, left = np.sqrt(squares[:2] / squares[2] / (2.0, 1.0))
     if not (np.isfinite(error) and np.isfinite(left)):
         return None
-    return Repeatability(float(error), float(left), compared / whole)
+    # were all that is left noise, as much more of it is alike as it is larger than what differs
+    deviation = np.sqrt(by_chance) / (0.5 * squares[0]) if squares[0] > 0.0 else 0.0
+    chance = left * np.sqrt(CRITERIA.chance * deviation)
+    part = left_there / every if every > 0.0 else 1.0
+    return Repeatability(float(error), float(left), compared / whole, part, float(chance))
+
+
+def _alike_by_chance(noise: Array) -> float:
+    """Variance of the product of two passes (rows,) of such a noise, which are independent.
+
+    Lags up to a quarter of a pass count: at longer ones, chance is larger than what is alike.
+    """
+    rows = len(noise)
+    lags = np.correlate(noise, noise, mode="full")[rows - 1 : rows + rows // 4]
+    return float((2.0 * lags @ lags - lags[0] ** 2) / rows)
 
 
 def repeats_data(repeats: Repeatability | None) -> dict[str, Any] | None:
     """The entry `repeats` of an answer."""
     if repeats is None:
         return None
-    return {"error": repeats.error, "left": repeats.left, "share": repeats.share}
+    return asdict(repeats)
 
 
 def read_repeats(content: Mapping[str, Any]) -> Repeatability | None:
@@ -117,7 +147,7 @@ def read_repeats(content: Mapping[str, Any]) -> Repeatability | None:
     entry = content.get("repeats")
     if entry is None:
         return None
-    return Repeatability(float(entry["error"]), float(entry["left"]), float(entry["share"]))
+    return Repeatability(**{f.name: float(entry[f.name]) for f in fields(Repeatability)})
 
 
 def _list_courses(
@@ -138,7 +168,8 @@ def _list_courses(
             continue
         # as many digits as a clock has: spacings that agree to rounding are the same
         body = (s.motion.body, float(f"{spacing:.9g}"))
-        yield _Course(body, signals, residual, measured_force(s), s.weight, length)
+        resolved = CRITERIA.ahead / prepared.bandwidth
+        yield _Course(body, signals, residual, measured_force(s), s.weight, length, resolved)
 
 
 def _cycle(stretch: Stretch) -> float:
@@ -165,7 +196,7 @@ def _find_again(
     for other in others:
         if other.signals.shape[1] < course.length:
             continue
-        apart = _differences(course.signals[:, here], other.signals)
+        apart = _differences(course.signals[:, here], other.signals, course.resolved)
         if other is course:
             apart[max(here.start - course.length + 1, 0) : here.stop] = np.inf
         alike = np.flatnonzero(apart < CRITERIA.one_motion**2)
@@ -175,10 +206,11 @@ def _find_again(
                 yield other, slice(first, first + course.length)
 
 
-def _differences(signals: Array, others: Array) -> Array:
+def _differences(signals: Array, others: Array, resolved: float) -> Array:
     """Mean square difference of a pass and each place of a course, over the pass's motion.
 
     signals: (2 k, length), positions and velocities in turn;  others: (2 k, rows)
+    resolved: s; inf where a pass is ahead by more, in the mean (rms)
     returns: (rows - length + 1,); inf where a signal of the pass does not change
     """
     length = signals.shape[1]
@@ -193,4 +225,6 @@ def _differences(signals: Array, others: Array) -> Array:
         if not size > 0.0:
             return np.full_like(apart, np.inf)
         apart += np.maximum(squares, 0.0) / size
+        if i % 2 == 0:
+            apart[squares > resolved**2 * float(signals[i + 1] @ signals[i + 1])] = np.inf
     return apart / len(signals)
