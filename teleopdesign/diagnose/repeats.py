@@ -106,8 +106,9 @@ def repeatability(
             between = [residual - again for again in passes]
             apart = np.mean([d @ d for d in between])
             squares += course.weight * np.array([apart, residual @ residual, force @ force])
-            alone = np.mean([_alike_by_chance(d / np.sqrt(2.0)) for d in between])
-            by_chance += 2.0 * course.weight**2 * float(alone) / len(passes)
+            # of one other pass: the mean over all passes counts
+            alone = _alike_by_chance(between[0] / np.sqrt(2.0))
+            by_chance += 2.0 * course.weight**2 * alone / len(passes)
             covered[here] = True
         every += course.weight * float(course.residual @ course.residual)
         left_there += course.weight * float(np.sum(course.residual[covered] ** 2))
@@ -131,7 +132,7 @@ def _alike_by_chance(noise: Array) -> float:
     Lags up to a quarter of a pass count: at longer ones, chance is larger than what is alike.
     """
     rows = len(noise)
-    lags = np.correlate(noise, noise, mode="full")[rows - 1 : rows + rows // 4]
+    lags = correlate(noise, noise)[rows - 1 : rows + rows // 4]
     return float((2.0 * lags @ lags - lags[0] ** 2) / rows)
 
 
