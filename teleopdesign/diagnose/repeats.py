@@ -31,6 +31,9 @@ from .criteria import CRITERIA
 from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
 
+#: differences are computed up to so many times the largest signal of a pass: far above those alike
+FAR = 3.0
+
 
 @dataclass(frozen=True)
 class Repeatability:
@@ -73,6 +76,7 @@ class _Course:
     weight: number of rows of the record that each row stands for
     length: rows of a pass
     resolved: s by which one motion may be ahead of another that is the same
+    hand: low-passed interaction force that was measured; zero where none was
     """
 
     body: tuple[str, float]
@@ -82,6 +86,7 @@ class _Course:
     weight: float
     length: int
     resolved: float
+    hand: Array
 
 
 def repeatability(
@@ -169,8 +174,16 @@ def _list_courses(
             continue
         # as many digits as a clock has: spacings that agree to rounding are the same
         body = (s.motion.body, float(f"{spacing:.9g}"))
-        resolved = CRITERIA.ahead / prepared.bandwidth
-        yield _Course(body, signals, residual, measured_force(s), s.weight, length, resolved)
+        yield _Course(
+            body,
+            signals,
+            residual,
+            measured_force(s),
+            s.weight,
+            length,
+            resolved=CRITERIA.ahead / prepared.bandwidth,
+            hand=s.motion.lowpassed(s.motion.interaction, s.keep),
+        )
 
 
 def _cycle(stretch: Stretch) -> float:
@@ -192,7 +205,8 @@ def _find_again(
 ) -> Iterator[tuple[_Course, slice]]:
     """Each course and its rows that repeat the motion of these rows, where they do it best.
 
-    Rows that overlap with the pass itself do not count.
+    Rows that overlap with the pass itself do not count, nor does a pass with another force of the
+    hand: then the actuator's force is another one, too, and so is all that it loses on its way.
     """
     for other in others:
         if other.signals.shape[1] < course.length:
@@ -204,7 +218,11 @@ def _find_again(
         for near in np.split(alike, 1 + np.flatnonzero(np.diff(alike) > 1)):
             if len(near):
                 first = int(near[np.argmin(apart[near])])
-                yield other, slice(first, first + course.length)
+                there = slice(first, first + course.length)
+                hands = course.hand[here] - other.hand[there]
+                forces = course.force[here]
+                if hands @ hands <= CRITERIA.one_motion**2 * (forces @ forces):
+                    yield other, there
 
 
 def _differences(signals: Array, others: Array, resolved: float) -> Array:
@@ -218,14 +236,16 @@ def _differences(signals: Array, others: Array, resolved: float) -> Array:
     apart = np.zeros(others.shape[1] - length + 1)
     for i, (mine, theirs) in enumerate(zip(signals, others, strict=True)):
         mean = float(mine.mean())
-        here, there = mine - mean, theirs - mean
+        here, size = mine - mean, mine if i % 2 else mine - mean
+        # places far away are never alike, and their squares would hide the differences of others
+        far = FAR * float(np.max(np.abs(size)))
+        there = np.clip(theirs - mean, -far, far)
         sums = np.concatenate([[0.0], np.cumsum(there**2)])
         crossed = correlate(there, here, mode="valid", method="fft")
         squares = here @ here + sums[length:] - sums[:-length] - 2.0 * crossed
-        size = float(here @ here) if i % 2 == 0 else float(mine @ mine)
-        if not size > 0.0:
+        if not size @ size > 0.0:
             return np.full_like(apart, np.inf)
-        apart += np.maximum(squares, 0.0) / size
+        apart += np.maximum(squares, 0.0) / (size @ size)
         if i % 2 == 0:
             apart[squares > resolved**2 * float(signals[i + 1] @ signals[i + 1])] = np.inf
     return apart / len(signals)

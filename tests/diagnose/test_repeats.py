@@ -13,6 +13,7 @@ from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.repeats import (
     Repeatability,
+    _differences,
     read_repeats,
     repeatability,
     repeats_data,
@@ -187,3 +188,34 @@ def test_the_part_of_the_squares_is_that_of_the_rows_that_are_repeated(tmp_path)
     prepared = prepare(experiment)
     repeats = repeatability(Model.from_experiment(experiment), prepared)
     assert repeats.share > 0.5 and repeats.squares < 0.2
+
+
+@pytest.mark.parametrize(("gain", "size"), [(0.8, 3.0), (1.0, 0.0)])
+def test_another_force_of_the_hand_is_another_pass(tmp_path, gain, size):
+    """What an actuator loses depends on its force, which a hand changes along the same motion."""
+    fit, prepared, _ = fitted(tmp_path, again)
+
+    def pushed(k, s):
+        t = s.motion.time - s.motion.time[0]
+        hand = size * np.sin(0.77 * t + k) + size * np.sin(2.9 * t)
+        command = (s.motion.command - hand) / gain
+        return replace(s, motion=replace(s.motion, command=command, interaction=hand))
+
+    stretches = tuple(pushed(k, s) for k, s in enumerate(prepared.stretches))
+    repeats = repeatability(fit.model, replace(prepared, stretches=stretches))
+    assert (repeats is None) == (size > 0.0)
+
+
+@pytest.mark.parametrize("far", [0.0, 1e4, 1e7])
+def test_a_long_way_before_makes_no_other_place_the_same(far):
+    """Squares of a way of many turns are so large that rounding hid the small motion behind it."""
+    t = 0.02 * np.arange(6000)
+    begun = np.maximum(t - 40.0, 0.0)
+    w = 2 * np.pi / 2.4
+    small = 1e-3 * np.sin(w * begun) + 0.01 * begun  # never at the same place again
+    speed = np.where(t < 40.0, far, 1e-3 * w * np.cos(w * begun) + 0.01)
+    signals = np.array([small + far * np.minimum(t, 40.0), speed])
+    here = slice(4000, 4120)
+    apart = _differences(signals[:, here], signals, np.inf)
+    alike = np.flatnonzero(apart < 0.05**2)
+    assert 4000 in alike and np.all(np.abs(alike - 4000) < 5)
