@@ -31,9 +31,6 @@ from .criteria import CRITERIA
 from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
 
-#: differences are computed up to so many times the largest signal of a pass: far above those alike
-FAR = 3.0
-
 
 @dataclass(frozen=True)
 class Repeatability:
@@ -238,7 +235,7 @@ def _differences(signals: Array, others: Array, resolved: float) -> Array:
         mean = float(mine.mean())
         here, size = mine - mean, mine if i % 2 else mine - mean
         # places far away are never alike, and their squares would hide the differences of others
-        far = FAR * float(np.max(np.abs(size)))
+        far = 3.0 * float(np.max(np.abs(size)))
         there = np.clip(theirs - mean, -far, far)
         sums = np.concatenate([[0.0], np.cumsum(there**2)])
         crossed = correlate(there, here, mode="valid", method="fft")
