@@ -14,9 +14,10 @@ RATE = np.gradient(ANGLE, H)
 TORQUE = 0.05 * np.gradient(RATE, H) + 0.4 * np.tanh(RATE / 0.01) + 0.2 * RATE
 
 
-def channels(name="tau (Nm)", *, noise=0.03, step=STEP, torque=TORQUE, **choices):
+def channels(name="tau (Nm)", *, noise=0.03, step=STEP, torque=TORQUE, times=1, **choices):
     read = step * np.round(ANGLE / step) if step else ANGLE + 1e-5 * RNG.standard_normal(len(T))
     columns = {"t": T, "q (rad)": read, name: torque + noise * RNG.standard_normal(len(T))}
+    columns = {n: x if n == "t" else np.repeat(x[::times], times) for n, x in columns.items()}
     log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, remarks=())
     survey = survey_log(log, "log", Choices(**choices))
     return survey.channels["actuator_force"], " ".join(survey.notes)
@@ -69,3 +70,10 @@ def test_a_force_that_is_tossed_from_row_to_row_is_an_excitation(torque):
     """Its scatter was stated as noise, 1.03 of its standard deviation: any model is adequate."""
     entry, notes = channels(torque=torque, actuator_force="tau (Nm)")
     assert "noise" not in entry and "scatters" not in notes
+
+
+@pytest.mark.parametrize("times", [2, 4])
+def test_rows_that_repeat_a_reading_do_not_hide_its_scatter(times):
+    """Half of it was stated, and `check` warned that the readings scatter by twice as much."""
+    entry, _ = channels(times=times)
+    assert entry["noise"] == pytest.approx(0.03, rel=0.2)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..column_names import is_wanted, words_of
-from ..encoder import reading_noise
+from ..encoder import CHANGES_OF_FORCE, reading_noise, update_period
+from ..filtering import Array
 from .acting import names_voltage
 from .content import Survey
 
@@ -44,7 +45,7 @@ def state_scatter(survey: Survey, name: str) -> None:
     is_estimated = entry.get("measured") or not position.keys() & {"resolution", "counts_per_turn"}
     if is_command or is_estimated:
         return
-    values = survey.columns[name].values
+    values = _read_anew(survey.columns[name].values, survey.columns[position["column"]].values)
     scatter = reading_noise(values)
     if not LEAST < scatter / max(float(np.std(values)), 1e-300) < MOST:
         return
@@ -53,3 +54,13 @@ def state_scatter(survey: Survey, name: str) -> None:
         f"{name!r} scatters by {entry['noise']:g} {entry['unit']} from row to row, stated as "
         "noise: delete it if the column holds the exact command"
     )
+
+
+def _read_anew(force: Array, position: Array) -> Array:
+    """The readings of a force (n,), without the rows that repeat it together with the position."""
+    columns = (force, position)
+    if min(update_period(x, fewest=CHANGES_OF_FORCE) for x in columns) < 2:
+        return force
+    changed = (np.diff(force) != 0) | (np.diff(position) != 0)
+    read: Array = force[np.concatenate([[True], changed])]
+    return read
