@@ -94,6 +94,8 @@ def repeatability(
     beside: of each stretch, the motions of an arm's other joints: they must repeat as well
     """
     courses = list(_list_courses(model, prepared, beside))
+    if not all(np.all(np.isfinite(course.residual)) for course in courses):
+        return None  # a hidden body ran away
     squares = np.zeros(3)
     compared = whole = every = left_there = by_chance = 0.0
     for course in courses:

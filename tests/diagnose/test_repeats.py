@@ -219,3 +219,15 @@ def test_a_long_way_before_makes_no_other_place_the_same(far):
     apart = _differences(signals[:, here], signals, np.inf)
     alike = np.flatnonzero(apart < 0.05**2)
     assert 4000 in alike and np.all(np.abs(alike - 4000) < 5)
+
+
+@pytest.mark.parametrize("beyond", [np.inf, np.nan])
+def test_of_a_model_that_runs_away_nothing_is_stated(tmp_path, beyond, monkeypatch):
+    fit, prepared, repeats = fitted(tmp_path, again)
+    monkeypatch.setattr(
+        "teleopdesign.diagnose.repeats.residuals",
+        lambda _, stretches: [
+            (np.append(np.zeros(len(s.keep) - 1), beyond), None) for s in stretches
+        ],
+    )
+    assert repeats is not None and repeatability(fit.model, prepared) is None
