@@ -74,6 +74,7 @@ class _Course:
     length: rows of a pass
     resolved: s by which one motion may be ahead of another that is the same
     hand: low-passed interaction force that was measured; zero where none was
+    further: (m, rows), other signals on which effects depend, over their largest values
     """
 
     body: tuple[str, float]
@@ -84,6 +85,7 @@ class _Course:
     length: int
     resolved: float
     hand: Array
+    further: Array
 
 
 def repeatability(
@@ -182,7 +184,19 @@ def _list_courses(
             length,
             resolved=CRITERIA.ahead / prepared.bandwidth,
             hand=s.motion.lowpassed(s.motion.interaction, s.keep),
+            further=_further(s, stretches),
         )
+
+
+def _further(stretch: Stretch, stretches: Sequence[Stretch]) -> Array:
+    """The further signals on the rows that count, over their largest values in all stretches."""
+    mine = stretch.motion.further
+    rows = np.zeros((len(mine), len(stretch.keep)))
+    for i, name in enumerate(sorted(mine)):
+        every = (s.motion.further[name] for s in stretches if name in s.motion.further)
+        largest = max(float(np.max(np.abs(x))) for x in every)
+        rows[i] = mine[name][stretch.keep] / (largest or 1.0)
+    return rows
 
 
 def _cycle(stretch: Stretch) -> float:
@@ -205,7 +219,8 @@ def _find_again(
     """Each course and its rows that repeat the motion of these rows, where they do it best.
 
     Rows that overlap with the pass itself do not count, nor does a pass with another force of the
-    hand: then the actuator's force is another one, too, and so is all that it loses on its way.
+    hand, because then the actuator's force is another one, too, and so is all that it loses on
+    its way, or with another temperature or motion beside the body.
     """
     for other in others:
         if other.signals.shape[1] < course.length:
@@ -218,10 +233,19 @@ def _find_again(
             if len(near):
                 first = int(near[np.argmin(apart[near])])
                 there = slice(first, first + course.length)
-                hands = course.hand[here] - other.hand[there]
-                forces = course.force[here]
-                if hands @ hands <= CRITERIA.one_motion**2 * (forces @ forces):
+                if _acts_alike(course, here, other, there):
                     yield other, there
+
+
+def _acts_alike(course: _Course, here: slice, other: _Course, there: slice) -> bool:
+    """Whether the hand and the further signals of two passes of one motion are the same, too."""
+    hands, forces = course.hand[here] - other.hand[there], course.force[here]
+    if hands @ hands > CRITERIA.one_motion**2 * (forces @ forces):
+        return False
+    if len(course.further) != len(other.further):
+        return False
+    apart = np.mean((course.further[:, here] - other.further[:, there]) ** 2, axis=1)
+    return bool(np.all(apart <= CRITERIA.one_motion**2))
 
 
 def _differences(signals: Array, others: Array, resolved: float) -> Array:

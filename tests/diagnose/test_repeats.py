@@ -231,3 +231,17 @@ def test_of_a_model_that_runs_away_nothing_is_stated(tmp_path, beyond, monkeypat
         ],
     )
     assert repeats is not None and repeatability(fit.model, prepared) is None
+
+
+@pytest.mark.parametrize(("rise", "is_stated"), [(0.0, True), (0.02, True), (8.0, False)])
+def test_another_temperature_is_another_pass(tmp_path, rise, is_stated):
+    """rise: K/s, in the records one after the other"""
+    fit, prepared, repeats = fitted(tmp_path, again)
+
+    def warmed(k, s):
+        further = {"temperature": 20.0 + rise * (s.motion.time - s.motion.time[0] + k * LATER)}
+        return replace(s, motion=replace(s.motion, further=further))
+
+    stretches = tuple(warmed(k, s) for k, s in enumerate(prepared.stretches))
+    warm = repeatability(fit.model, replace(prepared, stretches=stretches))
+    assert warm == (repeats if is_stated else None)
