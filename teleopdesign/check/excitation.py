@@ -15,7 +15,7 @@ from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
-from ..diagnose.repeats import Repeatability, repeatability
+from ..diagnose.repeats import Repeatability, repeatability, repeats_data
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
@@ -73,7 +73,7 @@ def _describe_passes(repeats: Repeatability) -> Finding:
         f"a motion is made again in {100 * repeats.share:.0f} % of the rows. There "
         f"{100 * repeats.error:.2g} % of the force differs from pass to pass, which no model of "
         f"the motion explains; your model leaves {100 * repeats.left:.2g} %.",
-        {"error": repeats.error, "left": repeats.left, "share": repeats.share},
+        repeats_data(repeats) or {},
     )
 
 

@@ -128,6 +128,13 @@ class Criteria:
     #: position-controlled machines differ by 0.0006 to 0.04, different parts of one multisine by
     #: 0.3 and more. Higher: motions that differ are compared, and more seems not to repeat
     one_motion: float = 0.05
+    #: periods of the bandwidth by which one of two passes may be ahead of the other (rms). A force
+    #: that varies along the travel as fast as the bandwidth shows then differs by a fifth of its
+    #: squares at most. Lower: less than half of the rows that are compared; higher: a missing force
+    #: is said to differ from pass to pass
+    ahead: float = 0.1
+    #: standard errors of the squares that repeat, below which they may be chance
+    chance: float = 2.0
     #: periods of the bandwidth that a pass holds at least, beside one cycle of the motion. Lower:
     #: the state of hidden parts, such as a bristle, comes from another past; higher: short logs
     #: have no two passes

@@ -70,8 +70,8 @@ def open_to_others(
     """
     repeating = 1.0
     if repeats is not None and repeats.left > 0.0:
-        same = float(np.clip((repeats.repeating / repeats.left) ** 2, criteria.missed, 1.0))
-        repeating = 1.0 - repeats.share * (1.0 - same)
+        same = float(np.clip(1.0 - (repeats.error / repeats.left) ** 2, criteria.missed, 1.0))
+        repeating = 1.0 - repeats.squares * (1.0 - same)
     return min(repeating, _open_to_trees(trees, after, criteria))
 
 

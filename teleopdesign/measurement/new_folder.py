@@ -147,7 +147,7 @@ def _why_whole(survey: Survey, parts: FitAndCheck) -> str:
         when = f"from {begin:g} to {min(end, survey.duration):.4g} s"
         if inside.any() and rests(x[inside], step):
             return f"the body rests {when}, so that the log is not cut into"
-        if inside.any() and runs_one_way(unwrapped[inside]):
+        if inside.any() and runs_one_way(unwrapped[inside], step):
             return f"the body moves one way {when}, so that the log is not cut into"
     return ""
 

@@ -7,18 +7,30 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .encoder import reading_noise
 from .filtering import Array
 
 #: part of its travel by which a body comes back at most where it runs one way: noise of readings
 #: and overshoot at an end. More: a record with one short return counts as one way
 BACK = 0.05
+#: half of the way, in steps and in the noise of the readings, within which nothing surely moves
+PLAY = 3.0
 
 
-def runs_one_way(position: Array) -> bool:
-    """Whether a body hardly comes back on its way; position: (n,), without leaps of whole turns."""
-    forth = position - np.minimum.accumulate(position)  # how far it is ahead of where it was
-    back = np.maximum.accumulate(position) - position
-    return bool(min(forth.max(), back.max()) <= BACK * np.ptp(position))
+def runs_one_way(position: Array, step: float) -> bool:
+    """Whether a body hardly comes back on its way, with all returns together.
+
+    position: (n,), without leaps of whole turns;  step: of its readings
+    """
+    play = PLAY * max(step, reading_noise(position) if len(position) > 4 else 0.0)
+    followed = np.empty(len(position))
+    at = float(position[0])
+    for k, x in enumerate(position):  # as behind a gap: what moves within it moves nothing
+        at = min(max(at, x - play), x + play)
+        followed[k] = at
+    moves = np.diff(followed)
+    forth, back = float(moves[moves > 0].sum()), float(-moves[moves < 0].sum())
+    return min(forth, back) <= BACK * float(np.ptp(position))
 
 
 @dataclass(frozen=True)

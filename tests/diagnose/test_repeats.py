@@ -13,6 +13,7 @@ from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.repeats import (
     Repeatability,
+    _differences,
     read_repeats,
     repeatability,
     repeats_data,
@@ -33,13 +34,13 @@ def never(t):
     return 0.5 * np.sin(2.6 * t) + 0.3 * np.sin(0.7 * t * (1 + 0.1 * t)) + 0.1 * np.cos(9.1 * t)
 
 
-def fitted(folder, path, force=lambda t, x, v: 0.0 * t, noise=NOISE):
+def fitted(folder, path, force=lambda t, x, v: 0.0 * t, noise=NOISE, seconds=15.0, **made):
     """The model of a body with friction, fitted to records that also have this force."""
     write_made(
         folder / "made",
-        {"fit": [(15.0, path)], "check": [(10.0, lambda t: path(t + LATER))]},
+        {"fit": [(seconds, path)], "check": [(seconds / 1.5, lambda t: path(t + LATER))]},
         lambda t, x, v: 2.0 * np.sign(v) + 1.0 * v + force(t, x, v),
-        effects="coulomb = {}\nviscous = {}", step=1e-5, noise=noise, rate=400,
+        effects="coulomb = {}\nviscous = {}", step=1e-5, noise=noise, **{"rate": 400} | made,
     )  # fmt: skip
     experiment = load_experiment(folder / "made")
     prepared = prepare(experiment)
@@ -104,7 +105,7 @@ def test_axis_and_unit_do_not_matter(tmp_path, way):
 
 
 def test_a_repeatability_returns_from_an_answer():
-    repeats = Repeatability(error=0.02, left=0.03, share=0.6)
+    repeats = Repeatability(error=0.02, left=0.03, share=0.6, squares=0.7, chance=0.01)
     content = json.loads(json.dumps({"repeats": repeats_data(repeats)}))
     assert read_repeats(content) == repeats
     assert read_repeats({}) is read_repeats({"repeats": repeats_data(None)}) is None
@@ -112,21 +113,135 @@ def test_a_repeatability_returns_from_an_answer():
         "2 % of the force differs from pass to pass over the same motion (60 % of the rows); "
         "of 3 % left there, 2.2 % repeats"
     )
+    assert str(replace(repeats, chance=0.025)).endswith("none surely repeats")
 
 
 @pytest.mark.parametrize(
-    ("error", "share", "part"),
+    ("error", "squares", "part"),
     [
         (0.3, 1.0, 0.5),  # nothing repeats: half may be missed, as by a black box
-        (0.3, 0.4, 1 - 0.4 * 0.5),  # only where the motion was made again
+        (0.3, 0.4, 1 - 0.4 * 0.5),  # the rest is left where the motion was not made again
         (0.3 * 0.3**0.5, 1.0, 0.7),
         (0.0, 1.0, 1.0),
     ],
 )
-def test_what_does_not_repeat_hides_no_other_effect(error, share, part):
+def test_what_does_not_repeat_hides_no_other_effect(error, squares, part):
     class After:
         check_error = 0.3
 
-    repeats = Repeatability(error=error, left=0.3, share=share)
+    repeats = Repeatability(error=error, left=0.3, share=0.5, squares=squares, chance=0.0)
     assert open_to_others(None, After, repeats) == pytest.approx(part)
     assert open_to_others(None, After) == 1.0
+
+
+def with_noise(prepared, size, seed):
+    """The same records with other noise of this size (N m) in each command."""
+    rng = np.random.default_rng(seed)
+
+    def noisy(s):
+        m = s.motion
+        command = m.command + size * rng.standard_normal(len(m.command))
+        return replace(s, motion=replace(m, command=command))
+
+    return replace(prepared, stretches=tuple(map(noisy, prepared.stretches)))
+
+
+@pytest.mark.parametrize("seconds", [4.0, 12.0])
+def test_noise_that_is_alike_by_chance_does_not_repeat(tmp_path, seconds):
+    """Two passes of 1.6 s agree by chance: half of such records would seem to repeat."""
+    fit, prepared, _ = fitted(tmp_path, again, noise=EXACT, seconds=seconds)
+    many = [repeatability(fit.model, with_noise(prepared, 3.0, k)) for k in range(30)]
+    assert sum(r.repeating > 0.0 for r in many) <= 4
+    assert sum(r.error < r.left for r in many) > 10
+    assert np.median([r.error / r.left for r in many]) == pytest.approx(1.0, abs=0.1)
+    # what is left without noise is small but sure
+    exact = repeatability(fit.model, prepared)
+    assert exact.repeating == pytest.approx(exact.left, rel=0.05)
+
+
+@pytest.mark.parametrize("finest", [0.4, 0.1, 0.05])
+def test_a_motion_that_is_only_nearly_made_again_leaves_no_missing_force_to_chance(
+    tmp_path, finest
+):
+    """Passes that are apart by 4 % of the motion: a force of the place is another one there."""
+
+    def nearly(t):
+        return again(t / 5.0) + 0.02 * np.sin(0.2123 * t)
+
+    *_, repeats = fitted(
+        tmp_path, nearly, lambda t, x, v: 0.6 * np.sin(2 * np.pi * x / finest), EXACT,
+        bandwidth=10, rate=100, seconds=60.0,
+    )  # fmt: skip
+    assert repeats is None or repeats.error < 0.35 * repeats.left
+
+
+def test_the_part_of_the_squares_is_that_of_the_rows_that_are_repeated(tmp_path):
+    """A quiet motion is made again, a fast one is not, and a force of the speed is missing."""
+    write_made(
+        tmp_path / "made",
+        {"fit": [(20.0, lambda t: 0.2 * again(t)), (15.0, lambda t: 3.0 * never(t))]},
+        lambda t, x, v: 2.0 * np.sign(v) + v + np.maximum(np.abs(v) - 1.0, 0.0) * v,
+        effects="coulomb = {}\nviscous = { damping = { value = 1.0, fixed = true } }",
+        step=1e-5, noise=0.1, rate=400,
+    )  # fmt: skip
+    experiment = load_experiment(tmp_path / "made")
+    prepared = prepare(experiment)
+    repeats = repeatability(Model.from_experiment(experiment), prepared)
+    assert repeats.share > 0.5 and repeats.squares < 0.2
+
+
+@pytest.mark.parametrize(("gain", "size"), [(0.8, 3.0), (1.0, 0.0)])
+def test_another_force_of_the_hand_is_another_pass(tmp_path, gain, size):
+    """What an actuator loses depends on its force, which a hand changes along the same motion."""
+    fit, prepared, _ = fitted(tmp_path, again)
+
+    def pushed(k, s):
+        t = s.motion.time - s.motion.time[0]
+        hand = size * np.sin(0.77 * t + k) + size * np.sin(2.9 * t)
+        command = (s.motion.command - hand) / gain
+        return replace(s, motion=replace(s.motion, command=command, interaction=hand))
+
+    stretches = tuple(pushed(k, s) for k, s in enumerate(prepared.stretches))
+    repeats = repeatability(fit.model, replace(prepared, stretches=stretches))
+    assert (repeats is None) == (size > 0.0)
+
+
+@pytest.mark.parametrize("far", [0.0, 1e4, 1e7])
+def test_a_long_way_before_makes_no_other_place_the_same(far):
+    """Squares of a way of many turns are so large that rounding hid the small motion behind it."""
+    t = 0.02 * np.arange(6000)
+    begun = np.maximum(t - 40.0, 0.0)
+    w = 2 * np.pi / 2.4
+    small = 1e-3 * np.sin(w * begun) + 0.01 * begun  # never at the same place again
+    speed = np.where(t < 40.0, far, 1e-3 * w * np.cos(w * begun) + 0.01)
+    signals = np.array([small + far * np.minimum(t, 40.0), speed])
+    here = slice(4000, 4120)
+    apart = _differences(signals[:, here], signals, np.inf)
+    alike = np.flatnonzero(apart < 0.05**2)
+    assert 4000 in alike and np.all(np.abs(alike - 4000) < 5)
+
+
+@pytest.mark.parametrize("beyond", [np.inf, np.nan])
+def test_of_a_model_that_runs_away_nothing_is_stated(tmp_path, beyond, monkeypatch):
+    fit, prepared, repeats = fitted(tmp_path, again)
+    monkeypatch.setattr(
+        "teleopdesign.diagnose.repeats.residuals",
+        lambda _, stretches: [
+            (np.append(np.zeros(len(s.keep) - 1), beyond), None) for s in stretches
+        ],
+    )
+    assert repeats is not None and repeatability(fit.model, prepared) is None
+
+
+@pytest.mark.parametrize(("rise", "is_stated"), [(0.0, True), (0.02, True), (8.0, False)])
+def test_another_temperature_is_another_pass(tmp_path, rise, is_stated):
+    """rise: K/s, in the records one after the other"""
+    fit, prepared, repeats = fitted(tmp_path, again)
+
+    def warmed(k, s):
+        further = {"temperature": 20.0 + rise * (s.motion.time - s.motion.time[0] + k * LATER)}
+        return replace(s, motion=replace(s.motion, further=further))
+
+    stretches = tuple(warmed(k, s) for k, s in enumerate(prepared.stretches))
+    warm = repeatability(fit.model, replace(prepared, stretches=stretches))
+    assert warm == (repeats if is_stated else None)

@@ -224,7 +224,9 @@ _LATER: dict[str, Check] = {
     "learnable": _ERROR,
     "black_box": _or_null(_table({"left": _SIZE, "alone": _SIZE, "where": _text})),
     "near_reversals": _or_null(_table({"check_error": _SIZE, "share": _SIZE})),
-    "repeats": _or_null(_table({"error": _SIZE, "left": _SIZE, "share": _SIZE})),
+    "repeats": _or_null(
+        _table(dict.fromkeys(("error", "left", "share", "squares", "chance"), _SIZE))
+    ),
     "simulation": _table({"horizons": _list_of(_table({"use": _text, "at": _text}))}),
     "at_bound": _list_of(_text),
     "experiment": _table(
