@@ -18,6 +18,7 @@ from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..errors import ModelError
 from ..measurement.motion import Motion
 from ..measurement.repeated_rows import runs_of
+from ..measurement.reversals import count_reversals
 from ..model import Model
 from ..realise.along_motion import measured_along
 from ..realise.traced import Along
@@ -146,7 +147,7 @@ def record_facts(
         sweep=max(float(np.ptp(m.position)) for m in motions),
         step=min(float(s.motion.step) for s in stretches),
         stroke=_stroke(stretches),
-        reversals=sum(_count_reversals(s) for s in stretches),
+        reversals=sum(count_reversals(s.motion.direction) for s in stretches),
         force=float(max(measured)),
         acting=float(max(measured)) + _force_of_motion(numbers["inertia"], stretches),
         speed=speed,
@@ -188,12 +189,6 @@ def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
     return [np.concatenate(positions) for positions in groups.values()]
 
 
-def _count_reversals(stretch: Stretch) -> int:
-    """Number of reversals of a stretch; rows without a sure direction do not count."""
-    directions = stretch.motion.direction
-    return int(np.count_nonzero(np.diff(directions[directions != 0])))
-
-
 def _stroke(stretches: Sequence[Stretch]) -> float:
     """Mean time of motion one way (s), over all stretches; inf where there is one direction."""
     moving, runs, ways = 0.0, 0, set()
@@ -202,6 +197,6 @@ def _stroke(stretches: Sequence[Stretch]) -> float:
         if not len(directions):
             continue
         moving += len(directions) * s.motion.sample_time
-        runs += 1 + _count_reversals(s)
+        runs += 1 + count_reversals(s.motion.direction)
         ways |= set(directions.tolist())
     return moving / runs if len(ways) > 1 else float("inf")

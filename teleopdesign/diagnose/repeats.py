@@ -26,6 +26,7 @@ from scipy.signal import correlate
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.reversals import count_reversals
 from ..model import Model
 from .criteria import CRITERIA
 from .prepare import Prepared, Stretch, measured_force
@@ -201,8 +202,7 @@ def _further(stretch: Stretch, stretches: Sequence[Stretch]) -> Array:
 
 def _cycle(stretch: Stretch) -> float:
     """Mean time (s) from one reversal to the next in the same direction; inf: no such time."""
-    direction = stretch.motion.direction[stretch.motion.direction != 0]
-    reversals = np.count_nonzero(np.diff(direction))
+    reversals = count_reversals(stretch.motion.direction)
     seconds = len(stretch.motion.time) * stretch.motion.sample_time
     return 2.0 * seconds / reversals if reversals else float("inf")
 

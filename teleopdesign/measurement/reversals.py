@@ -33,6 +33,11 @@ def runs_one_way(position: Array, step: float) -> bool:
     return min(forth, back) <= BACK * float(np.ptp(position))
 
 
+def count_reversals(direction: NDArray[np.int8]) -> int:
+    """Number of reversals of directions (n,): +1, -1, or 0 where no motion is certain."""
+    return int(np.count_nonzero(np.diff(direction[direction != 0])))
+
+
 @dataclass(frozen=True)
 class SinceReversal:
     """For each sample (n,): time and travel since the last reversal, and the rest before it.

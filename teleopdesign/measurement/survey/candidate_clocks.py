@@ -79,13 +79,18 @@ def position_by_name(raw: Mapping[str, Array], choices: Choices) -> str:
     """The column that is stated as the position, or most likely one by its name."""
     if choices.position is not None:
         return choices.position
-    return max(raw, key=lambda n: likeness(n, "position") - 0.6 * is_wanted(n))
+    return max(raw, key=_likeness_of_position)
+
+
+def _likeness_of_position(name: str) -> float:
+    """How surely a name is that of a measured position; a set point is named alike."""
+    return likeness(name, "position") - 0.6 * is_wanted(name)
 
 
 def busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
     """The clock of the position, among several clocks of a log."""
     if choices.position is not None:
         return log.clocks[choices.position]
-    scores = {n: likeness(n.rpartition(".")[2], "position") - 0.6 * is_wanted(n) for n in raw}
+    scores = {n: _likeness_of_position(n.rpartition(".")[2]) for n in raw}
     best = max(scores, key=lambda n: (scores[n], len(raw[n])))
     return log.clocks[best]
