@@ -29,11 +29,11 @@ from ..model import Model
 from ..notebook import html_table
 from ..plain_data import make_plain
 from ..quantity import unit_of
+from .cores import map_in_threads
 from .error import force_error
 from .prepare import Prepared, prepare
 from .record_offsets import apply_record_offsets
 from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
-from .threads import map_in_threads
 
 if TYPE_CHECKING:
     from .arms.prepared import PreparedArm

@@ -17,13 +17,13 @@ from ..measurement.filtering import Array
 from ..model import Model
 from .bodies_apart import select_bodies
 from .candidates import Candidate, make_starts
+from .cores import map_on_cores
 from .fit import Fit, fit_squares, free_parameters
 from .linear_start import span_of
 from .prepare import Prepared
 from .search import Base, estimate_best_start, is_rugged
 from .search_plan import PLAN, SearchPlan
 from .stated import has_moved, reset_to_stated
-from .threads import map_in_threads
 from .without_derivatives import minimise_nearby
 
 
@@ -56,7 +56,7 @@ def search_among_draws(
     least = min((fit_squares(fit) for _, fit in attempts), default=0.0)
     if least < plan.unexplained * fit_squares(base.fit):
         return list(attempts)
-    return map_in_threads(search, attempts)
+    return map_on_cores(search, attempts)
 
 
 def best_draws(

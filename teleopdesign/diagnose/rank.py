@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
-from itertools import count
 
 from ..errors import ModelError
 from ..model import Model
+from .candidate_fits import fit_each
 from .candidates import Candidate, bodies_with_measured_force, candidates
+from .cores import map_on_cores, one_thread_of_algebra
 from .criteria import CRITERIA, Criteria
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
 from .draws import search_among_draws
@@ -24,9 +25,8 @@ from .plausibility import implausible_effects
 from .prepare import Prepared
 from .progress import ProgressLine
 from .ranking import Ranked, Ranking
-from .search import base_of, estimate_from_starts, from_stated
+from .search import base_of, from_stated
 from .search_plan import PLAN
-from .threads import map_in_threads
 from .width import OpenWidths
 
 
@@ -94,7 +94,7 @@ def _contenders_refined(
             for i, (_, fit) in enumerate(attempts)
             if i not in refined and fit_squares(fit) <= most
         ]
-        finer = map_in_threads(
+        finer = map_on_cores(
             lambda i: _refine_candidate(attempts[i], worthless, prepared, stated), chosen
         )
         for i, attempt in zip(chosen, finer, strict=True):
@@ -124,6 +124,7 @@ def _least_squares_that_count(
     return min((fit_squares(f) for _, f in attempts), default=0.0)
 
 
+@one_thread_of_algebra()
 def rank_candidates(
     base: Fit,
     prepared: Prepared,
@@ -145,19 +146,9 @@ def rank_candidates(
     worth: part of the base's squares on the fit records below which a gain is not pursued; None:
         that of the criteria
     widely: where no candidate explains the records, draw further starts of gaps
-    progress: called before each candidate, from several threads
+    progress: called before each candidate
     """
     worth = criteria.worth if worth is None else worth
-    begun = count(1)
-    start = base_of(base, prepared)
-
-    def fit_candidate(candidate: Candidate) -> tuple[Candidate, Fit]:
-        if progress is not None:
-            line = ProgressLine(str(candidate), begun=next(begun), total=len(possible))
-            progress(line)
-        added = base.model.with_effect(candidate.effect, at=candidate.at)
-        return candidate, estimate_from_starts(added, prepared, start, stated, worth=worth)
-
     possible = candidates(
         base.model,
         [s.motion for s in prepared.stretches],
@@ -167,20 +158,18 @@ def rank_candidates(
     wanted = {c.key for c in (possible if among is None else among)}
     here = {body} if body is not None else set(base.model.bodies)
     possible = tuple(c for c in possible if c.key in wanted and base.model.holder(c.at) in here)
-    # effects with hidden states take longest, so they begin first
-    fits = map_in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
-    fits.sort(key=lambda cf: possible.index(cf[0]))
+    start = base_of(base, prepared)
+    fits = fit_each(possible, start, prepared, stated, worth=worth, progress=progress)
     if widely:
         fits = search_among_draws(fits, start, prepared, stated)
-    fits = map_in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
+    fits = [_from_kin(cf, fits, prepared) for cf in fits]
     worthless = (1.0 - worth) * fit_squares(base)
     widths = OpenWidths(prepared, criteria)
     fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, widths=widths)
-    results = map_in_threads(lambda cf: _ranked_best(base, cf, widths), fits)
-    ordered = sorted(results, key=rank_key)
+    results = sorted((_ranked_best(base, cf, widths) for cf in fits), key=rank_key)
     entries = [
-        replace(r, behind=whole_score(r.fit, ordered[0].fit) if i else 0.0)
-        for i, r in enumerate(ordered)
+        replace(r, behind=whole_score(r.fit, results[0].fit) if i else 0.0)
+        for i, r in enumerate(results)
     ]
     return Ranking(base, tuple(entries))
 

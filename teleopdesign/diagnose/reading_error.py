@@ -24,6 +24,7 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.simulated import UNDAMPED
+from .cores import map_in_threads
 from .effort import EFFORTS
 from .fit import Fit, estimate
 from .noise_floor import read_again
@@ -31,7 +32,6 @@ from .prepare import Prepared, Stretch, stretch_of
 from .record_offsets import apply_record_offsets
 from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
 from .solve import solve, spans_decades
-from .threads import map_in_threads
 
 #: bristle lengths of an ideal friction, in encoder steps, and damping ratios. An encoder cannot
 #: read such a length, so each pair is simulated. With the longest bristle, reversals look like

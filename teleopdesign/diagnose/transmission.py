@@ -17,6 +17,7 @@ from functools import partial
 from ..errors import ModelError
 from .adequacy import is_adequate
 from .candidates import Candidate, comes_too_early
+from .cores import map_on_cores
 from .decision import explained_share, is_better, is_supported, objection
 from .evidence import check_squares
 from .fit import Fit, estimate
@@ -82,9 +83,16 @@ def _best_pair(
     ranking: of the candidates added to the base; None: not known
     """
     alone = {r.candidate.key: r.fit for r in ranking.ranked} if ranking is not None else {}
-    pairs = [
-        _fit_pair(search, base, *both, alone.get(both[0].key)) for both in _possible_pairs(base)
-    ]
+    possible = list(_possible_pairs(base))
+
+    def begun(i: int) -> None:
+        transmission, friction = possible[i]
+        search.progress(f"trying {transmission} with {friction.effect.name}")
+
+    def fit(both: tuple[Candidate, Candidate]) -> tuple[Rung, Rung] | None:
+        return _fit_pair(search, base, *both, alone.get(both[0].key))
+
+    pairs = map_on_cores(fit, possible, begun=begun)
     supported = [
         pair for pair in pairs if pair is not None and _is_supported(search, state, base, pair)
     ]
@@ -122,7 +130,6 @@ def _fit_pair(
         of both effects may leave more than the base
     """
     prepared = search.prepared
-    search.progress(f"trying {transmission} with {friction.effect.name}")
     coarse = base_of(base, prepared).coarse
     starts = tip_starts(coarse, prepared.coarse, transmission, friction, plan=search.plan)
     if not starts:

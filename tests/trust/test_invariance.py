@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose import threads
+from teleopdesign.diagnose import cores
 
 ROD = td.example("rod")
 ROWS = 3001  # 3 s at 1 kHz
@@ -146,8 +146,9 @@ def test_a_fit_is_the_same_but_for_rounding(change, before, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 3])
-def test_a_fit_is_the_same_in_any_number_of_threads(count, before, tmp_path, monkeypatch):
-    monkeypatch.setattr(threads, "MOST", count)
+def test_a_fit_is_the_same_on_any_number_of_cores(count, before, tmp_path, monkeypatch):
+    monkeypatch.setattr(cores, "_can_copy", lambda: count > 1)
+    monkeypatch.setattr(cores, "_count_cores", lambda: count)
     assert parameters(as_recorded(), tmp_path / "rod") == before
 
 
