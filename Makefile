@@ -38,6 +38,7 @@ $(VENV)/installed-core: EXTRAS =
 $(VENV)/installed-test: EXTRAS = [test]
 $(VENV)/installed-studies: EXTRAS = [studies]
 $(VENV)/installed-docs: EXTRAS = [docs]
+$(VENV)/installed-fuzz: EXTRAS = [fuzz]
 $(VENV)/installed-%: pyproject.toml | $(BIN)/python
 	@echo "== Installing teleopdesign$(EXTRAS) and what it needs into $(VENV) (once; some minutes)"
 	@$(PIP) install --editable ".$(EXTRAS)"
@@ -55,9 +56,11 @@ slow: $(VENV)/installed-test  ## tests marked slow
 	@echo "== Slow tests"
 	@$(BIN)/pytest -n $(JOBS) -m slow $(PYTEST_ARGS)
 
-fuzz: $(VENV)/installed-test  ## spoilt files for every reader, FUZZ of each; failures go to build/fuzz
+fuzz: $(VENV)/installed-test $(VENV)/installed-fuzz  ## spoilt files for every reader, FUZZ of each, twice; failures go to build/fuzz
 	@echo "== $(FUZZ) spoilt files for each reader"
 	@FUZZ=$(FUZZ) $(BIN)/pytest tests/trust/test_fuzz.py $(PYTEST_ARGS)
+	@echo "== $(FUZZ) more for each, led by the branches that they reach"
+	@$(BIN)/python tests/trust/guided_fuzz.py --runs $(FUZZ)
 
 mutants: $(VENV)/installed-test  ## small changes that no test notices (MUTATE="FOLDER TESTS --number N")
 	@echo "== Mutants: $(MUTATE)"
@@ -93,10 +96,10 @@ lowest:  ## tests with every dependency at the lowest version that pyproject.tom
 		hypothesis polars pytest
 	@build/lowest/bin/python -m pytest $(LOWEST_TESTS) $(PYTEST_ARGS)
 
-lock: $(VENV)/installed-test $(VENV)/installed-docs  ## release/lock.txt: the versions of this environment; release/lowest.txt
+lock: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-fuzz  ## release/lock.txt: the versions of this environment; release/lowest.txt
 	@$(BIN)/python release/dependencies.py lowest lock
 
-licences: $(VENV)/installed-test $(VENV)/installed-docs  ## docs/licences.md: the licence of everything that is installed
+licences: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-fuzz  ## docs/licences.md: the licence of everything that is installed
 	@$(BIN)/python release/dependencies.py licences
 
 wheel:  ## wheel and sdist into dist

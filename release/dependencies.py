@@ -21,11 +21,11 @@ HERE = Path(__file__).parent
 PROJECT = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS: Mapping[str, list[str]] = PROJECT["optional-dependencies"]
 #: extras of which neither the package nor `make lowest` needs anything, or that need a GPU
-_NOT_TESTED = ("bench", "cuda", "docs")
+_NOT_TESTED = ("bench", "cuda", "docs", "fuzz")
 #: of the tools for tests, those that run them; the others read the code
 _RUNNERS = ("hypothesis", "polars", "pytest")
 #: tools of development, which a user of the package does not install
-_TOOLS = ("bench", "docs", "test")
+_TOOLS = ("bench", "docs", "fuzz", "test")
 #: licences that ask something of who hands on changed or linked code
 _COPYLEFT = re.compile(r"GPL|MPL|Mozilla|EUPL|EPL|CDDL|Affero", re.IGNORECASE)
 
@@ -103,9 +103,9 @@ def lock() -> str:
     version = ".".join(map(str, sys.version_info[:2]))
     head = [
         f"# Written by `make lock` with Python {version} on {sys.platform}: versions that passed.",
-        '# pip install -e ".[test,docs]" -c release/lock.txt',
+        '# pip install -e ".[test,docs,fuzz]" -c release/lock.txt',
     ]
-    distributions = installed([f"{PROJECT['name']}[docs,test]"])
+    distributions = installed([f"{PROJECT['name']}[docs,fuzz,test]"])
     return "\n".join([*head, *(f"{n}=={d.version}" for n, d in distributions.items())]) + "\n"
 
 
@@ -114,7 +114,7 @@ def licences() -> str:
     core = installed([PROJECT["name"]])
     wanted = (e for e in EXTRAS if e not in (*_TOOLS, *_NOT_TESTED))
     users = installed(f"{PROJECT['name']}[{e}]" for e in wanted)
-    tools = installed([f"{PROJECT['name']}[docs,test]"])
+    tools = installed([f"{PROJECT['name']}[docs,fuzz,test]"])
     tables = {
         "Always installed": core,
         "With the extras that users install": {n: d for n, d in users.items() if n not in core},
@@ -149,7 +149,7 @@ def _on_copyleft(tables: Mapping[str, Mapping[str, Distribution]]) -> list[str]:
         return ["None of them is under a copyleft licence."]
     return [
         "Copyleft among them; each is used as it is installed, none is changed or handed on with",
-        "the package. MPL asks that changes of its own files stay open; `docutils` is mostly in",
+        "the package. MPL asks that changes of its files stay open; `docutils` is mostly in",
         "the public domain, its part under the GPL is a mode of an editor:",
         "",
         *named,
