@@ -77,7 +77,7 @@ def installed(requirements: Iterable[str]) -> dict[str, Distribution]:
 
 
 def licence_of(package: Distribution) -> str:
-    """As the distribution states it: an expression, else its classifiers, else its first line."""
+    """As the distribution states it: in its metadata, else in the first lines of its licence."""
     meta = package.metadata
     if expression := meta.get("License-Expression"):
         return str(expression)
@@ -88,8 +88,15 @@ def licence_of(package: Distribution) -> str:
     ]
     if classifiers:
         return " or ".join(classifiers)
-    lines = [line.strip() for line in (meta.get("License") or "").splitlines() if line.strip()]
-    return lines[0][:60] if lines else "not stated in its metadata"
+    if lines := _lines(meta.get("License") or ""):
+        return lines[0][:60]
+    files = [f for f in package.files or [] if "licenses" in f.parts]
+    lines = [line for file in files for line in _lines(file.read_text())[:2]]
+    return ", ".join(lines) or "not stated in its metadata"
+
+
+def _lines(text: str) -> list[str]:
+    return [line.strip() for line in text.splitlines() if line.strip()]
 
 
 def lowest() -> str:

@@ -69,7 +69,7 @@ def fuzz(reader: str, runs: int, seeds: Path, kept: Path) -> None:
 
 def failing(readers: list[str], runs: int, kept: Path) -> list[str]:
     """The readers that a file made fail, each fuzzed in a process."""
-    found = []
+    broken = []
     for reader in readers:
         with tempfile.TemporaryDirectory() as scratch:
             seeds = Path(scratch) / "seeds"
@@ -78,10 +78,10 @@ def failing(readers: list[str], runs: int, kept: Path) -> list[str]:
             command += ["--seeds", str(seeds), "--folder", str(kept)]
             done = subprocess.run(command, capture_output=True, text=True, errors="replace")
         if done.returncode:
-            found.append(reader)
+            broken.append(reader)
             print(done.stderr[-3000:], file=sys.stderr)
         print(f"{reader}: {'FAILS' if done.returncode else 'no failure'}", flush=True)
-    return found
+    return broken
 
 
 def main() -> int:
