@@ -22,7 +22,6 @@ import argparse
 import json
 import sys
 import tempfile
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +29,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _one_case import write_json
+from _one_case import processor_seconds, write_json
 from _recovery_tables import line
 from _scoring import Truth, judge, load_answer, share
 from matplotlib.figure import Figure
@@ -143,9 +142,9 @@ def run(case: Case, seed: int, folder: Path, *, quick: bool = False) -> None:
         late=case.late,
     )
     among = QUICK_EFFECTS if quick else None
-    begin = time.process_time()
+    begin = processor_seconds()
     diagnosis = td.find_missing_in_arm(td.load_experiment(experiment), among=among)
-    spent = time.process_time() - begin
+    spent = processor_seconds() - begin
     path.parent.mkdir(parents=True, exist_ok=True)
     write_arm_answer(diagnosis, path)
     write_json(folder / "facts" / f"{case.name}.json", {"seconds": spent})

@@ -24,6 +24,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from _one_case import processor_seconds
+
 import teleopdesign as td
 from teleopdesign.diagnose.arms import find_missing_in_arm
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
@@ -60,12 +62,12 @@ def row_of(
     experiment: Experiment, output: Path, name: str, *, quick: bool, only: Sequence[str]
 ) -> dict[str, Any]:
     """What is found on one recording; its figure and its text beside the table."""
-    wall, processor = time.perf_counter(), time.process_time()
+    wall, processor = time.perf_counter(), processor_seconds()
     plan, among = (QUICK if quick else PLAN), (only or None)
     is_arm = experiment.arm is not None
     find = find_missing_in_arm if is_arm else td.find_missing
     diagnosis: Any = find(experiment, plan=plan, among=among)
-    seconds = time.perf_counter() - wall, time.process_time() - processor
+    seconds = time.perf_counter() - wall, processor_seconds() - processor
     return described(diagnosis, output, name) | {
         "seconds": {"wall": seconds[0], "processor": seconds[1]},
         "only": list(only),

@@ -22,6 +22,7 @@ import pickle
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -109,7 +110,7 @@ def _computed_by_copies(
         with suppress(OSError):  # no memory for another process: fewer copies
             for _ in range(copies):
                 here, there = multiprocessing.Pipe(duplex=False)
-                if (process := os.fork()) == 0:
+                if (process := _fork()) == 0:
                     _compute(function, parts, waiting, there)
                 there.close()
                 running[here] = process
@@ -122,6 +123,14 @@ def _computed_by_copies(
             with suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
             os.waitpid(process, 0)
+
+
+def _fork() -> int:
+    """Copy the process; 0 in the copy."""
+    with warnings.catch_warnings():
+        # Python 3.12 counts threads of linear algebra, which end before a copy and begin anew
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return os.fork()
 
 
 def _compute(
