@@ -15,6 +15,7 @@ a residual page by page: a sixth of the processor time.
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import multiprocessing
 import os
@@ -102,15 +103,15 @@ def _computed_by_copies(
     # a few bytes for each part: they fit into the pipe, from which each copy reads the next number
     os.write(added, np.arange(len(parts)).tobytes())
     os.close(added)
-    sys.stdout.flush()
-    sys.stderr.flush()
     gc.freeze()  # else a collection in a copy would write to, and so copy, all memory
     running: dict[Connection, int] = {}
+    first = os.getpid()
     try:
         with suppress(OSError):  # no memory for another process: fewer copies
             for _ in range(copies):
                 here, there = multiprocessing.Pipe(duplex=False)
                 if (process := _fork()) == 0:
+                    _end_with(first)
                     _compute(function, parts, waiting, there)
                 there.close()
                 running[here] = process
@@ -131,6 +132,14 @@ def _fork() -> int:
         # Python 3.12 counts threads of linear algebra, which end before a copy and begin anew
         warnings.simplefilter("ignore", DeprecationWarning)
         return os.fork()
+
+
+def _end_with(first: int) -> None:
+    """Let this copy end when the process that made it ends, even where that one is killed."""
+    with suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1: PR_SET_PDEATHSIG of Linux
+    if os.getppid() != first:
+        os._exit(0)
 
 
 def _compute(

@@ -97,6 +97,25 @@ def test_an_interrupt_ends_the_copies(monkeypatch):
         os.waitpid(-1, os.WNOHANG)
 
 
+@copied
+def test_copies_end_with_a_process_that_is_killed():
+    code = """
+import os, time
+from teleopdesign.diagnose import cores
+cores._count_cores = lambda: 2
+def wait(_):
+    os.write(1, b".")
+    time.sleep(60)
+cores.map_on_cores(wait, range(2))
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as process:
+        assert process.stdout.read(2) == b".."
+        process.kill()
+        begin = time.monotonic()
+        assert process.stdout.read() == b""  # until the last process that may write has ended
+        assert time.monotonic() - begin < 30
+
+
 def test_a_part_makes_no_copies_itself(work):
     def inner(x):
         return map_on_cores(lambda y: (os.getpid(), x + y), range(3)), os.getpid()
