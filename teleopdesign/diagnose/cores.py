@@ -80,10 +80,14 @@ def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> lis
 
 
 def _count_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    """Cores that this process may use; NUMBA_NUM_THREADS allows fewer, as to compiled loops.
+
+    A worker of a study has one.
+    """
+    here = hasattr(os, "sched_getaffinity")
+    count = len(os.sched_getaffinity(0)) if here else os.cpu_count() or 1
+    allowed = os.environ.get("NUMBA_NUM_THREADS", "")
+    return min(count, int(allowed)) if allowed.isdecimal() else count
 
 
 def _can_copy() -> bool:

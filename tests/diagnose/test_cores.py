@@ -13,6 +13,7 @@ import pytest
 
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
+from teleopdesign.studies.processes import one_thread
 
 #: arrays of 1 MiB that a residual and its tangents take together, and how often they are made
 TOGETHER, TIMES = 16, 50
@@ -95,6 +96,14 @@ def test_an_interrupt_ends_the_copies(monkeypatch):
     assert time.monotonic() - begin < 30
     with pytest.raises(ChildProcessError):  # none is left
         os.waitpid(-1, os.WNOHANG)
+
+
+@copied
+def test_a_worker_of_a_study_makes_no_copies(monkeypatch):
+    monkeypatch.setattr(cores, "_can_copy", lambda: True)
+    with one_thread():
+        processes = map_on_cores(lambda _: os.getpid(), range(4))
+    assert set(processes) == {os.getpid()}
 
 
 @copied
