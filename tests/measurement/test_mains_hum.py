@@ -37,6 +37,17 @@ def test_a_tenth_of_hum_is_reported_with_its_size(rod, key, frequency):
     assert one.numbers["rms"] == pytest.approx(0.1 * y.std(), rel=0.25)  # the window's scallop
 
 
+def test_a_weak_hum_is_a_note_and_taken_off_too(rod):
+    """Of a hundredth of the force, which is about the noise of this one."""
+    spoilt = humming(rod, "device.interaction_force", 50.0, 0.01)
+    (one,) = hums(spoilt)
+    assert one.concern == "note" and "% of the channel" in one.sentence
+    clean = rod.fit_records[0].signals["device.interaction_force"]
+    left = without_mains(spoilt.records[0], "device.interaction_force") - clean
+    # what the force itself has at that frequency goes with it
+    assert np.sqrt(np.mean(left**2)) < 0.2 * 0.01 * clean.std()
+
+
 def test_no_hum_is_reported_where_there_is_none(rod):
     assert hums(rod) == []
     assert hums(humming(rod, "device.actuator_force", 35.0, 0.1)) == []
@@ -79,13 +90,15 @@ def test_a_tone_is_reported_with_its_frequency_and_rms_and_taken_off_whole(frequ
 
 
 @pytest.mark.parametrize(("size", "is_reported"), [(0.5, False), (2.0, True)])
-def test_a_tone_that_a_position_shows_or_that_is_a_fiftieth_of_the_force_is_none(size, is_reported):
+def test_a_tone_that_a_position_shows_or_that_is_a_tiny_part_of_the_force_is_none(
+    size, is_reported
+):
     h, t = 1e-3, 1e-3 * np.arange(8000)
     random = np.random.default_rng(1)
     tone = np.sin(2 * np.pi * 50.0 * t)
     rest = 1e-4 * random.standard_normal(8000) + np.sin(2 * np.pi * 0.8 * t)
-    # 2 % of the rms of a sine of one: of the tone, its amplitude over that of the force
-    force = rest + size * 0.02 * tone
+    # 0.2 % of the rms of a sine of one: of the tone, its amplitude over that of the force
+    force = rest + size * 0.002 * tone
     assert (hum_of(force, [], h) is not None) == is_reported
     still = random.standard_normal(8000)
     assert (hum_of(force, [still], h) is not None) == is_reported

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...finding import Finding
-from ..hum import hum_of
+from ..hum import STRONG, hum_of
 from .signal import Signal
 
 
@@ -19,10 +19,12 @@ def check_hum(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     hum = hum_of(y, still, signal.record.sample_time)
     if hum is None:
         return []
+    share = hum.rms / float(y.std())
     sentence = (
         f"{signal.name} has a tone of {hum.mains:g} Hz, {hum.rms:.3g} {signal.unit} rms "
-        f"({hum.rms / float(y.std()):.0%} of the channel), that no position shows: hum of the "
+        f"({100 * share:.2g} % of the channel), that no position shows: hum of the "
         "mains? A diagnosis takes it off; shield the wire, or compare below that frequency."
     )
     numbers = {"frequency": hum.mains, "rms": hum.rms}
-    return [Finding("hum", "warning", sentence, numbers, signal.record.file)]
+    strong = share >= STRONG
+    return [Finding("hum", "warning" if strong else "note", sentence, numbers, signal.record.file)]
