@@ -49,7 +49,8 @@ def explained_share(
 def removed_share(errors: Sequence[float], floor: float, open_part: float = 1.0) -> float:
     """`explained_share` of one kind of error: before, after, and of the last fit."""
     before, after, last = errors
-    gain = before**2 - after**2
+    # no step explains more of the force than the last fit, as of a model with a turned sign
+    gain = min(before**2 - after**2, 1.0 - last**2)
     left = open_part * max(last**2 - floor**2, 0.0)  # NaN where all is blind: nothing is explained
     return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 

@@ -86,6 +86,14 @@ def test_what_is_explained_is_the_smaller_part_of_the_squares_above_the_floor():
     assert explained_share(fit(0.5), fit(0.3), floor()) == pytest.approx(0.16 / 0.24)
 
 
+def test_no_step_explains_more_of_the_force_than_the_last_fit_does():
+    """From 175 to 115 % of the force, of which 91 % is left: a position with its sign turned."""
+    turned = explained_share(fit(1.75), fit(1.15), floor(), last=fit(0.91))
+    assert turned == pytest.approx(1.0 - 0.91**2, abs=0.02)
+    # a spring at its resonance: the motor's force is a fifth of the spring's
+    assert explained_share(fit(5.0), fit(0.1), floor()) > 0.98
+
+
 def test_a_floor_may_rise_to_nearly_twice_the_first_or_to_a_tenth_of_what_is_stated():
     assert allowed_floor(floor(0.17), floor(0.1), fit(0.5)).value == 0.17
     held = allowed_floor(floor(0.3), floor(0.1), fit(0.5))
