@@ -15,6 +15,7 @@ import numpy as np
 
 from ...errors import ExperimentError, quote
 from ._cells import CellColumns, is_empty
+from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._dialect import (
     COMMENTS,
     LOOKED_AT,
@@ -78,11 +79,14 @@ def open_text(path: Path, file: str) -> Log:
     log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
     # the last lines too: a signal may begin late
     some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
-    rows = (cells_of(line, dialect.separator) for line in some if line.strip())
-    time, groups = groups_of(log.names, rows)
+    time, groups = groups_of(
+        log.names, (cells_of(line, dialect.separator) for line in some if line.strip())
+    )
     if groups:
         return with_separate_clocks(log, file, time, groups)
-    rows = (cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip())
+    rows = [cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip()]
+    if dialect.named and (clock_of := clocks_before_signals(log.names, rows, dialect.comma)):
+        return with_clocks_before(log, file, clock_of)
     if dialect.named and (turns := turns_of(log.names, rows, dialect.comma)) is not None:
         return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
     return log
