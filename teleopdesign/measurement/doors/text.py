@@ -32,6 +32,7 @@ from ._in_turn import turns_of, with_machines_apart
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
 from ._signals_in_rows import open_signals_in_rows
+from ._signals_in_turn import has_signals_in_turn, log_of_signals_in_turn
 from ._sparse import groups_of, with_separate_clocks
 
 #: rows that are read in one block: 20 MB of text
@@ -49,6 +50,8 @@ def open_text(path: Path, file: str) -> Log:
     encoding, lines = first_lines(path, file)
     if pairs := names_in_lines(lines):
         return log_of_pairs(path, file, encoding, pairs)
+    if has_signals_in_turn(lines):
+        return log_of_signals_in_turn(path, file, encoding)
     dialect = dialect_of(lines, encoding, file)
     strays: list[int] = []
 
