@@ -115,6 +115,11 @@ OTHER_QUANTITIES = frozenset(
 #: units of further such quantities, which are names as well ("w" of an angular velocity)
 OTHER_UNITS = OTHER_QUANTITIES | frozenset("°c c w kw mw db ohm".split())
 
+#: words in names of differences, such as the error of a controller: "q_err", "Schleppfehler"
+DIFFERENCES = tuple(
+    "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
+)
+
 #: units that are words or parts of names as well: "x_in" is an input, "hand_ft" force and torque
 _ONLY_IN_BRACKETS = ("in", "ft")
 #: most letters of a text in brackets that may be a unit, without a sign of a product
@@ -283,6 +288,19 @@ def is_another_quantity(name: str) -> bool:
     """Whether a name or the unit in it stands for a pressure, a temperature or the like."""
     unit = (unfit_unit(name) or "").lower()
     return bool(OTHER_QUANTITIES.intersection(words_of(name))) or unit in OTHER_UNITS
+
+
+def is_difference(name: str) -> bool:
+    """Whether a name says that its column is the difference of two quantities, as an error is."""
+    return any(
+        word == known
+        or len(known) > 3
+        and word.endswith(known)
+        or not known.isascii()
+        and known in word
+        for word in words_of(name)
+        for known in DIFFERENCES
+    )
 
 
 def is_wanted(name: str) -> bool:
