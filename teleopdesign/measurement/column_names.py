@@ -31,7 +31,7 @@ ALIASES = {
     "tage": "day", "jours": "day", "grad/s": "deg/s", "grad/sec": "deg/s", "degree/s": "deg/s",
     "degrees/s": "deg/s", "newtonmeter": "Nm", "sekunde": "s", "millisekunden": "ms",
     "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
-    "inches": "in", "lb": "lbf", "lbs": "lbf",
+    "inches": "in", "lb": "lbf", "lbs": "lbf", "rps": "turns/s", "r/s": "turns/s", "u/s": "turns/s",
     "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
 }  # fmt: skip
 #: text in brackets at the end of a name; a number there counts axes: "pos (5)", "tau[1]"
@@ -42,6 +42,8 @@ _WEIGHT_AT_LEVER = re.compile(
     r"|(?P<arm>in|ft|cm)[-*·⋅. ]?(?P<load>oz|lb|kg)s?",
     re.I,
 )
+#: a unit per second: "deg/sec", "revs per second"
+_PER_SECOND = re.compile(r"(.*[^\s/])\s*(?:/|\bper\b)\s*(?:s|secs?|seconds?|с|с\.|秒|초)", re.I)
 #: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
 _OF_TWO = re.compile(
     r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
@@ -89,18 +91,7 @@ WORDS: dict[str, tuple[str, ...]] = {
 #: index in these lists from which all words count as equally certain
 LAST_RANK = 12
 #: words in names of commanded values, which are no readings of a sensor
-WANTED = (
-    "target",
-    "ref",
-    "reference",
-    "desired",
-    "des",
-    "setpoint",
-    "soll",
-    "goal",
-    "cmd",
-    "command",
-)
+WANTED = tuple("target ref reference desired des setpoint soll goal cmd command".split())
 
 
 #: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;
@@ -222,6 +213,9 @@ def unit_of_text(text: str) -> str | None:
         return ALIASES[text]
     if text in COUNTS:
         return "counts"
+    if (rate := _PER_SECOND.fullmatch(text)) and not is_unit(text):
+        of = unit_of_text(rate[1])
+        return f"{of}/s" if of and of != "counts" and is_unit(f"{of}/s") else None
     return text if is_unit(text) and not text.isdigit() else None
 
 
