@@ -95,8 +95,9 @@ WANTED = tuple("target ref reference desired des setpoint soll goal cmd command"
 
 
 #: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;
-#: and endings that mark the derivatives of a position
+#: short words of drives; and endings that mark the derivatives of a position
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position"}
+SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
 DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
 #: words and units of quantities that are neither a position, a speed nor a force
 OTHER_QUANTITIES = frozenset(
@@ -245,7 +246,7 @@ def words_of(name: str) -> list[str]:
 
 
 def _join_terms(words: list[str]) -> list[str]:
-    """The words, with terms of several words joined: "set point", "process value", "theta dot"."""
+    """The words, with terms of several words joined ("set point", "theta dot") or spelled out."""
     joined: list[str] = []
     for word in words:
         pair = (joined[-1] if joined else "", word)
@@ -254,7 +255,7 @@ def _join_terms(words: list[str]) -> list[str]:
         elif word in DERIVATIVES and joined and pair[0] in WORDS["position"]:
             joined[-1] = DERIVATIVES[word]
         else:
-            joined.append(word)
+            joined.append(SHORT.get(word, word))
     return joined
 
 
