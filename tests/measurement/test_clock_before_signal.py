@@ -1,6 +1,7 @@
 """Tables with a time before each signal."""
 
 import numpy as np
+import openpyxl
 import pytest
 
 from teleopdesign.measurement.survey import Choices, survey_log
@@ -96,3 +97,19 @@ def test_other_tables_stay_as_they_are(tmp_path, kind):
         names = ["time", "q", "count", "tau"]
     log = open_log(write_columns(tmp_path / "log.csv", names, columns), "log.csv")
     assert len(log.names) == len(columns) and not log.clocks
+
+
+@pytest.mark.parametrize("rate", ["same", "half"])
+def test_a_workbook_with_a_time_before_each_signal_is_read_in_the_same_way(tmp_path, rate):
+    book = openpyxl.Workbook()
+    titles = ["Torque", None, "Position", None]
+    columns = [T, U, T, Q] if rate == "same" else [T[::2], U[::2], T, Q]
+    for row in (titles, ["X", "Y", "X", "Y"]):
+        book.active.append(row)
+    for k in range(len(T)):
+        book.active.append([float(c[k]) if k < len(c) else None for c in columns])
+    book.save(tmp_path / "log.xlsx")
+    log, channels = channels_of(tmp_path / "log.xlsx", axis="revolute")
+    assert channels["position"] == "Position" and channels["actuator_force"] == "Torque"
+    assert channels["time"] == ("time" if rate == "same" else "time of Position")
+    assert len(log.read({"Torque": ""})["Torque"]) == len(columns[1])

@@ -57,9 +57,11 @@ def with_clocks_before(log: Log, file: str, clock_of: Mapping[str, str]) -> Log:
 
     clock_of: signal -> clock, for all columns of the log
     """
+    from ..numbers_in_cells import numbers_of
+
     clocks = [*clock_of.values()]
     values = log.read(dict.fromkeys(clocks, "channels.time"))
-    stamps = {clock: np.asarray(values[clock], dtype=np.float64) for clock in clocks}
+    stamps = {clock: numbers_of(values[clock], clock, file) for clock in clocks}
     name_of = _short_names(clock_of)
     signals = {name_of[signal]: signal for signal in clock_of}
     first = clocks[0]
