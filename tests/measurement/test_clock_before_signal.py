@@ -4,6 +4,7 @@ import numpy as np
 import openpyxl
 import pytest
 
+from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -113,3 +114,12 @@ def test_a_workbook_with_a_time_before_each_signal_is_read_in_the_same_way(tmp_p
     assert channels["position"] == "Position" and channels["actuator_force"] == "Torque"
     assert channels["time"] == ("time" if rate == "same" else "time of Position")
     assert len(log.read({"Torque": ""})["Torque"]) == len(columns[1])
+
+
+def test_clocks_of_signals_that_are_no_numbers_are_refused_with_the_reason(tmp_path):
+    path = write_columns(tmp_path / "log.csv", titles_and_letters(), [T, Q, T + 1, U])
+    lines = path.read_text().splitlines()
+    lines[12] = "10,nan10,11,nan10"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(ExperimentError, match='found no column of numbers.*found "nan10"'):
+        channels_of(path)

@@ -23,7 +23,7 @@ def write_trace(path, signals):
     lines = ["[key]; [value]", "Version; 0x03050000", "Trigger.Flags; 0", "BufferEntries; 101"]
     for k, (name, times, values) in enumerate(signals):
         lines += [f"{k}.Variable; {name}", f"{k}.Class; 14", f"{k}.YAxis; 0", f"{k}.Data; "]
-        lines += [f"; {t:g}; {v}" for t, v in zip(times, values, strict=True)]
+        lines += [f"; {t}; {v}" for t, v in zip(times, values, strict=True)]
     path.write_text("\n".join(lines) + "\n")
     return path
 
@@ -60,3 +60,12 @@ def test_a_trace_without_rows_says_so(tmp_path):
     path = write_trace(tmp_path / "trace.csv", [("q", [], []), ("tau", [], [])])
     with pytest.raises(ExperimentError, match="signals without rows"):
         open_log(path, "trace.csv")
+
+
+@pytest.mark.parametrize("stamps", [[5.0], [], ["nan"] * 4, ["inf"] * 4])
+def test_a_signal_of_a_trace_without_two_times_is_left_out(tmp_path, stamps):
+    gain = ("Axis.Gain", stamps, [3.0] * len(stamps))
+    signals = [gain, ("Axis.ActPos", T, Q), ("Axis.ActTorque", T, U)]
+    log, channels = channels_of(write_trace(tmp_path / "trace.csv", signals))
+    assert channels["position"] == "Axis.ActPos" and "Axis.Gain" not in log.names
+    assert bool(stamps) == any("left out: Axis.Gain" in note for note in log.notes)

@@ -23,6 +23,8 @@ from ._log import Array, Log, bare_column, join_names
 
 #: fewest signals of such a table: one alone is a table with a time and a signal
 FEWEST = 2
+#: fewest stamps of a signal that changes: a trace may hold a constant in one row
+FEWEST_STAMPS = 2
 #: fewest rows that show whether a column is a clock
 FEWEST_ROWS = 3
 #: part of its usual step by which each step of a clock without a name of one may differ: the
@@ -59,12 +61,19 @@ def with_clocks_before(log: Log, file: str, clock_of: Mapping[str, str]) -> Log:
     """
     from ..numbers_in_cells import numbers_of
 
-    clocks = [*clock_of.values()]
-    values = log.read(dict.fromkeys(clocks, "channels.time"))
-    stamps = {clock: numbers_of(values[clock], clock, file) for clock in clocks}
+    values = log.read(dict.fromkeys(clock_of.values(), "channels.time"))
+    stamps = {clock: numbers_of(x, clock, file) for clock, x in values.items()}
+    single = [name for name, clock in clock_of.items() if _count(stamps[clock]) < FEWEST_STAMPS]
+    clock_of = {name: clock for name, clock in clock_of.items() if name not in single}
+    stamps = {clock: stamps[clock] for clock in clock_of.values()}
+    if not stamps:
+        return log
+    if single:
+        note = f"signals of one row, left out: {join_names(single, most=4)}"
+        log = replace(log, notes=(*log.notes, note))
     name_of = _short_names(clock_of)
     signals = {name_of[signal]: signal for signal in clock_of}
-    first = clocks[0]
+    first = next(iter(stamps))
     same = all(np.array_equal(x, stamps[first], equal_nan=True) for x in stamps.values())
     units = {new: log.units[old] for new, old in signals.items() if old in log.units}
     if same:
@@ -92,6 +101,10 @@ def with_clocks_before(log: Log, file: str, clock_of: Mapping[str, str]) -> Log:
         notes=(*log.notes, f"signals with times of their own: {join_names(signals, most=4)}"),
         clocks={new: f"time of {new}" for new in signals},
     )
+
+
+def _count(stamps: Array) -> int:
+    return int(np.isfinite(stamps).sum())
 
 
 def _reader_of(log: Log, columns: Mapping[str, str]) -> Any:
@@ -155,7 +168,8 @@ def _seconds_of(log: Log, stamps: Mapping[str, Array]) -> dict[str, Array]:
 
 def _run_together(seconds: Iterable[Array]) -> bool:
     """Whether all clocks share most of their time, so that they count from the same instant."""
-    ends = [(float(np.nanmin(x)), float(np.nanmax(x))) for x in seconds]
+    finite = [x[np.isfinite(x)] for x in seconds]
+    ends = [(float(x.min()), float(x.max())) for x in finite]
     shared = min(end for _, end in ends) - max(begin for begin, _ in ends)
     return shared > SHARED * min(end - begin for begin, end in ends)
 
