@@ -41,6 +41,9 @@ _SEVERAL = re.compile(
     r"\s+(?P<unit>[A-Za-zµμ]+)\s*"
 )
 
+#: a frequency, which as a speed of rotation counts turns
+_HERTZ = re.compile(r"[a-zA-Zµμ]?Hz")
+
 # quantity -> (on a prismatic axis, on a revolute axis)
 QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
     "time": (_TIME, _TIME),
@@ -143,7 +146,7 @@ def si_factor(
         raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}")
     if quantity == "frequency" and parsed.powers[-1] == 1:
         return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
-    return parsed.scale
+    return parsed.scale * _turns_in(unit, quantity, axis)
 
 
 def converting_factor(
@@ -174,7 +177,13 @@ def converting_factor(
             f"{_begin(where)}found {quote(unit)} times {quote(constant or '1')}, "
             f"expected {kind.noun} such as {quote(kind.units[0])}"
         )
-    return product.scale
+    return product.scale * _turns_in(unit, quantity, axis)
+
+
+def _turns_in(unit: str, quantity: str, axis: str) -> float:
+    """Angle in rad that a speed of one counts: in Hz it counts turns, in 1/s it counts rad."""
+    is_speed = quantity == "velocity" and axis == "revolute"
+    return 2 * math.pi if is_speed and _HERTZ.fullmatch(unit.strip()) else 1.0
 
 
 def is_unit(text: str) -> bool:

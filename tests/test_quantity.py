@@ -5,7 +5,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.errors import ExperimentError, nearest
-from teleopdesign.quantity import AXES, QUANTITIES, si_factor, to_si, unit_after_number, unit_of
+from teleopdesign.quantity import (
+    AXES,
+    QUANTITIES,
+    converting_factor,
+    si_factor,
+    to_si,
+    unit_after_number,
+    unit_of,
+)
 
 EVERY = [(quantity, axis) for quantity in QUANTITIES for axis in AXES]
 PREFIXES = {"": 1.0, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
@@ -154,3 +162,19 @@ def test_the_nearest_name_respects_the_case_if_it_can():
     assert nearest("mmm", ["Mm", "mm"]) == "mm"
     assert nearest("COULOMB", ["viscous", "coulomb"]) == "coulomb"
     assert nearest("xyz", ["viscous", "coulomb"]) is None
+
+
+@pytest.mark.parametrize(
+    ("unit", "rad_per_s"),
+    [
+        ("Hz", 2 * math.pi),
+        ("kHz", 2000 * math.pi),
+        ("1/s", 1.0),
+        ("rad/s", 1.0),
+        ("rev/s", 2 * math.pi),
+    ],
+)
+def test_a_speed_of_rotation_in_hertz_counts_turns(unit, rad_per_s):
+    assert si_factor(unit, quantity="velocity", axis="revolute") == pytest.approx(rad_per_s)
+    factor = converting_factor(unit, None, quantity="velocity", axis="revolute")
+    assert factor == pytest.approx(rad_per_s)

@@ -31,7 +31,7 @@ ALIASES = {
     "tage": "day", "jours": "day", "grad/s": "deg/s", "grad/sec": "deg/s", "degree/s": "deg/s",
     "degrees/s": "deg/s", "newtonmeter": "Nm", "sekunde": "s", "millisekunden": "ms",
     "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
-    "inches": "in", "lb": "lbf", "lbs": "lbf",
+    "inches": "in", "lb": "lbf", "lbs": "lbf", "rps": "turns/s", "r/s": "turns/s", "u/s": "turns/s",
     "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
 }  # fmt: skip
 #: text in brackets at the end of a name; a number there counts axes: "pos (5)", "tau[1]"
@@ -42,6 +42,8 @@ _WEIGHT_AT_LEVER = re.compile(
     r"|(?P<arm>in|ft|cm)[-*·⋅. ]?(?P<load>oz|lb|kg)s?",
     re.I,
 )
+#: a unit per second: "deg/sec", "revs per second"
+_PER_SECOND = re.compile(r"(.*[^\s/])\s*(?:/|\bper\b)\s*(?:s|secs?|seconds?|с|с\.|秒|초)", re.I)
 #: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
 _OF_TWO = re.compile(
     r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
@@ -89,23 +91,13 @@ WORDS: dict[str, tuple[str, ...]] = {
 #: index in these lists from which all words count as equally certain
 LAST_RANK = 12
 #: words in names of commanded values, which are no readings of a sensor
-WANTED = (
-    "target",
-    "ref",
-    "reference",
-    "desired",
-    "des",
-    "setpoint",
-    "soll",
-    "goal",
-    "cmd",
-    "command",
-)
+WANTED = tuple("target ref reference desired des setpoint soll goal cmd command".split())
 
 
 #: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;
-#: and endings that mark the derivatives of a position
+#: short words of drives; and endings that mark the derivatives of a position
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position"}
+SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
 DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
 #: words and units of quantities that are neither a position, a speed nor a force
 OTHER_QUANTITIES = frozenset(
@@ -114,6 +106,11 @@ OTHER_QUANTITIES = frozenset(
 )
 #: units of further such quantities, which are names as well ("w" of an angular velocity)
 OTHER_UNITS = OTHER_QUANTITIES | frozenset("°c c w kw mw db ohm".split())
+
+#: words in names of differences, such as the error of a controller: "q_err", "Schleppfehler"
+DIFFERENCES = tuple(
+    "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
+)
 
 #: units that are words or parts of names as well: "x_in" is an input, "hand_ft" force and torque
 _ONLY_IN_BRACKETS = ("in", "ft")
@@ -217,6 +214,9 @@ def unit_of_text(text: str) -> str | None:
         return ALIASES[text]
     if text in COUNTS:
         return "counts"
+    if (rate := _PER_SECOND.fullmatch(text)) and not is_unit(text):
+        of = unit_of_text(rate[1])
+        return f"{of}/s" if of and of != "counts" and is_unit(f"{of}/s") else None
     return text if is_unit(text) and not text.isdigit() else None
 
 
@@ -246,7 +246,7 @@ def words_of(name: str) -> list[str]:
 
 
 def _join_terms(words: list[str]) -> list[str]:
-    """The words, with terms of several words joined: "set point", "process value", "theta dot"."""
+    """The words, with terms of several words joined ("set point", "theta dot") or spelled out."""
     joined: list[str] = []
     for word in words:
         pair = (joined[-1] if joined else "", word)
@@ -255,7 +255,7 @@ def _join_terms(words: list[str]) -> list[str]:
         elif word in DERIVATIVES and joined and pair[0] in WORDS["position"]:
             joined[-1] = DERIVATIVES[word]
         else:
-            joined.append(word)
+            joined.append(SHORT.get(word, word))
     return joined
 
 
@@ -283,6 +283,19 @@ def is_another_quantity(name: str) -> bool:
     """Whether a name or the unit in it stands for a pressure, a temperature or the like."""
     unit = (unfit_unit(name) or "").lower()
     return bool(OTHER_QUANTITIES.intersection(words_of(name))) or unit in OTHER_UNITS
+
+
+def is_difference(name: str) -> bool:
+    """Whether a name says that its column is the difference of two quantities, as an error is."""
+    return any(
+        word == known
+        or len(known) > 3
+        and word.endswith(known)
+        or not known.isascii()
+        and known in word
+        for word in words_of(name)
+        for known in DIFFERENCES
+    )
 
 
 def is_wanted(name: str) -> bool:

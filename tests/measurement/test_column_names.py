@@ -24,6 +24,10 @@ from teleopdesign.measurement.column_names import (
         ("theta_dot", ["velocity"]),
         ("x_ddot (m/s^2)", ["acceleration"]),
         ("torque_dot", ["torque", "dot"]),
+        ("torAct", ["torque", "act"]),
+        ("Trq_Nm", ["torque", "nm"]),
+        ("J1.tq", ["j", "torque"]),
+        ("torso_angle", ["torso", "angle"]),
         ("0x6064:00 Position actual value", ["position", "actual", "value"]),
         ("Geschwindigkeit_é", ["geschwindigkeit", "e"]),
         ("速度_1", ["速度"]),
@@ -167,3 +171,8 @@ def test_what_was_asked_for_and_what_is_another_quantity(name, wanted, other):
 def test_a_displacement_is_a_position(name):
     assert likeness(name, "position") > 0.7
     assert not any(likeness(name, q) for q in ("velocity", "actuator_force", "interaction_force"))
+
+
+@pytest.mark.parametrize("name", ["torAct", "ActTrq", "tq_cmd", "torq1"])
+def test_a_short_word_for_a_torque_is_one(name):
+    assert likeness(name, "actuator_force") == likeness("torque", "actuator_force")

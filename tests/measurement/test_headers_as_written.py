@@ -165,8 +165,8 @@ def test_a_label_before_each_column_stands_over_its_times(tmp_path):
     units = [["Unit", "mm", "Unit", "A"], ["Start", 3, "Monday", "12:00"]]
     rows = [[k, x, k, y] for k, x, y in NUMBERS]
     log = scope(tmp_path, [units[1], *twice, units[0]], rows, separator="\t")
-    assert log.names == ("time #1", "pos", "time #2", "cur")
-    assert log.units == {"time #1": "ms", "pos": "mm", "time #2": "ms", "cur": "A"}
+    assert log.names == ("time", "pos", "cur")
+    assert log.units == {"time": "ms", "pos": "mm", "cur": "A"}
 
 
 def test_a_first_column_called_name_is_no_label_where_nothing_else_is_labelled(tmp_path):

@@ -74,3 +74,30 @@ def test_a_table_of_one_clock_stays_as_it_is(tmp_path, kept, time):
     (tmp_path / "log.csv").write_text("\n".join([f"{time},q,tau", *lines]) + "\n")
     log = open_log(tmp_path / "log.csv", "log.csv")
     assert log.names == (time, "q", "tau") and not log.clocks
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_two_signals_at_one_rate_that_take_turns_have_a_clock_each(tmp_path, more):
+    """Each has numbers in half of the rows, or in one row more."""
+    rows = [(t, f"{q:.8f},") for t, q in zip(T, Q, strict=True)]
+    rows += [(t + 0.004, f",{u:.8f}") for t, u in zip(T[more:], U[more:], strict=True)]
+    lines = [f"{t:.4f},{cells}" for t, cells in sorted(rows)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["time,position,torque", *lines]) + "\n")
+    log = open_log(path, "log.csv")
+    assert log.clocks == {"position": "time of position", "torque": "time of torque"}
+    channels = survey_log(log, "log.csv", Choices()).channels
+    of_channel = {quantity: table["column"] for quantity, table in channels.items()}
+    expected = {"time": "time of position", "position": "position", "actuator_force": "torque"}
+    assert of_channel == expected
+
+
+def test_readings_that_were_lost_from_two_signals_do_not_make_two_clocks(tmp_path):
+    keep = np.random.default_rng(3).random((len(T), 2)) > 0.1
+    cells = [
+        f"{t:.4f},{f'{q:.8f}' if a else ''},{f'{u:.8f}' if b else ''}"
+        for t, q, u, (a, b) in zip(T, Q, U, keep, strict=True)
+    ]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["time,position,torque", *cells]) + "\n")
+    assert not open_log(path, "log.csv").clocks

@@ -187,3 +187,24 @@ def test_a_table_in_utf_16_that_was_cut_within_a_letter_is_read(tmp_path):
     rows = "".join(f"{k / 1000:.4f}\t{k}\n" for k in range(200))
     path.write_bytes(("時間 (s)\t位置 (deg)\n" + rows).encode("utf-16")[:-1])
     assert tuple(open_log(path, path.name).names) == ("時間 (s)", "位置 (deg)")
+
+
+@pytest.mark.parametrize("title", [None, "-1,321,MX-106(2.0),#00ff00,0,,"])
+def test_blank_columns_behind_a_table_are_no_columns(tmp_path, title):
+    """As spreadsheets and the software of servos write them; a title above them is no name."""
+    rows = [f"{32 * k},{k % 9},{k % 5},,,," for k in range(90)]
+    head = ["Time[ms],Position,Current,,,,"]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([*([title, title] if title else []), *head, *rows]) + "\n")
+    log = open_log(path, "log.csv")
+    assert log.names == ("Time[ms]", "Position", "Current")
+    assert log.read({"Current": ""})["Current"][7] == 2.0
+
+
+@pytest.mark.parametrize("late", ["name", "reading"])
+def test_a_column_with_a_name_or_a_reading_stays_a_column(tmp_path, late):
+    rows = [f"{k / 100},{k % 9}," for k in range(9000)]
+    rows[-1] += "5" if late == "reading" else ""
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([f"time,q,{'note' if late == 'name' else ''}", *rows]) + "\n")
+    assert len(open_log(path, "log.csv").names) == 3

@@ -184,3 +184,42 @@ def test_several_times_a_unit_of_time_is_no_unit_of_a_position_or_of_a_column_by
     with pytest.raises(ExperimentError, match="expected one of a position"):
         look({"t": T, "angle_rad": Q, "u [Nm]": U}, units={"angle_rad": "125 us"})
     assert not is_unit("10 ms"), "a name may say that there is a row every 10 ms"
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("velocity (rad/sec)", "rad/s"),
+        ("vel [deg/sec]", "deg/s"),
+        ("speed (m/second)", "m/s"),
+        ("speed (revs per second)", "rev/s"),
+        ("speed_rps", "turns/s"),
+        ("v [U/s]", "turns/s"),
+        ("v [r/s]", "turns/s"),
+        ("rate (counts/s)", None),
+        ("gain (x/sec)", None),
+    ],
+)
+def test_speeds_are_known_as_loggers_write_them(name, unit):
+    assert unit_in_name(name) == unit
+
+
+def test_a_speed_in_hertz_counts_turns():
+    """A position without a unit beside it is in turns; it was read in rad."""
+    turns = Q / (2 * np.pi)
+    speed = np.gradient(turns, T)
+    survey = look({"t": T, "pos": turns, "velocity [Hz]": speed, "u [Nm]": U}, axis="revolute")
+    assert survey.channels["position"]["unit"] == "turns"
+    assert survey.channels["velocity"] == {"column": "velocity [Hz]", "unit": "Hz"}
+    table = {"t": T, "pos [turns]": turns, "velocity [Hz]": speed, "u [Nm]": U}
+    experiment = td.experiment(
+        table,
+        axis="revolute",
+        time="t",
+        position="pos [turns]",
+        velocity="velocity [Hz]",
+        actuator_force="u [Nm]",
+    )
+    signals = experiment.records[0].signals
+    measured, expected = signals["device.velocity"], np.gradient(signals["device.position"], T)
+    assert np.max(np.abs(measured - expected)) < 0.02 * np.max(np.abs(expected))

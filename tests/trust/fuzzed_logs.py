@@ -37,6 +37,29 @@ def _german():
     return "\n".join(["Prüfstand 3;;;", lines[0], "s;Nm;mm;N", *lines[1:], ""]).encode("cp1252")
 
 
+def _trace():
+    """A signal after the other, each with its times, as controllers write traces."""
+    table = columns()
+    lines = ["[key]; [value]"]
+    for k, name in enumerate(n for n in table if n != "time_s"):
+        lines += [f"{k}.Variable; {name}", f"{k}.Data; "]
+        lines += [
+            f"; {1e3 * t:g}; {x:g}" for t, x in zip(table["time_s"], table[name], strict=True)
+        ]
+    return "\n".join([*lines, ""]).encode()
+
+
+def _pairs():
+    """A time before each signal, the force at half the rate of the position."""
+    table = columns()
+    t, x, u = (table[n] for n in ("time_s", "position_mm", "motor_force"))
+    lines = ["position_mm,,motor_force,", "X,Y,X,Y"]
+    for k in range(COUNT):
+        half = f"{t[2 * k]:g},{u[2 * k]:g}" if 2 * k < COUNT else ","
+        lines.append(f"{t[k]:g},{x[k]:g},{half}")
+    return "\n".join([*lines, ""]).encode()
+
+
 def _arrays(path):
     np.savez(path, **columns())
 
@@ -177,6 +200,8 @@ def made_readers():
         "log": (plain, _log_reader("csv")),
         "log.gz": (gzip.compress(plain, mtime=0), _log_reader("csv.gz")),
         "german": (_german(), _log_reader("txt")),
+        "trace": (_trace(), _log_reader("csv")),
+        "pairs": (_pairs(), _log_reader("csv")),
         **{e: (log_bytes(e), _log_reader(e)) for e in _WRITERS if e != "nc"},
         "nc": (log_bytes("nc"), _kept_reader("s.nc", lambda p: repr(read_study(p)))),
         "journal": (_journal(), _kept_reader("a.nc.part", read_journal_at)),

@@ -17,6 +17,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..time_grid import DATE
 from ._cells import is_empty
@@ -43,7 +44,8 @@ def groups_of(names: Sequence[str], rows: Iterable[Sequence[str]]) -> tuple[str,
         return "", []
     share = filled.mean(axis=0)
     full = [n for n, s in zip(names, share, strict=True) if s == 1.0]
-    if not np.any((share > 0.0) & (share < SELDOM)) or len(full) != 1:
+    seldom = np.any((share > 0.0) & (share < SELDOM)) or _never_share_a_row(filled, share)
+    if not seldom or len(full) != 1:
         return "", []  # beside a signal with numbers in all rows, another one has lost them
     time = full[0]
     if likeness(time, "time") == 0.0:
@@ -53,6 +55,15 @@ def groups_of(names: Sequence[str], rows: Iterable[Sequence[str]]) -> tuple[str,
         if 0.0 < part < 1.0:
             groups.setdefault(column.tobytes(), []).append(name)
     return time, list(groups.values())
+
+
+def _never_share_a_row(filled: NDArray[np.bool_], share: Array) -> bool:
+    """Whether two columns have no row in common: two topics at one rate fill half of the rows each.
+
+    Columns of one clock that lost some readings have most of the others in common.
+    """
+    partial = filled[:, (share > 0.0) & (share < 1.0)].astype(np.int64)
+    return bool(np.any(partial.T @ partial == 0)) if partial.size else False
 
 
 def with_separate_clocks(log: Log, file: str, time: str, groups: Sequence[Sequence[str]]) -> Log:

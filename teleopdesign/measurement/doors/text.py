@@ -15,6 +15,7 @@ import numpy as np
 
 from ...errors import ExperimentError, quote
 from ._cells import CellColumns, is_empty
+from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._dialect import (
     COMMENTS,
     LOOKED_AT,
@@ -31,6 +32,7 @@ from ._in_turn import turns_of, with_machines_apart
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
 from ._signals_in_rows import open_signals_in_rows
+from ._signals_in_turn import has_signals_in_turn, log_of_signals_in_turn
 from ._sparse import groups_of, with_separate_clocks
 
 #: rows that are read in one block: 20 MB of text
@@ -48,6 +50,8 @@ def open_text(path: Path, file: str) -> Log:
     encoding, lines = first_lines(path, file)
     if pairs := names_in_lines(lines):
         return log_of_pairs(path, file, encoding, pairs)
+    if has_signals_in_turn(lines):
+        return log_of_signals_in_turn(path, file, encoding)
     dialect = dialect_of(lines, encoding, file)
     strays: list[int] = []
 
@@ -75,17 +79,37 @@ def open_text(path: Path, file: str) -> Log:
         notes.append("no header: columns are named by their number")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
-    log = Log(dialect.header, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
-    # the last lines too: a signal may begin late
-    some = [*lines[dialect.first :], *_last_lines(path, dialect)[1:]]
-    rows = (cells_of(line, dialect.separator) for line in some if line.strip())
-    time, groups = groups_of(log.names, rows)
+    # the last lines too: a signal may begin late; those of a short file are its first ones again
+    top = {*lines[: dialect.first]}
+    ends = (line for line in _last_lines(path, dialect)[1:] if line not in top)
+    some = [*lines[dialect.first :], *ends]
+    both = [cells_of(line, dialect.separator) for line in some if line.strip()]
+    above = cells_of(lines[dialect.first - 1], dialect.separator) if dialect.named else []
+    names = _without_blank_columns(dialect.header, above, both)
+    log = Log(names, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
+    time, groups = groups_of(dialect.header, both)
     if groups:
         return with_separate_clocks(log, file, time, groups)
-    rows = (cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip())
+    rows = [cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip()]
+    if dialect.named and (clock_of := clocks_before_signals(log.names, rows, dialect.comma)):
+        return with_clocks_before(log, file, clock_of)
     if dialect.named and (turns := turns_of(log.names, rows, dialect.comma)) is not None:
         return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
     return log
+
+
+def _without_blank_columns(
+    header: tuple[str, ...], above: Sequence[str], rows: Sequence[Sequence[str]]
+) -> tuple[str, ...]:
+    """The names of the columns without those that spreadsheets write behind a table: all blank.
+
+    above: the line above the rows, which also leaves their names blank
+    """
+    wide = [row for row in (above, *rows) if len(row) == len(header)]
+    if len(above) != len(header):
+        return header
+    filled = [any(cells) for cells in zip(*wide, strict=True)]
+    return tuple(name for name, there in zip(header, filled, strict=True) if there)
 
 
 def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:

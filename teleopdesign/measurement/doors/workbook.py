@@ -12,11 +12,14 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
+from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._header import names_and_units
 from ._log import MOST_BYTES, Log, number_names, optional, refuse_damage, refuse_size
 
 #: rows above the first row of numbers that may be titles, names and units
 _TOP = 50
+#: rows that tell whether columns before signals are their clocks
+_ENOUGH = 1000
 
 
 def open_workbook(path: Path, file: str) -> Log:
@@ -38,7 +41,10 @@ def open_workbook(path: Path, file: str) -> Log:
             continue
         refuse_size(len(rows), file)
         notes = (f"sheet {title!r}",) if len(sheets) > 1 else ()
-        return _log(rows, first, notes)
+        log = _log(rows, first, notes)
+        texts = [[_text(c) for c in row] for row in rows[first : first + _ENOUGH]]
+        clock_of = clocks_before_signals(log.names, texts, comma=False)
+        return with_clocks_before(log, file, clock_of) if clock_of else log
     raise ExperimentError(f"{file}: found no sheet with a table of numbers below its header")
 
 

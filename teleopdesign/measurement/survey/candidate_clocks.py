@@ -91,6 +91,6 @@ def busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
     """The clock of the position, among several clocks of a log."""
     if choices.position is not None:
         return log.clocks[choices.position]
-    scores = {n: _likeness_of_position(n.rpartition(".")[2]) for n in raw}
+    scores = {n: _likeness_of_position(n.rpartition(".")[2]) for n in raw if n in log.clocks}
     best = max(scores, key=lambda n: (scores[n], len(raw[n])))
     return log.clocks[best]

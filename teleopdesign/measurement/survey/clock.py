@@ -65,7 +65,7 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
             remarks.append(f"{bare_column(name)} = {values[0]:g}")
         else:
             unread[name] = _explain_empty(finite)
-    if not raw:
+    if not raw or log.clocks and not log.clocks.keys() & raw.keys():  # or clocks alone
         whys = set(unread.values())
         if len(whys) == 1 and "found" in (why := whys.pop()):  # the same row of all columns
             raise ExperimentError(f"{file}: {why}")

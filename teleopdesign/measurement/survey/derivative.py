@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import is_another_quantity, likeness, words_of
+from ..column_names import is_another_quantity, is_difference, likeness, words_of
 from ..filtering import spectrum
 from ..first_guess import motion_columns
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
@@ -147,7 +147,8 @@ def is_no_velocity(column: SurveyedColumn) -> bool:
     angle_or_length = is_unit_of(column.unit, "position") and not is_unit_of(
         column.unit, "velocity"
     )
-    return is_force(column) or angle_or_length or is_another_quantity(column.name)
+    another = is_another_quantity(column.name) or is_difference(column.name)
+    return is_force(column) or angle_or_length or another
 
 
 def rate_agreement(x: Array, v: Array, sample_time: float) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from ...errors import ExperimentError
 from ...quantity import si_factor
-from ..column_names import is_wanted, likeness
+from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force, is_size, is_turned, left_by_motion
 from .acting import current_that_acted, names_current, names_voltage
@@ -211,6 +211,7 @@ def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     # the load that a servo on a bus reports is that of its motor
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME and not column.code)
     score -= 0.7 * (likeness(column.name, "velocity") >= SURE_NAME)  # "commanded_velocity"
+    score -= 0.7 * is_difference(column.name)  # "torque_error"
     score -= 0.2 * names_voltage(column.name)  # beside a current, which is in proportion to torque
     # the command is preferred to the value that a drive reports as reached
     score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")

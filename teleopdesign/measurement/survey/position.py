@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 
 from ...quantity import is_unit, measures, si_factor
-from ..column_names import is_another_quantity, is_wanted, likeness, why_no_unit, words_of
+from ..column_names import (
+    is_another_quantity,
+    is_difference,
+    is_wanted,
+    likeness,
+    why_no_unit,
+    words_of,
+)
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
 from .axis_kind import IN_TURNS
@@ -71,6 +78,7 @@ def find_position(
     for name, column in moving.items():
         is_set_point = is_wanted(name) or name in followed.values()
         score = likeness(name, "position") - 0.8 * is_set_point + 0.4 * (name in followed)
+        score -= 1.2 * is_difference(name)  # below a column whose name says nothing
         kinds = [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...quantity import is_unit
-from ..column_names import is_another_quantity, is_wanted, likeness
+from ..column_names import is_another_quantity, is_difference, is_wanted, likeness
 from ..doors._log import Log
 from .axes import of_another_axis
 from .content import (
@@ -84,6 +84,8 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
         )
     if is_wanted(name) and "force" not in kinds:
         return "a desired value, not a measured one"
+    if is_difference(name):
+        return "by its name a difference, such as the error of a controller"
     x = survey.columns[position].values
     jump = wrap_of(x)
     if may_be_set_point(column) and follows(unwrap_column(x, jump), column.values):
