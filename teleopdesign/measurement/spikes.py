@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
+from scipy.special import bdtrc
 
 from .repeated_rows import runs_of
 from .resample import cubic_through_four
@@ -26,7 +27,8 @@ GAP = 4.0
 #: most of the readings that are spikes: of more, seven rows hold four too often
 MOST = 0.05
 #: most successive spikes: an impact or a stretch without signal lasts longer. Of many spikes,
-#: three follow one another by chance; then so do as many as are expected in `BY_CHANCE` records
+#: three follow one another by chance; then so do as many as are expected in `BY_CHANCE` records;
+#: and the probability that spikes are taken for contacts by chance
 LONGEST, BY_CHANCE = 2, 0.01
 #: fewest readings that show what is usual
 FEWEST = 64
@@ -34,7 +36,7 @@ FEWEST = 64
 #: the peak of a triangle the slopes differ by more than the peak is off
 BESIDE = 0.5
 #: share of the rows with the largest changes of velocity. If half of the spikes of a force lie at
-#: such rows, they are contacts of less than a row
+#: such rows, more of them than by chance, they are contacts of less than a row
 ABRUPT = 0.1
 
 
@@ -81,8 +83,12 @@ def are_contacts(spikes: Mask, position: Array) -> bool:
     if not inner.any():
         return False
     rows = np.arange(3, len(position) - 3)
-    usual = np.quantile(_change_of_slope(position, rows, rows + 1), 1.0 - ABRUPT)
-    return float(np.mean(_change_of_slope(position, first[inner], past[inner]) > usual)) >= 0.5
+    usual = np.sort(_change_of_slope(position, rows, rows + 1))
+    changes = _change_of_slope(position, first[inner], past[inner])
+    larger = np.sort(1.0 - np.searchsorted(usual, changes, side="left") / len(usual))
+    half = (len(larger) + 1) // 2
+    share = float(larger[half - 1])
+    return share <= ABRUPT and float(bdtrc(half - 1, len(larger), share)) < BY_CHANCE
 
 
 def fill_spikes(x: Array, spikes: Mask) -> Array:

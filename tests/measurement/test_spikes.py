@@ -90,6 +90,20 @@ def test_a_hit_of_one_row_that_moves_the_body_is_no_spike():
     assert not are_contacts(spikes, hits(rows, move=False)[1])
 
 
+def test_a_few_spikes_where_the_velocity_happens_to_change_are_no_contacts():
+    """Of one spike every tenth lay at a row of the tenth with the largest changes."""
+    random, contacts = np.random.default_rng(5), 0
+    for count in (1, 2, 3, 30):
+        for _ in range(100):
+            position = np.cumsum(random.standard_normal(len(T)))
+            spikes = np.zeros(len(T), dtype=bool)
+            spikes[random.choice(np.arange(10, len(T) - 10, 5), count, replace=False)] = True
+            contacts += are_contacts(spikes, position)
+    assert contacts <= 10  # of 400; one in a hundred by chance
+    force, position = hits([1000], move=True)
+    assert are_contacts(find_spikes(force, 0.01), position)
+
+
 @pytest.fixture
 def spoilt():
     """Columns without and with spikes, and the rows of these."""
