@@ -80,36 +80,45 @@ def open_text(path: Path, file: str) -> Log:
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     # the last lines too: a signal may begin late; those of a short file are its first ones again
-    top = {*lines[: dialect.first]}
-    ends = (line for line in _last_lines(path, dialect)[1:] if line not in top)
-    some = [*lines[dialect.first :], *ends]
-    both = [cells_of(line, dialect.separator) for line in some if line.strip()]
+    top, first = {*lines[: dialect.first]}, lines[dialect.first :]
+    some = [*first, *(line for line in _last_lines(path, dialect)[1:] if line not in top)]
     above = cells_of(lines[dialect.first - 1], dialect.separator) if dialect.named else []
-    names = _without_blank_columns(dialect.header, above, both)
+    names = _without_blank_columns(dialect.header, above, _rows_of(some, dialect))
     log = Log(names, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
-    time, groups = groups_of(dialect.header, both)
+    time, groups = groups_of(dialect.header, _rows_of(some, dialect))
     if groups:
         return with_separate_clocks(log, file, time, groups)
-    rows = [cells_of(line, dialect.separator) for line in lines[dialect.first :] if line.strip()]
-    if dialect.named and (clock_of := clocks_before_signals(log.names, rows, dialect.comma)):
+    if not dialect.named:
+        return log
+    if clock_of := clocks_before_signals(log.names, _rows_of(first, dialect), dialect.comma):
         return with_clocks_before(log, file, clock_of)
-    if dialect.named and (turns := turns_of(log.names, rows, dialect.comma)) is not None:
+    turns = turns_of(log.names, _rows_of(first, dialect), dialect.comma)
+    if turns is not None:
         return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
     return log
 
 
+def _rows_of(lines: Iterable[str], dialect: Dialect) -> Iterator[list[str]]:
+    """The cells of each line, one after another: as lists they take ten times the text."""
+    return (cells_of(line, dialect.separator) for line in lines if line.strip())
+
+
 def _without_blank_columns(
-    header: tuple[str, ...], above: Sequence[str], rows: Sequence[Sequence[str]]
+    header: tuple[str, ...], above: Sequence[str], rows: Iterable[Sequence[str]]
 ) -> tuple[str, ...]:
     """The names of the columns without those that spreadsheets write behind a table: all blank.
 
     above: the line above the rows, which also leaves their names blank
     """
-    wide = [row for row in (above, *rows) if len(row) == len(header)]
     if len(above) != len(header):
         return header
-    filled = [any(cells) for cells in zip(*wide, strict=True)]
-    return tuple(name for name, there in zip(header, filled, strict=True) if there)
+    blank = {i for i, cell in enumerate(above) if not cell}
+    for row in rows:
+        if not blank:
+            return header
+        if len(row) == len(header):
+            blank -= {i for i in blank if row[i]}
+    return tuple(name for i, name in enumerate(header) if i not in blank)
 
 
 def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
