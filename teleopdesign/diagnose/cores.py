@@ -34,6 +34,8 @@ from typing import Any, TypeVar
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
+from ..core_count import count_workers
+
 T = TypeVar("T")
 #: most copies, and most threads, at a time
 MOST = 8
@@ -57,7 +59,7 @@ def map_on_cores(
     keep_freed_memory()
     results: dict[int, T] = {}
     with one_thread_of_algebra():
-        copies = min(MOST, _count_cores(), len(parts))
+        copies = min(MOST, count_workers(), len(parts))
         if copies > 1 and _can_copy():
             before()
             results = _computed_by_copies(function, parts, copies, begun)
@@ -74,20 +76,9 @@ def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> lis
     For work in compiled loops, which release Python's lock.
     """
     keep_freed_memory()
-    workers = min(MOST, _count_cores())
+    workers = min(MOST, count_workers())
     with one_thread_of_algebra(), ThreadPoolExecutor(workers) as pool:
         return list(pool.map(function, *arguments))
-
-
-def _count_cores() -> int:
-    """Cores that this process may use; NUMBA_NUM_THREADS allows fewer, as to compiled loops.
-
-    A worker of a study has one.
-    """
-    here = hasattr(os, "sched_getaffinity")
-    count = len(os.sched_getaffinity(0)) if here else os.cpu_count() or 1
-    allowed = os.environ.get("NUMBA_NUM_THREADS", "")
-    return min(count, int(allowed)) if allowed.isdecimal() else count
 
 
 def _can_copy() -> bool:

@@ -24,9 +24,9 @@ AROUND, WITHIN = 10.0, 1.5
 TONE = 300.0
 #: the same ratio for a position: above it, the body moves at this frequency, so the force may, too
 MOVES = 30.0
-#: rms of a tone over that of the channel, from which it counts. Beside noise a tone of that power
-#: is nearly as strong as the noise, whatever its share: of 0.01, taken for no hum, six of 27
-#: answers were undecided. A force without noise has weaker tones of that power by its shape alone
+#: rms of a tone over that of the channel, from which it counts. Beside white noise a tone of that
+#: power has a third of its rms in 6000 rows, whatever its share: of 0.01, taken for no hum, eleven
+#: of 50 answers were undecided. A force without noise may have weaker tones of that power by itself
 SHARE = 0.002
 #: the same share from which its report is a warning
 STRONG = 0.02

@@ -8,7 +8,6 @@ because exp is computed differently (`lane_exp.py`).
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from ..core_count import count_workers
 from ..errors import ModelError
 from .kernel import Timing, fastest_rates, first_memory, grid, slopes_at_rest
 from .program import CompiledLoop, Program, loop_of
@@ -81,14 +81,6 @@ class LaneResults:
     reduced: np.ndarray
     worst: np.ndarray
     is_finite: np.ndarray
-
-
-def workers() -> int:
-    """Number of computing threads: as many as cores, or NUMBA_NUM_THREADS."""
-    asked_for = os.environ.get("NUMBA_NUM_THREADS", "")
-    return (
-        int(asked_for) if asked_for.isdigit() and int(asked_for) else len(os.sched_getaffinity(0))
-    )
 
 
 def lanes_of(made: Program) -> CompiledLoop:
@@ -219,9 +211,9 @@ def _run_block(
 
 def _spread_over_threads(blocks: Sequence[Callable[[], Result]]) -> list[Result]:
     """The results of the blocks, in their order."""
-    if len(blocks) == 1 or workers() == 1:
+    if len(blocks) == 1 or count_workers() == 1:
         return [block() for block in blocks]
-    with ThreadPoolExecutor(workers()) as threads:
+    with ThreadPoolExecutor(count_workers()) as threads:
         return [running.result() for running in [threads.submit(block) for block in blocks]]
 
 

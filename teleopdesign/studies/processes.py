@@ -21,6 +21,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, BinaryIO, cast
 
+from ..core_count import count_cores
 from ..errors import ModelError, TeleopDesignError
 from .evaluate import StudyTask
 from .frames import receive, send
@@ -51,13 +52,6 @@ _ONE_THREAD = {
         "VECLIB_MAXIMUM_THREADS",
     )
 }
-
-
-def cores() -> int:
-    """Number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def pack_task(task: StudyTask) -> bytes:
@@ -145,7 +139,7 @@ def run_on_this_machine(
     workers: number of processes; None: chosen by the time of the first points
     """
     if workers is None:
-        count = cores()
+        count = count_cores()
         # the first unit alone compiles what the others find in the cache
         units = units[run_here(task, units[:1], sink) :]
         start = time.monotonic()

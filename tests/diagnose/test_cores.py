@@ -27,7 +27,7 @@ def work(request, monkeypatch):
     if request.param == "copies" and sys.platform != "linux":
         pytest.skip("processes are copied on Linux only")
     monkeypatch.setattr(cores, "_can_copy", lambda: request.param == "copies")
-    monkeypatch.setattr(cores, "_count_cores", lambda: 3)
+    monkeypatch.setattr(cores, "count_workers", lambda: 3)
     return request.param
 
 
@@ -72,7 +72,7 @@ def test_a_result_that_cannot_travel_is_computed_here(work):
 def test_a_copy_that_is_killed_loses_nothing(monkeypatch):
     here = os.getpid()
     monkeypatch.setattr(cores, "_can_copy", lambda: True)
-    monkeypatch.setattr(cores, "_count_cores", lambda: 2)
+    monkeypatch.setattr(cores, "count_workers", lambda: 2)
 
     def die_at_two(x):
         if x == 2 and os.getpid() != here:
@@ -85,7 +85,7 @@ def test_a_copy_that_is_killed_loses_nothing(monkeypatch):
 @copied
 def test_an_interrupt_ends_the_copies(monkeypatch):
     monkeypatch.setattr(cores, "_can_copy", lambda: True)
-    monkeypatch.setattr(cores, "_count_cores", lambda: 2)
+    monkeypatch.setattr(cores, "count_workers", lambda: 2)
 
     def interrupt(_):
         raise KeyboardInterrupt
@@ -111,7 +111,7 @@ def test_copies_end_with_a_process_that_is_killed():
     code = """
 import os, time
 from teleopdesign.diagnose import cores
-cores._count_cores = lambda: 2
+cores.count_workers = lambda: 2
 def wait(_):
     os.write(1, b".")
     time.sleep(60)

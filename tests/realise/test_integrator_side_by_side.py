@@ -22,7 +22,7 @@ from teleopdesign.realise.side_by_side import (
 def three_lanes_of_plain_python(monkeypatch):
     monkeypatch.setattr(side_by_side, "LANES", 3)
     monkeypatch.setattr(side_by_side, "loop_of", plain_loop)
-    monkeypatch.setattr(side_by_side, "workers", lambda: 1)
+    monkeypatch.setattr(side_by_side, "count_workers", lambda: 1)
 
 
 SETUPS = {
