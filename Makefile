@@ -10,7 +10,7 @@ STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
 # what is run with the lowest versions: files, equations, compiled code, proofs, tables
 LOWEST_TESTS ?= tests/effects tests/measurement tests/realise tests/simulate tests/passivity/test_kyp.py \
-	tests/studies tests/plot tests/design tests/commands
+	tests/studies tests/tuning tests/plot tests/design tests/commands
 # processes at a time, of tests and of studies
 JOBS ?= 2
 # parts in which pages are read: more than cores, for some pages take minutes and others none

@@ -63,6 +63,7 @@ The folders, each importing only from those before it:
     next_experiment  the motion that distinguishes the effects that a diagnosis leaves open
     design        from a diagnosed model to controllers, predictions and claims
     studies       a model at every point of named parameters, on one machine or many
+    tuning        values that meet limits, trade measures off, or follow measured signals
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
@@ -98,6 +99,7 @@ if TYPE_CHECKING:
     from . import report as report
     from . import simulate as simulate
     from . import studies as studies
+    from . import tuning as tuning
     from . import unexplained as unexplained
     from .blocks import Body, hand
     from .blocks import Value as Value
@@ -142,16 +144,17 @@ if TYPE_CHECKING:
     from .simulate import simulate as simulate_diagram
     from .studies import MEASURES as MEASURES
     from .studies import Study as Study
-    from .studies import fit_simulation as fit_simulation
     from .studies import latin_hypercube as latin_hypercube
-    from .studies import limit as limit
-    from .studies import measure, study, tune
+    from .studies import measure, study
     from .studies import random_samples as random_samples
     from .studies import read_study as read_study
     from .studies import sensitivities as sensitivities
     from .studies import sensitivity_samples as sensitivity_samples
     from .studies import sobol as sobol
-    from .studies import trade_off as trade_off
+    from .tuning import fit_simulation as fit_simulation
+    from .tuning import limit as limit
+    from .tuning import trade_off as trade_off
+    from .tuning import tune
     from .unexplained import describe
 
 __all__ = [
@@ -252,7 +255,7 @@ GROUPS: dict[str, dict[str, str]] = {
     "studies": {
         "study": "studies",
         "measure": "studies",
-        "tune": "studies",
+        "tune": "tuning",
     },
     "passivity": {
         "diagram_claims": "passivity",
@@ -296,10 +299,10 @@ FURTHER: dict[str, dict[str, str]] = {
         "sobol": "studies",
         "random_samples": "studies",
         "sensitivity_samples": "studies",
-        "limit": "studies",
-        "trade_off": "studies",
+        "limit": "tuning",
+        "trade_off": "tuning",
         "sensitivities": "studies",
-        "fit_simulation": "studies",
+        "fit_simulation": "tuning",
     },
     "recordings": {
         "Record": "measurement",
@@ -333,6 +336,7 @@ _FOLDERS = (
     "report",
     "simulate",
     "studies",
+    "tuning",
     "unexplained",
 )
 __version__ = "0.1.0"

@@ -30,6 +30,7 @@ INSTEAD = {
     "realise": "write td.to_iosystem(diagram)",
     "report": "write a page by td.report.write_report",
     "studies": "write td.study(diagram, axes, measures=...)",
+    "tuning": "write td.tune(diagram, parameters, objective)",
     "unexplained": "write td.describe(model, experiment)",
     "next_experiment": "write td.propose_experiment(diagnosis)",
 }

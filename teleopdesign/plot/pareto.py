@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import matplotlib.figure
     import numpy as np
 
-    from ..studies import ParetoFront
+    from ..tuning import ParetoFront
 
 #: evaluated points that are further from the front than this many of its lengths are not drawn
 _BESIDE = 1.5

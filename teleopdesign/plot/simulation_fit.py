@@ -10,7 +10,7 @@ from .letters import house_style
 if TYPE_CHECKING:
     import matplotlib.figure
 
-    from ..studies import SimulationFit
+    from ..tuning import SimulationFit
 
 GREY, FITTED = "#9A9A9A", "#0072B2"
 

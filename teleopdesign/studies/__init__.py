@@ -18,42 +18,30 @@ from .case import SimulatedCase
 from .chosen_measures import Measure, measure
 from .diagnosed import diagnose_recording
 from .from_toml import read_study_file
-from .limits import TuningLimit, limit
 from .measures import MEASURES
 from .onset import find_onset, growth
 from .outcomes import PointOutcome
 from .point import Amount, Point
 from .progress import Progress
-from .recheck import CheckedLimit
 from .result import Study, read_study
 from .run import study
 from .samples import Samples, latin_hypercube, random_samples, sensitivity_samples, sobol
 from .sensitivities import sensitivities
 from .sensitivity import sensitivity
-from .simulation_fit import SimulationFit, fit_simulation
-from .trade_off import ParetoFront, trade_off
-from .tune import Tuned, tune
 
 __all__ = [
     "MEASURES",
     "Amount",
-    "CheckedLimit",
     "SimulatedCase",
-    "ParetoFront",
-    "Tuned",
-    "TuningLimit",
     "Measure",
     "PointOutcome",
     "Point",
     "Progress",
     "Samples",
-    "SimulationFit",
     "Study",
     "diagnose_recording",
-    "fit_simulation",
     "growth",
     "latin_hypercube",
-    "limit",
     "find_onset",
     "measure",
     "random_samples",
@@ -64,8 +52,6 @@ __all__ = [
     "sensitivity_samples",
     "sobol",
     "study",
-    "trade_off",
-    "tune",
 ]
 
 check_arguments(globals(), __all__)

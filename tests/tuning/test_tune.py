@@ -7,7 +7,7 @@ from devices import body
 import teleopdesign as td
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
-from teleopdesign.studies.trade_off import select_unbeaten
+from teleopdesign.tuning.trade_off import select_unbeaten
 
 LAW = td.controller("low_pass", {"bandwidth": 20.0}).then(td.controller("gain", {"gain": 0.2}))
 LOOP = td.haptic_interface(body(0.15, viscous__damping=4.0), force_feedback=LAW)

@@ -25,8 +25,8 @@ from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holding
 from ..quantity import unit_after_number
-from .chosen_measures import Measure, measures_of
-from .measures import MEASURES
+from ..studies.chosen_measures import Measure, measures_of
+from ..studies.measures import MEASURES
 
 #: margins of the loop of a controller, and their units
 LOOP_MARGINS = {"delay margin": "s", "gain margin": "1", "phase margin": "deg"}

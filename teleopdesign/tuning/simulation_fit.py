@@ -32,11 +32,11 @@ from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
 from ..standard_error import with_standard_error
-from .case import SimulatedCase, case_of
-from .differences import check_slopes_exist
+from ..studies.case import SimulatedCase, case_of
+from ..studies.differences import check_slopes_exist
+from ..studies.sensitivities import labelled_slopes
 from .follow import MOST_APART, Followed, Target, follow, rms_of
 from .measured_signals import MeasuredSignals, measured_signals
-from .sensitivities import labelled_slopes
 from .shares import box_of_parameters
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from ..diagnose.fit import standard_errors
 from ..diagnose.solve import BLOCK
 from ..errors import ModelError
 from ..passivity.intervals.box import ValueBox
-from .case import SimulatedCase
-from .differences import SignalSlopes, simulated_signals, slopes_of
+from ..studies.case import SimulatedCase
+from ..studies.differences import SignalSlopes, simulated_signals, slopes_of
 from .problem import start_values
 from .shares import AT_END, shares_of, unit_box, units_at, values_at
 

@@ -7,7 +7,7 @@ from devices import body
 
 import teleopdesign as td
 from teleopdesign.errors import ModelError
-from teleopdesign.studies.measured_signals import measured_signals
+from teleopdesign.tuning.measured_signals import measured_signals
 
 T = np.linspace(0.0, 0.5, 51)
 L = np.sin(9.0 * T)

@@ -31,8 +31,8 @@ from ..notebook import html_table
 from ..quantity import unit_after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
-from .case import SimulatedCase, case_of
-from .chosen_measures import measures_of
+from ..studies.case import SimulatedCase, case_of
+from ..studies.chosen_measures import measures_of
 from .limits import limit_of
 from .problem import Problem, TrialPoint
 from .recheck import CheckedLimit, recheck

@@ -10,15 +10,15 @@ import numpy as np
 from ..errors import ModelError
 from ..expectations import describe_value
 from ..passivity.intervals.box import ValueBox
-from .case import SimulatedCase
-from .chosen_measures import Measure
-from .evaluate import StudyTask
+from ..studies.case import SimulatedCase
+from ..studies.chosen_measures import Measure
+from ..studies.evaluate import StudyTask
+from ..studies.outcomes import PointOutcome
+from ..studies.points import points_of
+from ..studies.processes import run_on_this_machine
+from ..studies.samples import Samples
+from ..studies.side_by_side import units_of
 from .limits import TuningLimit, margin_function
-from .outcomes import PointOutcome
-from .points import points_of
-from .processes import run_on_this_machine
-from .samples import Samples
-from .side_by_side import units_of
 
 #: most vertices of the intervals of a limit that the search evaluates, besides the middle
 _MOST_VERTICES = 16

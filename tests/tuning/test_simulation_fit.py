@@ -126,7 +126,7 @@ def test_a_record_is_data_too():
     time = record.time - record.time[0]
     name = next(n for n in record.signals if n.endswith(".position"))
     driven = sampled_motion(time, record.signals[name])
-    position = td.studies.measured_signals.measured_signals(record).motion(name)
+    position = td.tuning.measured_signals.measured_signals(record).motion(name)
     np.testing.assert_array_equal(position.position(time), driven.position(time))
 
 

@@ -20,7 +20,7 @@ from ..errors import ModelError
 from ..quantity import unit_after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
-from .case import SimulatedCase, case_of
+from ..studies.case import SimulatedCase, case_of
 from .problem import Problem, TrialPoint
 from .recheck import recheck
 from .tune import Tuned, make_tuned, problem_of, search
