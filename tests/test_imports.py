@@ -31,6 +31,14 @@ def test_reading_an_experiment_needs_neither_kernels_nor_figures():
     assert loaded.isdisjoint({"numba", "control", "matplotlib", "xarray"})
 
 
+def test_a_worker_of_a_study_loads_only_what_a_simulation_needs():
+    others = [f"teleopdesign.{f}" for f in ("diagnose", "passivity", "tuning", "plot")]
+    code = "import sys, teleopdesign.studies.worker\n"
+    code += f"print(*[m for m in {others} if m in sys.modules])"
+    loaded = modules_after(code)
+    assert loaded.isdisjoint({*others, "numba", "control", "matplotlib", "xarray"})
+
+
 def test_every_public_name_resolves_and_is_documented():
     for name in td.__all__:
         value = getattr(td, name)

@@ -22,7 +22,6 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
-from scipy.signal import correlate
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -138,6 +137,8 @@ def _alike_by_chance(noise: Array) -> float:
 
     Lags up to a quarter of a pass count: at longer ones, chance is larger than what is alike.
     """
+    from scipy.signal import correlate
+
     rows = len(noise)
     lags = correlate(noise, noise)[rows - 1 : rows + rows // 4]
     return float((2.0 * lags @ lags - lags[0] ** 2) / rows)
@@ -255,6 +256,8 @@ def _differences(signals: Array, others: Array, resolved: float) -> Array:
     resolved: s; inf where a pass is ahead by more, in the mean (rms)
     returns: (rows - length + 1,); inf where a signal of the pass does not change
     """
+    from scipy.signal import correlate
+
     length = signals.shape[1]
     apart = np.zeros(others.shape[1] - length + 1)
     for i, (mine, theirs) in enumerate(zip(signals, others, strict=True)):

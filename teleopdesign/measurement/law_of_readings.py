@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter, lfiltic
 
 from .encoder import grid_of, reading_step
 from .filtering import Array
@@ -213,6 +212,8 @@ def _follow(rows: _Rows, run: slice, forward: Array, back: Array) -> tuple[Array
     driven = columns @ forward
     if not past:
         return driven, columns
+    from scipy.signal import lfilter, lfiltic
+
     before = rows.u[run.start - past : run.start][::-1]
     poles = np.concatenate([[1.0], -back])
     followed = lfilter([1.0], poles, driven, zi=lfiltic([1.0], poles, before))[0]

@@ -10,7 +10,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfilt_zi
 
 from ..machine_code import compile_and_keep
 from .filtering import CONTINUED, Array
@@ -22,6 +21,8 @@ def sections(cutoff: float, sample_time: float) -> tuple[Array, Array]:
 
     cutoff: Hz, -3 dB of the one-way filter
     """
+    from scipy.signal import butter, sosfilt_zi
+
     sos = butter(4, cutoff, fs=1.0 / sample_time, output="sos")
     return np.ascontiguousarray(sos), np.ascontiguousarray(sosfilt_zi(sos))
 

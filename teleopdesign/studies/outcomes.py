@@ -33,6 +33,11 @@ class PointOutcome:
     reason: str = ""
 
 
+def as_row(outcome: PointOutcome) -> tuple[Any, ...]:
+    """The arguments of `PointOutcome`: read back from bytes ten times as fast as the object."""
+    return outcome.point, outcome.form, outcome.values, outcome.reason
+
+
 class Outcomes(Mapping[int, PointOutcome]):
     """Outcome by number of the point.
 

@@ -17,7 +17,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Any, BinaryIO, cast
 
@@ -35,7 +35,7 @@ Sink = Callable[[PointOutcome], None]
 _BATCH_TIME = 0.2
 _MOST_IN_BATCH = 1000
 #: s: processor time that a process needs before its first point
-_START_TIME = 4.0
+_START_TIME = 2.5
 #: s: time of this process alone from which the time of the whole study is estimated
 _TRIAL_TIME = 1.0
 #: most times that a point may end the process that computes it, before the point counts as failed
@@ -174,18 +174,24 @@ class _Pool:
         self.workers: list[_Worker] = []
         self.deaths: dict[Unit, int] = {}
         self.each = 0.0  # s a unit, from the latest batch
+        self.is_compiled = False  # whether a process has filled the cache of compiled code
 
     def run(self, count: int) -> None:
-        """Run until every point is done; the first process fills the cache for the others."""
-        self._start()
+        """Run until every point is done.
+
+        All processes start at once, but only one receives points until its first point is done: it
+        fills the cache of compiled code for the others.
+        """
+        self._start(count)
         while self.left:
             worker, what, content = self.answers.get()
             if what == "outcomes":
                 worker.batch.popleft()
                 worker.done += 1
-                self._take(content)
-                while len(self.workers) < min(count, self.left):
-                    self._start()
+                self._take([PointOutcome(*row) for row in content])
+                waiting, self.is_compiled = [] if self.is_compiled else self.workers, True
+                for other in (w for w in waiting if not w.start_of_batch):
+                    self._ask(other)
             elif what == "ready":
                 if worker.done:
                     self.each = (time.monotonic() - worker.start_of_batch) / worker.done
@@ -198,26 +204,30 @@ class _Pool:
         for outcome in outcomes:
             self.sink(outcome)
 
-    def _start(self) -> None:
+    def _start(self, count: int = 1) -> None:
         code = (
             f"import sys; sys.path[:] = {sys.path!r}; "
             "from teleopdesign.studies.worker import main; main()"
         )
         with _shield_from_ctrl_c():
-            process = subprocess.Popen(
-                [sys.executable, "-c", code],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                env={**os.environ, **_ONE_THREAD},
-            )
-        worker = _Worker(process)
-        self.workers.append(worker)
-        threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
-        try:
-            send(cast(BinaryIO, process.stdin), self.payload)
-        except OSError:
-            return  # it died at once: its listener says so
-        self._ask(worker)
+            started = [
+                _Worker(
+                    subprocess.Popen(
+                        [sys.executable, "-c", code],
+                        stdin=subprocess.PIPE,
+                        stdout=subprocess.PIPE,
+                        env={**os.environ, **_ONE_THREAD},
+                    )
+                )
+                for _ in range(count)
+            ]
+        self.workers += started
+        # a long task is read only when its process has started: after the starts of all
+        for worker in started:
+            threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
+            with suppress(OSError):  # it ended at once: its listener says so
+                send(cast(BinaryIO, worker.process.stdin), self.payload)
+                self._ask(worker)
 
     def _listen(self, worker: _Worker) -> None:
         """Pass on all messages of a process until it ends."""
@@ -230,6 +240,8 @@ class _Pool:
             self.answers.put((worker, "died", None))
 
     def _ask(self, worker: _Worker) -> None:
+        if not self.is_compiled and any(w.batch for w in self.workers):
+            return
         fair = -(-len(self.todo) // max(len(self.workers), 1))
         size = int(_BATCH_TIME / self.each) if self.each > 0 else 1
         batch = [
@@ -251,8 +263,8 @@ class _Pool:
         _close(worker.process)
         lost = worker.batch
         if not lost:
-            if not worker.done and not self.each:
-                raise ModelError(f"a process ended before its first point, {_describe_end(status)}")
+            if not self.is_compiled:
+                self._start_anew(status)
             return
         first = lost.popleft()
         self.todo.extendleft(reversed(lost))
@@ -267,6 +279,13 @@ class _Pool:
             self.left += len(first) - 1
         if self.left:
             self._start()
+
+    def _start_anew(self, status: int) -> None:
+        """Replace a process that ended before it received a point."""
+        self.deaths[()] = self.deaths.get((), 0) + 1
+        if self.deaths[()] == _MOST_DEATHS:
+            raise ModelError(f"a process ended before its first point, {_describe_end(status)}")
+        self._start()
 
     def close(self) -> None:
         """End every process; units without an answer are dropped."""

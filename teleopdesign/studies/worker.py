@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import signal
 
 from .evaluate import StudyTask
 from .frames import receive, send
+from .outcomes import as_row
 from .side_by_side import evaluate_unit
 
 
@@ -22,9 +24,13 @@ def main() -> None:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     try:
         task: StudyTask = pickle.loads(receive(questions))
+        is_loaded = False
         while True:
             for unit in receive(questions):
-                send(answers, evaluate_unit(task, unit))
+                send(answers, [as_row(outcome) for outcome in evaluate_unit(task, unit)])
+                if not is_loaded:  # what was imported stays: no search for unused cycles there
+                    gc.freeze()
+                    is_loaded = True
             send(answers, None)
     except (EOFError, OSError):
         os._exit(0)  # the one that asked is gone, or needs no more

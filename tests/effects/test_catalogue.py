@@ -26,6 +26,7 @@ from teleopdesign.effects import (
     EFFECTS,
     ONLY_IN,
     SIGNALS,
+    check_laws,
     find_effect,
     load_effect,
     with_block_effects,
@@ -76,6 +77,11 @@ def test_a_law_may_use_parameters_of_effects_that_it_needs_and_of_no_others(tmp_
     )
     with pytest.raises(ModelError, match="law uses environment_stiffness"):
         load_effect(file)
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda p: p.stem)
+def test_the_laws_use_only_signals_and_parameters_that_they_may_use(file):
+    check_laws(with_block_effects()[file.stem], file)
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda p: p.stem)

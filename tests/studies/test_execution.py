@@ -69,6 +69,30 @@ def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(m
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_process_that_is_killed_before_its_first_point_is_replaced(monkeypatch, number):
+    start, processes = subprocess.Popen, []
+
+    def start_and_kill_one(*arguments, **options):
+        processes.append(start(*arguments, **options))
+        if len(processes) == number + 1:
+            processes[number].kill()
+        return processes[-1]
+
+    monkeypatch.setattr(subprocess, "Popen", start_and_kill_one)
+    dataset = td.study(models.product, AXES, measures=models.value, workers=2)
+    assert len(processes) == 3 and not dataset.failures
+    np.testing.assert_allclose(dataset["value"].values, EXPECTED, rtol=1e-15)
+
+
+@pytest.mark.slow
+def test_processes_that_all_end_before_their_first_point_are_one_line(monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with pytest.raises(ModelError, match="ended before its first point, with status 1"):
+        td.study(models.product, AXES, measures=models.value, workers=2)
+
+
+@pytest.mark.slow
 def test_a_point_whose_process_is_killed_is_computed_again(tmp_path):
     axes = {**AXES, "folder": str(tmp_path)}
     dataset = td.study(models.deadly_product, axes, measures=models.value, workers=2)
