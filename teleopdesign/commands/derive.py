@@ -27,14 +27,7 @@ EXAMPLES = """
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "diagram",
-        help="a diagram: a TOML file, or the name of a diagram of the package (haptic-interface, "
-        "world-haptics-2005, ...); or the answer of a diagnosis (.json); or a folder with "
-        "experiment.toml, which is then diagnosed",
-    )
-    add_answer(parser)
-    add_body(parser, pose=True)
+    add_diagram(parser)
     parser.add_argument(
         "--latex", action="store_true", help="print LaTeX, for an align environment"
     )
@@ -52,6 +45,18 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="speed, m/s or rad/s, at which smoothed friction and gain schedules are replaced by "
         "constants (default: 0)",
     )
+
+
+def add_diagram(parser: argparse.ArgumentParser) -> None:
+    """Arguments: a diagram, and what its file or the diagnosis behind it needs."""
+    parser.add_argument(
+        "diagram",
+        help="a diagram: a TOML file, or the name of a diagram of the package (haptic-interface, "
+        "world-haptics-2005, ...); or the answer of a diagnosis (.json); or a folder with "
+        "experiment.toml, which is then diagnosed",
+    )
+    add_answer(parser)
+    add_body(parser, pose=True)
     add_effect_files(parser)
     add_law_files(parser)
 
@@ -63,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     from ..derive import all_transfers
 
-    diagram = _diagram(options)
+    diagram = diagram_from(options)
     transfers = all_transfers(diagram)
     print(transfers.latex() if options.latex else _page(transfers, options.speed))
     if options.json is not None:
@@ -74,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _diagram(options: argparse.Namespace) -> Diagram:
+def diagram_from(options: argparse.Namespace) -> Diagram:
     """The diagram that the options name, or the haptic interface with an identified device."""
     from ..diagrams import SHIPPED, haptic_interface
 

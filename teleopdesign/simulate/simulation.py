@@ -15,7 +15,7 @@ from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
-from ..plain_data import write_netcdf
+from ..plain_data import write_beside, write_netcdf
 from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare
@@ -79,6 +79,15 @@ class Simulation(ByName, ByValue):
         """Write the signals with their units to a netCDF file."""
         write_netcdf(path, self.data)
 
+    def to_csv(self, path: str | Path) -> None:
+        """Write time and signals as columns, such as "X [m]", that `teleopdesign new` reads."""
+        columns = {"time": self.data["time"], **{str(n): x for n, x in self.data.items()}}
+        units = (x.attrs["units"] for x in columns.values())
+        names = [n if u == "1" else f"{n} [{u}]" for n, u in zip(columns, units, strict=True)]
+        with write_beside(path) as part:
+            table = np.column_stack([x.values for x in columns.values()])
+            np.savetxt(part, table, "%.9g", ",", header=",".join(names), comments="")
+
     def _repr_html_(self) -> str:
         t = self.data["time"].values
         rows = [
@@ -97,7 +106,9 @@ class Simulation(ByName, ByValue):
         ]
         for name, x in self.data.items():
             size = float(np.sqrt(np.mean(x.values**2)))
-            lines.append(f"  {name:<28} rms {size:<10.4g} {x.attrs['units']}")
+            error = x.attrs.get("step_error")
+            of_step = "" if error is None else f"  error of the step {error:.1e} of the largest"
+            lines.append(f"  {name:<28} rms {size:<10.4g} {x.attrs['units']:<6}{of_step}".rstrip())
         return "\n".join(lines)
 
 

@@ -279,7 +279,8 @@ def test_a_reader_that_never_reads_is_no_error():
 # results that cannot be written are refused before the work
 
 SOURCES = {"check": ROD, "describe": ROD, "design": ROD, "diagnose": ROD, "next": ROD,
-           "passivity": ROD, "derive": "haptic-interface", "study": "study.toml"}  # fmt: skip
+           "passivity": ROD, "derive": "haptic-interface",
+           "simulate": "world-haptics-2005", "study": "study.toml"}  # fmt: skip
 RESULTS = [
     ("check", "--json", "a.json"),
     ("check-papers", "--json", "a.json"),
@@ -300,6 +301,8 @@ RESULTS = [
     ("next", "--json", "a.json"),
     ("next", "--output", "a.csv"),
     ("passivity", "--json", "a.json"),
+    ("simulate", "--figure", "a.png"),
+    ("simulate", "--output", "a.csv"),
     ("study", "--figure", "a.png"),
     ("study", "--out", "a.nc"),
 ]
@@ -309,6 +312,7 @@ RESULTS = [
 @pytest.mark.parametrize(("name", "option", "file"), RESULTS)
 def test_a_result_that_cannot_be_written_is_refused_before_the_work(name, option, file, capsys):
     source = [str(SOURCES[name])] if name in SOURCES else []
+    source += ["--duration", "1"] if name == "simulate" else []
     assert main([name, *source, option, f"/proc/{file}"]) == 2
     out = capsys.readouterr()
     assert out.out == "" and out.err.count("\n") == 1 and f"/proc/{file}: " in out.err
