@@ -30,14 +30,14 @@ def error_without_position(
 
     nearest: a column whose name leaves open what it is, and of which no velocity is the derivative
     """
-    why = f"{nearest!r} is none by name or unit, and no velocity is its derivative"
-    if not nearest:
-        why = "no column changes without being a force or velocity by unit or name"
+    why = "no column changes without being a force or velocity by unit or name"
+    how = f"{_integral_of(moving)}{_named_as_force(moving)}"
+    if nearest:
+        why = f"{nearest!r} is none by name or unit, and no velocity is its derivative"
+        how = f"; if it is one: --position {nearest!r}{how.replace(';', '; else', 1)}"
     return ExperimentError(
         f"{file}: found no position: {why}, among {join_names(survey.columns) or 'none'}"
-        f"{_names_of_constants(survey)}{_integral_of(moving)}{_named_as_force(moving)}"
-        f"{f'; or --position {nearest!r}' if nearest else ''}"
-        f"{reasons(survey.unread)}"
+        f"{_names_of_constants(survey)}{how}{reasons(survey.unread)}"
     )
 
 
