@@ -32,6 +32,8 @@ _TIME = _Kind("a time", ("s", "ms"))
 _FREQUENCY = _Kind("a frequency", ("Hz", "rad/s"))
 _ANGLE = _Kind("an angle", ("rad", "deg"))
 _NUMBER = _Kind("a number without dimension", ("1", "%"))
+#: a part of a range or of a rated value: no angle, although both have no dimension
+_PER_CENT = "%"
 _TEMPERATURE = _Kind("a temperature", ("K", "mK"))
 _PER_KELVIN = _Kind("a part per kelvin", ("1/K", "%/K"))
 
@@ -142,7 +144,7 @@ def si_factor(
         hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, SYMBOLS)
         raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}{hint}") from None
     wanted = parse_unit(kind.units[0])
-    if parsed.dimension != wanted.dimension:
+    if parsed.dimension != wanted.dimension or _is_part(unit, kind):
         raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}")
     if quantity == "frequency" and parsed.powers[-1] == 1:
         return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
@@ -214,7 +216,13 @@ def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:
         parsed = parse_unit(unit)
     except NotAUnit:
         return False
-    return parsed.dimension == parse_unit(_kind(quantity, axis, "").units[0]).dimension
+    kind = _kind(quantity, axis, "")
+    return parsed.dimension == parse_unit(kind.units[0]).dimension and not _is_part(unit, kind)
+
+
+def _is_part(unit: str, kind: _Kind) -> bool:
+    """Whether a unit is a part of a whole where an angle is wanted: "Valve position [%]"."""
+    return kind is _ANGLE and unit.strip() == _PER_CENT
 
 
 def _kind(quantity: str, axis: str, where: str) -> _Kind:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ..blocks import Body
 from ..diagnose.prepare import Stretch
 from ..measurement.filtering import Array
+from ..measurement.first_guess import hardly_varies
 from ..measurement.motion import Motion
 from ..realise.along_motion import residual_along
 
@@ -136,16 +137,31 @@ def with_shifts(
     plain: BalanceFit,
     measured: float,
 ) -> BalanceFit:
-    """The balance with the fewest shifts that explain the residual; `plain` where none does."""
-    each = [(f,) for f in forces]
+    """The balance with the fewest shifts that explain the residual; `plain` where none does.
+
+    A force that stays constant wherever the body moves has no shift: it tells nothing of its time.
+    """
+    each = [(f,) for f in forces if not _stays_constant(bands[1.0], f)]
+    if not each:
+        return plain
     free = _from_starts(bands, forces, each, measured)
     if free.size > REMAINS * plain.size:
         return plain
-    alone = [*each, tuple(forces)] if len(forces) > 1 else []
+    alone = [*each, tuple(forces)] if len(each) > 1 else []
     single = [_from_starts(bands, forces, [g], measured) for g in alone]
     best = min(single, key=lambda s: s.size, default=free)
     explained = (plain.size**2 - best.size**2) / (plain.size**2 - free.size**2)
     return best if explained > ALONE else free
+
+
+def _stays_constant(parts: Sequence[BandTransforms], force: str) -> bool:
+    """Whether a force has one value in all rows that count, as a motor that spins up after a step.
+
+    What its low-pass shows there is the step itself, which lies before the motion.
+    """
+    is_command = force == "actuator_force"
+    rows = [(p.motion.command if is_command else p.motion.interaction)[p.keep] for p in parts]
+    return hardly_varies(np.concatenate(rows))
 
 
 def _from_starts(

@@ -222,6 +222,16 @@ def _report_agreement(model: Model, place: str, balance: ForceBalance) -> Findin
     inertia = balance.strengths["inertia"]
     of_model = body.parameters["inertia"].value
     numbers = {"inertia": inertia.value, "left": balance.left, "gain": balance.gain.value}
+    if inertia.sure < 0:
+        return Finding(
+            "signs and units",
+            "note",
+            f"the motion requires a negative inertia, {inertia.value:.3g} {body.unit('inertia')}, "
+            "although friction brakes: a force moves the body that neither the log nor the model "
+            "has, such as that of a spring, a hand or a coupled body, or a sign is wrong.",
+            numbers,
+            place,
+        )
     if not inertia.sure:
         text = (
             "no sign or unit contradicts the motion, but the motion does not determine an inertia"

@@ -16,8 +16,9 @@ from .bodies_apart import select_bodies
 from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, refer_to_command
+from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
-from .prepare import Prepared, Stretch, folds
+from .prepare import Prepared, Stretch
 from .record_offsets import AlongRecords, follow_records
 from .residual import both_residuals
 from .solve import BLOCK, Solution, model_without, solve

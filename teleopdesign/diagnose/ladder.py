@@ -20,7 +20,7 @@ from .noise_floor import noise_floor
 from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
-from .stand_in import stands_in_for_readings, stands_in_for_values
+from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
 from .straight import straighten
 from .together import add_together
 from .transmission import add_transmission
@@ -113,9 +113,9 @@ def bar_what_explains_nothing(
 ) -> LadderState | None:
     """The state before a move, with the move's new effects barred; None: they explain something.
 
-    An effect is barred if it only does what other values of the model do as well, or only weakens
-    the errors of the readings. A move that replaces rungs is exempt: it may explain as much as they
-    did, more simply.
+    An effect is barred if it only does what other values of the model do as well, only weakens
+    the errors of the readings, or explains a few moments of one log. A move that replaces rungs is
+    exempt: it may explain as much as they did, more simply.
     """
     before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
@@ -128,7 +128,9 @@ def bar_what_explains_nothing(
     drawn = noise_floor(moved.fit.model, prepared, search.generator())
     barred = stands_in_for_readings(state.fit, state.floors.drawn, last, drawn, criteria=criteria)
     if barred is None:
-        barred = stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
+        barred = stands_in_for_values(
+            state.fit, last, prepared, state.floor, criteria=criteria
+        ) or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
     if barred is None:
         return None
     gone = {r.added.key for r in new if r.added is not None}

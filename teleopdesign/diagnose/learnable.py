@@ -29,7 +29,8 @@ from ..quantity import unit_of
 from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate
-from .prepare import FOLDS, Prepared, Stretch, folds, measured_force
+from .folds import folds
+from .prepare import FOLDS, Prepared, Stretch, measured_force
 from .record_offsets import apply_record_offsets
 from .residual import residuals
 from .tree_inputs import inputs_along

@@ -17,7 +17,7 @@ from ..measurement.filtering import Array, spectrum
 from ..measurement.motion import SHORTEST, SMOOTHING, Motion, motions
 from ..measurement.record import Record
 from .scales import LARGEST, scales
-from .shared_links import Shared, share_again
+from .shared_links import Shared
 from .short_segments import why_too_short
 
 #: seconds at each end of a stretch where the low-pass is not yet in steady state
@@ -236,26 +236,6 @@ def _thin_motion(motion: Motion, count: int) -> Motion:
         merged=count,
         further={name: signal[at].copy() for name, signal in motion.further.items()},
     )
-
-
-def folds(
-    stretches: Sequence[Stretch],
-) -> list[tuple[tuple[Stretch, ...], tuple[Stretch, ...]]]:
-    """The stretches with `FOLDS` blocks of each held out in turn: (kept, held out)."""
-    pairs = []
-    for i in range(FOLDS):
-        kept, held_out = [], []
-        for s in stretches:
-            part = np.arange(len(s.keep)) * FOLDS // len(s.keep) == i
-            kept.append(replace(_cut(s, s.keep[~part]), shared=s.shared))
-            held_out.append(_cut(s, s.keep[part]))
-        pairs.append((share_again(kept), tuple(held_out)))
-    return pairs
-
-
-def _cut(stretch: Stretch, keep: NDArray[np.intp]) -> Stretch:
-    measured = _squares(stretch.motion, keep, stretch.weight)
-    return replace(stretch, keep=keep, measured=measured, shared=None)
 
 
 def measured_force(stretch: Stretch) -> Array:

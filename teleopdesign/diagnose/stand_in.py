@@ -9,6 +9,9 @@ records.
 Errors of the readings: a structure transmits less of the noise in an acceleration. The error may
     then be smaller, and yet be more noise floors of the new model. In a record with few events (a
     motor that sticks and slips under a coarse encoder) a lag may follow the errors themselves.
+
+Few moments: in one log without a check record, the few starts and stops of a motion may share an
+    error, such as that of their time between two rows. An effect that acts only there follows it.
 """
 
 from __future__ import annotations
@@ -113,15 +116,44 @@ def stands_in_for_readings(
     return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
 
 
+def stands_in_for_moments(
+    base: Fit, rung: Rung, prepared: Prepared, *, criteria: Criteria = CRITERIA
+) -> SetAside | None:
+    """The effect of a rung that so few moments of one log show that they may agree by chance.
+
+    Chance alone lets N moments agree once in 2^N; a check record would repeat them elsewhere.
+    returns: None with check records, or where enough moments agree
+    """
+    if rung.added is None or prepared.of("check"):
+        return None
+    moments = acting_moments(base, rung.fit)
+    if 0.5**moments < criteria.by_chance:
+        return None
+    reason = (
+        f"explains about {max(moments, 1.0):.0f} moments of this log, such as starts and stops: "
+        "without a check record so few may agree by chance, or share an error of their time"
+    )
+    return SetAside(rung.added, rung.fit.check_error, reason)
+
+
 def acts_at_few_moments(base: Fit, fit: Fit) -> bool:
     """Whether fewer than `MOMENTS` blocks of the check records hold what an effect explains.
 
-    Their effective number is (sum g)^2 / sum g^2 with the falls g of the sum of squares: 15 to 23
-    of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of readings. In
-    shorter records it is small whatever acts: there the doubt counts against the effect.
+    15 to 23 of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of
+    readings. In shorter records it is small whatever acts: there the doubt counts against the
+    effect.
+    """
+    return acting_moments(base, fit) < MOMENTS
+
+
+def acting_moments(base: Fit, fit: Fit) -> float:
+    """Effective number of blocks of the check records that hold what an effect explains.
+
+    (sum g)^2 / sum g^2 with the falls g of the sum of squares.
     """
     falls = np.bincount(base.check_blocks, base.check_residual**2 - fit.check_residual**2)
-    return bool(falls.sum() ** 2 < MOMENTS * np.sum(falls**2))
+    squares = float(np.sum(falls**2))
+    return float(falls.sum()) ** 2 / squares if squares > 0.0 else 0.0
 
 
 def is_of_readings(floors: float, criteria: Criteria) -> bool:

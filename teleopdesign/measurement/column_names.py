@@ -73,7 +73,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "velocity": (
         "velocity", "vel", "speed", "geschwindigkeit", "drehzahl", "omega", "qd", "dq", "xd", "v",
         "vitesse", "velocidad", "velocita", "速度",
-        "속도", "скорость",
+        "속도", "скорость", "rpm",
     ),
     "interaction_force": (
         "interaction", "hand", "contact", "external", "ext", "sensor", "wrench", "fh", "ft", "load",
@@ -91,7 +91,7 @@ WORDS: dict[str, tuple[str, ...]] = {
 #: index in these lists from which all words count as equally certain
 LAST_RANK = 12
 #: words in names of commanded values, which are no readings of a sensor
-WANTED = tuple("target ref reference desired des setpoint soll goal cmd command".split())
+WANTED = tuple("target ref reference desired des setpoint sp soll goal cmd command".split())
 
 
 #: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..diagnose.fit import block_numbers, free_parameters
-from ..diagnose.prepare import Prepared, Stretch, folds
+from ..diagnose.folds import folds
+from ..diagnose.prepare import Prepared, Stretch
 from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter

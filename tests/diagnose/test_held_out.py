@@ -9,7 +9,8 @@ import pytest
 from teleopdesign import Model
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, free_parameters
-from teleopdesign.diagnose.prepare import folds, prepare
+from teleopdesign.diagnose.folds import folds
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.solve import model_without, solve
 
 

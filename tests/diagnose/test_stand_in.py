@@ -14,7 +14,9 @@ from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.stand_in import (
+    acting_moments,
     estimable_on_all,
+    stands_in_for_moments,
     stands_in_for_readings,
     stands_in_for_values,
 )
@@ -164,3 +166,30 @@ def test_an_adequate_model_gets_no_tip_for_the_steps_of_its_encoder(tmp_path):
     assert [r.added for r in diagnosis.rungs] == [None]
     assert diagnosis.verdict == "model_adequate"
     assert [one.candidate.effect.name for one in diagnosis.set_aside] == ["transmission_compliance"]
+
+
+def fits_of(falls):
+    """Two fits, the second of which leaves less by these squares in successive blocks."""
+    blocks = np.repeat(np.arange(len(falls)), 5)
+    left = np.sqrt(np.repeat(np.asarray(falls, float), 5) / 5.0)
+    base = SimpleNamespace(check_blocks=blocks, check_residual=left)
+    return base, SimpleNamespace(check_residual=np.zeros(len(left)), check_error=0.1)
+
+
+@pytest.mark.parametrize(
+    "falls, moments", [([1] * 12, 12.0), ([1, 1, 0, 0, 1, 1], 4.0), ([3, 1], 1.6), ([0, 0], 0.0)]
+)
+def test_moments_at_which_an_effect_acts(falls, moments):
+    assert acting_moments(*fits_of(falls)) == pytest.approx(moments)
+
+
+@pytest.mark.parametrize("falls, is_few", [([1] * 6, True), ([1] * 7, False)])
+def test_an_effect_of_few_moments_is_set_aside_where_no_check_record_repeats_them(falls, is_few):
+    """Six moments agree by chance once in 64, seven once in 128."""
+    base, fit = fits_of(falls)
+    rung = SimpleNamespace(added="an effect", fit=fit)
+    for check, barred in (((), is_few), (("a stretch",), False)):
+        prepared = SimpleNamespace(of={"check": check}.get)
+        none = stands_in_for_moments(base, rung, prepared)
+        assert (none is not None) == barred
+        assert none is None or "6 moments" in none.reason

@@ -50,7 +50,7 @@ def test_one_row_alone_tells_its_separator():
         ("% t;x;F", ("t", "x", "F"), ()),
         ("// t;x;F", ("t", "x", "F"), ()),
         (";Run 7;\nt;x;F", ("t", "x", "F"), ()),
-        (";Run 7;\n;x;F", ("", "x", "F"), ()),
+        (";Run 7;\n;x;F", ("column 1", "x", "F"), ()),
         ("t;Motor;\n;x;F", ("t", "x", "F"), ()),
         (";Motor;Motor\nt;x;F", ("t", "x", "F"), ()),
         ("t;Motor;Bench\n;x;x", ("t", "x", "x"), ()),

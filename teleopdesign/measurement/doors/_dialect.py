@@ -84,6 +84,10 @@ def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
     named = bool(header)
     if not named:
         header = tuple(f"column {k + 1}" for k in range(width))
+    elif header.count("") == 1:  # drives and pandas leave the name of the first column out
+        header = tuple(name or f"column {k + 1}" for k, name in enumerate(header))
+    elif len(header) == 2 < width - 1:  # a time and an array, as simulation tools export them
+        header = (header[0], *(f"{header[1]}(:,{k + 1})" for k in range(width - 1)))
     names = number_names(header)
     cells = cells_of(lines[first], separator)
     dates = tuple(

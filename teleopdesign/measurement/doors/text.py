@@ -77,6 +77,8 @@ def open_text(path: Path, file: str) -> Log:
         notes.append("a last row that was cut off")
     if not dialect.named:
         notes.append("no header: columns are named by their number")
+    elif dialect.header[-1].endswith(f"(:,{len(dialect.header) - 1})"):
+        notes.append(f"one name for an array: {quote(dialect.header[1])} and so on")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     # the last lines too: a signal may begin late; those of a short file are its first ones again

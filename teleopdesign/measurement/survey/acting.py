@@ -18,6 +18,9 @@ from .content import SURE_NAME, Array, SurveyedColumn
 #: than a tenth of the force. If the difference is larger, another force than the command acted:
 #: feedback, or a limit
 FOLLOWED = 0.01
+#: part of the larger of two sides (values above and below zero) up to which the smaller one may be
+#: noise about zero: the current that a drive draws from its supply has one side, a motor's has both
+ONE_SIDE = 0.1
 #: most rows by which a drive may be late behind its command; it may also smooth over these rows
 LATE = 4
 #: words of a current, in the languages that `column_names` reads
@@ -48,6 +51,7 @@ def current_that_acted(
         name
         for name, column in columns.items()
         if name != force and _is_current(column) and not is_wanted(name)
+        if not _lacks_a_side(column.values, columns[force].values)
     ]
     if not measured:
         return None
@@ -61,6 +65,17 @@ def _is_current(column: SurveyedColumn) -> bool:
     if likeness(column.name, "actuator_force") < SURE_NAME:
         return False
     return column.unit in ("A", "mA") or column.unit is None and names_current(column.name)
+
+
+def _lacks_a_side(measured: Array, wanted: Array) -> bool:
+    """Whether a current has one sign although the command has both: it is no motor's current."""
+    return _smaller_side(measured) < ONE_SIDE < _smaller_side(wanted)
+
+
+def _smaller_side(x: Array) -> float:
+    """The largest value of the smaller side of zero, over that of the larger side."""
+    sides = sorted((max(float(np.max(x)), 0.0), max(-float(np.min(x)), 0.0)))
+    return sides[0] / sides[1] if sides[1] > 0.0 else 0.0
 
 
 def names_current(name: str) -> bool:

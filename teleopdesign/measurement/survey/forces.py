@@ -282,7 +282,8 @@ def _choose_signs(
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1
         survey.guesses["channels.position.sign"] = (
-            "-1: with the sign of the log, friction would drive the motion, or inertia be negative"
+            "-1: with the sign of the log, friction would drive the motion, or inertia be "
+            "negative; a motor that brakes what a hand or a spring moves looks the same"
         )
         with_hand = FirstGuess(
             -with_hand.inertia,

@@ -7,19 +7,37 @@ from collections.abc import Mapping
 from ...errors import ExperimentError
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
-from .content import Survey, SurveyedColumn, names_at_rest, reasons
+from .content import Survey, SurveyedColumn, is_unit_of, names_at_rest, reasons
 from .derivative import is_velocity, overflow_of
 
 
+def has_only_speeds(column: SurveyedColumn, moving: Mapping[str, SurveyedColumn]) -> bool:
+    """Whether a log holds a measured velocity, and a column of which nothing says it is a position.
+
+    column: no velocity is its derivative, and it follows no set point
+    The velocity beside a position is its derivative. A velocity of no column's motion is that of a
+    body whose position is not in the log.
+    """
+    if likeness(column.name, "position") > 0.0 or is_unit_of(column.unit, "position"):
+        return False
+    return any(is_velocity(c) and not is_wanted(n) for n, c in moving.items() if n != column.name)
+
+
 def error_without_position(
-    survey: Survey, moving: Mapping[str, SurveyedColumn], file: str
+    survey: Survey, moving: Mapping[str, SurveyedColumn], file: str, nearest: str = ""
 ) -> ExperimentError:
-    """The error for a log without a position; moving: the columns that change, by name."""
+    """The error for a log without a position; moving: the columns that change, by name.
+
+    nearest: a column whose name leaves open what it is, and of which no velocity is the derivative
+    """
+    why = "no column changes without being a force or velocity by unit or name"
+    how = f"{_integral_of(moving)}{_named_as_force(moving)}"
+    if nearest:
+        why = f"{nearest!r} is none by name or unit, and no velocity is its derivative"
+        how = f"; if it is one: --position {nearest!r}{how.replace(';', '; else', 1)}"
     return ExperimentError(
-        f"{file}: found no position: no column changes without being a force or "
-        f"velocity by unit or name, among {join_names(survey.columns) or 'none'}"
-        f"{_names_of_constants(survey)}{_integral_of(moving)}{_named_as_force(moving)}"
-        f"{reasons(survey.unread)}"
+        f"{file}: found no position: {why}, among {join_names(survey.columns) or 'none'}"
+        f"{_names_of_constants(survey)}{how}{reasons(survey.unread)}"
     )
 
 
@@ -44,9 +62,12 @@ def _integral_of(moving: Mapping[str, SurveyedColumn]) -> str:
 
 
 def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
-    """How to choose a column that its name makes a force, for a message; not beside a velocity."""
+    """How to choose a column that its name makes a force, for a message; not beside a velocity.
+
+    A converter logs each of its inputs in V, whatever the sensor measures.
+    """
     if any(map(is_velocity, moving.values())):
         return ""
-    unsure = (n for n, c in moving.items() if c.unit is None)
+    unsure = (n for n, c in moving.items() if c.unit in (None, "V", "mV"))
     names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
     return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""

@@ -47,7 +47,7 @@ from .derivative import (
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
 from .force_entry import describe_code
-from .no_position import error_without_position
+from .no_position import error_without_position, has_only_speeds
 from .set_point import followed_columns, may_be_set_point
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
@@ -79,7 +79,7 @@ def find_position(
         is_set_point = is_wanted(name) or name in followed.values()
         score = likeness(name, "position") - 0.8 * is_set_point + 0.4 * (name in followed)
         score -= 1.2 * is_difference(name)  # below a column whose name says nothing
-        kinds = [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
+        kinds = _kinds_of(column)
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
@@ -107,6 +107,9 @@ def find_position(
             best = most_explained([best, *as_likely(scores, best)], flat, h)
         travels = {n: float(np.ptp(x)) for n, x in flat.items()}
         best = axis_that_moves(best, as_likely(scores, best), travels)
+        shown = best in derivative or best in followed
+        if not shown and has_only_speeds(moving[best], moving):
+            raise error_without_position(survey, moving, file, best)
         _note_choice(survey, best, scores, derivative, followed)
     else:
         raise error_without_position(survey, moving, file)
@@ -114,6 +117,13 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _kinds_of(column: SurveyedColumn) -> list[str]:
+    """The quantities that a column's unit fits; per cent may be parts of anything: the name says"""
+    if column.unit == "%" and likeness(column.name, "position") >= SURE_NAME:
+        return []
+    return [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
 
 
 def _is_rate(name: str, derivative: Mapping[str, tuple[str, float]]) -> bool:
@@ -170,13 +180,14 @@ def _without_names(
 def _is_another(column: SurveyedColumn) -> bool:
     """Whether a column is no position, by its unit or, without a unit, by its name.
 
-    A potentiometer may be logged in mV, and the last letters of a name may be no unit: "q_ms".
+    A potentiometer may be logged in mV, a valve in per cent of its stroke, and the last letters of
+    a name may be no unit: "q_ms".
     """
     if is_unit_of(column.unit, "position") or is_unit_of(column.unit, "time"):
         return False
     named = likeness(column.name, "position")
     if column.unit is not None and is_unit(column.unit):
-        return not (named >= SURE_NAME and column.unit == "mV")
+        return not (named >= SURE_NAME and column.unit in ("mV", "%"))
     if named == 0:
         others = ("velocity", "actuator_force", "interaction_force")
         no_position = max(likeness(column.name, other) for other in others) >= SURE_NAME

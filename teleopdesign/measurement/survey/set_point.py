@@ -132,9 +132,10 @@ def has_numbers_of(column: Array, position: Array) -> bool:
 def may_be_set_point(column: SurveyedColumn) -> bool:
     """Whether unit and name of a column leave open that it is a set point of the position.
 
-    "cmd" and "command" name forces and set points; "torque" names a force only.
+    "cmd" and "command" name forces and set points; "torque" names a force only. Per cent may be
+    parts of a stroke or of a torque.
     """
-    if column.unit is not None and is_unit_of(column.unit, "force"):
+    if column.unit not in (None, "%") and is_unit_of(column.unit, "force"):
         return False
     plain = " ".join(word for word in words_of(column.name) if word not in WANTED)
     return max(likeness(plain, f"{k}_force") for k in ("actuator", "interaction")) < SURE_NAME
