@@ -269,15 +269,19 @@ def sentence(diagnosis: Diagnosis) -> str:
 
 
 def _nearest(diagnosis: Diagnosis) -> str:
-    """A sentence on the candidate with the least error where none is supported; "": none helps."""
+    """A sentence on the candidate with the least error where none is supported; "": none helps.
+
+    Candidates that are listed beside an accepted one are not named a second time.
+    """
     if diagnosis.open is not None:  # read from a file, which has no rankings
         others = [q.others[0] for q in diagnosis.open if q.added is None]
     else:
         ranked = diagnosis.last.ranked
         others = [(r.candidate, r.fit) for r in ranked if r.counts and r.score > 0.0]
     least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
+    listed = [candidate for group in diagnosis.groups for candidate in group]
     for candidate, fit in others[:1]:
-        if fit.check_error**2 < least:
+        if candidate not in listed and fit.check_error**2 < least:
             why = next((a.reason for a in diagnosis.set_aside if a.candidate == candidate), "")
             return (
                 f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: "
