@@ -30,9 +30,10 @@ ALIASES = {
     "米/秒": "m/s", "ミリ秒": "ms", "ラジアン": "rad", "도": "deg", "days": "day",
     "tage": "day", "jours": "day", "grad/s": "deg/s", "grad/sec": "deg/s", "degree/s": "deg/s",
     "degrees/s": "deg/s", "newtonmeter": "Nm", "sekunde": "s", "millisekunden": "ms",
-    "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
+    "grd": "deg", "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
     "inches": "in", "lb": "lbf", "lbs": "lbf", "rps": "turns/s", "r/s": "turns/s", "u/s": "turns/s",
     "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
+    "arms": "A",
 }  # fmt: skip
 #: text in brackets at the end of a name; a number there counts axes: "pos (5)", "tau[1]"
 _BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])(?!\s*\d+\s*[)\]}])([^()\[\]{}]++)[)\]}]\s*+$")
@@ -116,8 +117,8 @@ DIFFERENCES = tuple(
     "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
 )
 
-#: units that are words or parts of names as well: "x_in" is an input, "hand_ft" force and torque
-_ONLY_IN_BRACKETS = ("in", "ft")
+#: units that are words as well: "x_in" is an input, "hand_ft" force and torque, "Arms" are A (rms)
+_ONLY_IN_BRACKETS = ("in", "ft", "arms")
 #: most letters of a text in brackets that may be a unit, without a sign of a product
 _UNIT_LETTERS = 5
 #: least letters of a name that is a unit and nothing else; a shorter one is a symbol such as "s"
@@ -165,7 +166,7 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
         unit = unit_of_text(text.group(1))
         if unit is None or not sure and len(text.group(1)) < 2 and quantity is None:
             continue
-        if not sure and unit in _ONLY_IN_BRACKETS:
+        if not sure and text.group(1).lower() in _ONLY_IN_BRACKETS:
             continue
         if quantity is None or _suits(unit, quantity, axis):
             return unit

@@ -2,34 +2,12 @@
 
 import numpy as np
 import pytest
+from measurement.made_logs import ROWS, Q, T, U, V, columns_of, rows, survey
 
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._two_part_time import are_parts_of_time
-from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.remarks import sample_rate_in
 from teleopdesign.measurement.tables import open_log, read_columns
-
-ROWS = 1600
-T = 0.002 * np.arange(ROWS)
-Q = np.round(5000 * np.sin(2 * np.pi * 0.9 * T) + 1500 * np.sin(2 * np.pi * 2.3 * T)) / 100
-V = np.gradient(Q, T)
-U = np.round(2e-4 * np.gradient(np.convolve(V, np.ones(9) / 9, "same"), T) + 0.5 * np.sign(V), 3)
-
-
-def rows(form, *columns):
-    return [form % row for row in zip(*(np.asarray(c).tolist() for c in columns), strict=True)]
-
-
-def survey(tmp_path, lines, name="log.csv", **choices):
-    path = tmp_path / name
-    path.write_text("\n".join(lines) + "\n")
-    log = open_log(path, name)
-    return log, survey_log(log, name, Choices(**choices))
-
-
-def columns_of(channels):
-    return {quantity: entry.get("column") for quantity, entry in channels.items()}
-
 
 LABVIEW = [
     "LabVIEW Measurement\t", "Separator\tTab", "Multi_Headings\tYes", "***End_of_Header***\t",
@@ -218,6 +196,17 @@ def test_seconds_and_the_part_of_the_second_are_one_time(tmp_path, names, joined
     assert any("a time in two columns" in note for note in read.notes)
 
 
+def test_a_time_of_day_and_its_milliseconds_are_one_time(tmp_path):
+    """Over midnight; each second alone is shared by many rows."""
+    day = 86_399 + np.floor(T + 0.25)
+    stamps = clock(day % 86_400, "%02d:%02d:%02d")
+    parts = (1e3 * ((T + 0.25) % 1)).round().astype(int).tolist()
+    table = rows("%s;%d;%.2f;%.3f", stamps, parts, Q, U)
+    _, proposal = survey(tmp_path, ["Time;Milliseconds;Angle (deg);Torque (Nm)", *table])
+    assert proposal.channels["time"]["column"] == "Time + Milliseconds"
+    assert proposal.duration == pytest.approx(T[-1])
+
+
 @pytest.mark.parametrize(
     ("whole", "part", "answer"),
     [
@@ -252,47 +241,3 @@ def test_frames_of_a_bus_are_refused_with_what_to_do(tmp_path, name, form):
     path.write_text("; frames\n" + "\n".join(form.format(t=t) for t in T.tolist()) + "\n")
     with pytest.raises(ExperimentError, match="frames of a CAN bus.*decode them"):
         open_log(path, name)
-
-
-LATE = 0.0007
-
-
-@pytest.mark.parametrize("separator", [",", ";", "\t"])
-@pytest.mark.parametrize("in_turn", [True, False])
-def test_a_reading_in_each_row_belongs_to_the_signal_that_its_row_names(
-    tmp_path, separator, in_turn
-):
-    """Viewers of bags write one signal after the other, data bases write readings as they come."""
-    angles = [f"{t:.4f},/joint.position[0],{q:.2f},deg" for t, q in zip(T, Q, strict=True)]
-    torques = [f"{t + LATE:.4f},/command.data,{u:.3f},Nm" for t, u in zip(T, U, strict=True)]
-    states = ["0.5000,/state,ready,", "0.6000,/state,,"]
-    mixed = [row for pair in zip(angles, torques, strict=True) for row in pair]
-    lines = ["elapsed time,topic,value,unit", *(mixed if in_turn else angles + torques), *states]
-    decimal = "," if separator == ";" else "."
-    lines = [line.replace(".", "@").replace(",", separator) for line in lines]
-    log, proposal = survey(tmp_path, [line.replace("@", decimal) for line in lines])
-    names = "/joint@position[0]", "/command@data"
-    position, torque = (name.replace("@", decimal) for name in names)
-    assert columns_of(proposal.channels) == {
-        "time": f"time of {position}", "position": position, "actuator_force": torque,
-    }  # fmt: skip
-    assert proposal.channels["position"]["unit"] == "deg"
-    assert proposal.channels["actuator_force"]["unit"] == "Nm"
-    read = read_columns(tmp_path / "log.csv", "log.csv", {torque: "channels.actuator_force"})
-    assert np.array_equal(read.values[torque], U)
-    assert np.allclose(read.stamps[torque], T + LATE)
-
-
-def test_a_table_of_values_without_a_signal_in_each_row_is_an_ordinary_table(tmp_path):
-    lines = ["time,topic,value,torque", *rows("%.4f,joint,%.2f,%.3f", T, Q, U)]
-    lines[0] = "time,joint,value,torque"
-    log, _ = survey(tmp_path, lines, position="value")
-    assert log.names == ("time", "joint", "value", "torque")
-    lines[0] = "time,topic,value,value 2"
-    assert open_log_of(tmp_path, lines).names == ("time", "topic", "value", "value 2")
-
-
-def open_log_of(tmp_path, lines):
-    path = tmp_path / "other.csv"
-    path.write_text("\n".join(lines) + "\n")
-    return open_log(path, path.name)

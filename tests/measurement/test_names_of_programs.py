@@ -55,6 +55,9 @@ def test_a_position_that_wraps_at_two_pi_is_in_rad():
         ("words_per_sec", "s"),
         ("v_mm_s", "mm/s"),
         ("tau_N_m", "N*m"),
+        ("IL.FB (Arms)", "A"),
+        ("robot_arms", None),
+        ("Lageistwert [Grd]", "deg"),
     ],
 )
 def test_units_of_two_words_in_names(name, unit):

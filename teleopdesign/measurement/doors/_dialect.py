@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import gzip
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, cast
@@ -46,7 +46,7 @@ class Dialect:
     named: the file has a header;  dates: columns of dates or times of day
     remarks: lines above the first row of numbers
     labels: texts with which they begin, as does each header that repeats in the table
-    stamped: a serial monitor has written a time before each line
+    edit: function from the lines of the file to those of the table, as with stamps of a monitor
     """
 
     encoding: str
@@ -59,7 +59,7 @@ class Dialect:
     dates: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     labels: frozenset[str] = frozenset()
-    stamped: bool = False
+    edit: Callable[[Iterable[str]], Iterable[str]] = iter
 
 
 def first_lines(path: Path, file: str) -> tuple[str, list[str]]:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache, partial
 from pathlib import Path
 
 from ._cells import seconds_of
 from ._dialect import LOOKED_AT, Dialect, open_bytes, separator_of
+from ._vectors_in_cells import vectors_in_cells
 
 #: what a serial monitor writes before each line: a time, and "->" behind it or brackets around it
 _STAMP = re.compile(
@@ -35,11 +36,18 @@ def are_stamped(lines: Sequence[str]) -> bool:
     return count >= 3 and count >= MOST_OF_THEM * len(filled)
 
 
-def with_stamps_of_table(lines: Sequence[str]) -> list[str]:
-    """The first lines of a table with each stamp as a cell, in the dialect of the other cells."""
-    sent = [_STAMP.sub("", line, count=1) for line in lines]
-    separator, comma = separator_of([line for line in sent if line.strip()])
-    return [*with_stamps_as_cells(lines, separator, comma=comma)]
+def edit_of(
+    lines: Sequence[str],
+) -> tuple[Callable[[Iterable[str]], Iterable[str]], list[str]]:
+    """How the lines of a file become those of a table, judged from the first ones; and remarks."""
+    if are_stamped(lines):
+        sent = [_STAMP.sub("", line, count=1) for line in lines]
+        separator, comma = separator_of([line for line in sent if line.strip()])
+        edit = partial(with_stamps_as_cells, separator=separator, comma=comma)
+        return edit, ["times of a serial monitor before each line"]
+    if (vectors := vectors_in_cells(lines)) is not None:
+        return vectors, ["vectors in cells: a column for each element"]
+    return iter, []
 
 
 def with_stamps_as_cells(
@@ -78,21 +86,13 @@ def _day(date: str) -> float:
 def open_lines(
     path: Path,
     encoding: str,
-    separator: str,
+    edit: Callable[[Iterable[str]], Iterable[str]] = iter,
     *,
-    comma: bool = False,
-    stamped: bool = False,
     errors: str = "strict",
 ) -> Iterator[Iterable[str]]:
-    """The lines of a file, with stamps as their first cells."""
+    """The lines of a file, edited."""
     with open_bytes(path) as raw, io.TextIOWrapper(raw, encoding, errors=errors) as stream:
-        yield with_stamps_as_cells(stream, separator, comma=comma) if stamped else stream
-
-
-def open_table(path: Path, dialect: Dialect) -> AbstractContextManager[Iterable[str]]:
-    """The lines of a table whose dialect is known."""
-    comma, stamped = dialect.comma, dialect.stamped
-    return open_lines(path, dialect.encoding, dialect.separator, comma=comma, stamped=stamped)
+        yield edit(stream)
 
 
 def last_lines(path: Path, dialect: Dialect) -> list[str]:
@@ -103,7 +103,5 @@ def last_lines(path: Path, dialect: Dialect) -> list[str]:
         stream.seek(0, 2)
         stream.seek(max(0, stream.tell() - LOOKED_AT))
         tail = stream.read().decode(dialect.encoding.removesuffix("-sig"), errors="ignore")
-    lines = [line for line in tail.replace("\r", "\n").split("\n") if line.strip()]
-    if not dialect.stamped:
-        return lines
-    return [*with_stamps_as_cells(lines, dialect.separator, comma=dialect.comma)]
+    lines = tail.replace("\r", "\n").split("\n")
+    return [*dialect.edit(line for line in lines if line.strip())]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -50,14 +51,15 @@ def log_of_pairs(
 
     units: of each name, from `names_in_lines`;  stamped: with times of a serial monitor
     """
-    from ._lines_of_file import open_lines
+    from ._lines_of_file import open_lines, with_stamps_as_cells
 
+    edit = partial(with_stamps_as_cells, separator="=") if stamped else iter
     strays: list[int] = []
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
         strays.clear()
         names, rows = tuple(units), []
-        with open_lines(path, encoding, "=", stamped=stamped, errors="replace") as stream:
+        with open_lines(path, encoding, edit, errors="replace") as stream:
             for line in stream:
                 row = pairs_of(line)
                 if tuple(name for name, _, _ in row) == names:

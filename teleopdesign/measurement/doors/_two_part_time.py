@@ -4,7 +4,8 @@
     1736150000,       998123456,            0.10
     1736150001,         2123499,            0.11
 
-Clocks of operating systems and of ROS count in this way, in ns or us. Either column alone would be
+Clocks of operating systems and of ROS count in this way, in ns or us, and loggers write a time of
+day beside its ms. Either column alone would be
 a wrong time: the seconds stand still, and their part is set back each second.
 """
 
@@ -74,8 +75,10 @@ def _with_joined(log: Log, file: str, parts: tuple[str, str, str]) -> Log:
 
 def are_parts_of_time(whole: Array, part: Array, *, per_second: float) -> bool:
     """Whether two columns (n,) are the seconds of a time and the parts of these seconds."""
+    from ..wrapped_stamps import unwrap_stamps
+
     filled = np.isfinite(whole) & np.isfinite(part)
-    whole, part = whole[filled], part[filled]
+    whole, part = unwrap_stamps(whole[filled])[0], part[filled]
     if len(whole) < 2 or not np.array_equal(whole, np.round(whole)):
         return False
     if part.min() < 0 or part.max() >= per_second or part.max() < REACH * per_second:
@@ -92,7 +95,16 @@ def _numbers(log: Log, first: str, second: str, file: str) -> tuple[Array, Array
 
 
 def _candidates(names: tuple[str, ...]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
-    """Columns of one stem whose last words are a second and a part of it: "stamp.sec"."""
+    """Columns of one stem whose last words are a second and a part of it: "stamp.sec".
+
+    A column called "ms" alone may hold the part of a time of day beside it, without fractions.
+    """
+    from ..column_names import likeness
+
+    parts = [name for name in names if _stem(name)[0] == "" and _stem(name)[1] in PARTS]
+    if len(parts) == 1:
+        for first in (name for name in names if likeness(name, "time") > 0.0):
+            yield first, parts[0], (PARTS[_stem(parts[0])[1]],)
     for first in names:
         stem, word = _stem(first)
         if word not in SECONDS:

@@ -30,10 +30,10 @@ from ._frames import refuse_frames
 from ._in_turn import turns_of, with_machines_apart
 from ._lines_of_file import (
     are_stamped,
+    edit_of,
     last_lines,
-    open_table,
+    open_lines,
     with_stamps_as_cells,
-    with_stamps_of_table,
 )
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
@@ -64,8 +64,9 @@ def open_text(path: Path, file: str) -> Log:
         return log_of_signals_in_turn(path, file, encoding)
     if (log := open_reading_in_each_row(path, file, encoding, lines)) is not None:
         return log
-    lines = with_stamps_of_table(lines) if stamped else lines
-    dialect = replace(dialect_of(lines, encoding, file), stamped=stamped)
+    edit, notes = edit_of(lines)
+    lines = [*edit(lines)]
+    dialect = replace(dialect_of(lines, encoding, file), edit=edit)
     strays: list[int] = []
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
@@ -76,7 +77,6 @@ def open_text(path: Path, file: str) -> Log:
         lines = f"{len(strays)} lines that are no rows" if strays[1:] else "a line that is no row"
         return (f"{lines}, the first one before row {strays[0]}: left out",) if strays else ()
 
-    notes = ["times of a serial monitor before each line"] if stamped else []
     if dialect.separator != "," or dialect.comma:
         comma = ", decimal comma" if dialect.comma else ""
         notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
@@ -134,7 +134,7 @@ def _without_blank_columns(
 def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
     """The cells of a column as text, one for each row that is read."""
     place = dialect.header.index(name)
-    with open_table(path, dialect) as stream:
+    with open_lines(path, dialect.encoding, dialect.edit) as stream:
         lines = _lines(stream, dialect, file, [])
         return [cells_of(line, dialect.separator)[place] for line in lines]
 
@@ -151,7 +151,7 @@ def _read(
 ) -> dict[str, Array]:
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
-        with open_table(path, dialect) as stream:
+        with open_lines(path, dialect.encoding, dialect.edit) as stream:
             lines = _lines(stream, dialect, file, strays)
             if dialect.comma:
                 lines = _with_points(lines, dialect.separator, places)
@@ -301,7 +301,7 @@ def _read_cell_by_cell(
         for name, channel in wanted.items()
     ]
     columns = CellColumns(where, comma=dialect.comma)
-    with open_table(path, dialect) as stream:
+    with open_lines(path, dialect.encoding, dialect.edit) as stream:
         lines = _lines(stream, dialect, file, strays)
         while rows := [cells_of(line, dialect.separator) for line in islice(lines, _ROWS)]:
             columns.add(
