@@ -6,6 +6,7 @@ from measurement.made_logs import ROWS, Q, T, U, V, columns_of, rows, survey
 
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._two_part_time import are_parts_of_time
+from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.remarks import sample_rate_in
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -83,6 +84,8 @@ def test_constants_beside_the_names_of_a_scope_are_no_columns(tmp_path, end):
     log, proposal = survey(tmp_path, [*lines, *table], **chosen)
     assert log.names[:3] == ("X", "CH1", "CH2") and log.units["CH2"] == "V"
     assert proposal.channels["sample_rate"]["value"] == 500.0, "X counts the rows"
+    with pytest.raises(ExperimentError, match="if 'CH1' is the position: --position 'CH1'"):
+        survey_log(log, "log.csv", Choices())  # X is no position either
 
 
 def test_channels_that_are_called_by_their_numbers_stand_above_a_row_of_units(tmp_path):

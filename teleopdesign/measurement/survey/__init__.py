@@ -18,6 +18,7 @@ from ..doors._log import Log, join_names
 from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
 from .axis_kind import axis_of
+from .candidate_clocks import counts_rows
 from .clock import duration_of, interpolate_columns, numeric_columns, rate_without_time, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
@@ -76,7 +77,9 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         how = _guessed_clock(guesses) or _stated_clock(time_name, unit, choices)
         raise ExperimentError(f"{problem}{'' if few else how}") from None
     duration = duration_of(raw, time_name, unit, choices)
-    survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
+    # numbers of rows are no signal, though a scope calls them "X"
+    signals = {n: c for n, c in columns.items() if time_name or not counts_rows(c.readings)}
+    survey = Survey("", {}, duration, guesses, time, signals, unread=unread, remarks=log.remarks)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:
