@@ -30,9 +30,10 @@ ALIASES = {
     "米/秒": "m/s", "ミリ秒": "ms", "ラジアン": "rad", "도": "deg", "days": "day",
     "tage": "day", "jours": "day", "grad/s": "deg/s", "grad/sec": "deg/s", "degree/s": "deg/s",
     "degrees/s": "deg/s", "newtonmeter": "Nm", "sekunde": "s", "millisekunden": "ms",
-    "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
+    "grd": "deg", "umdrehungen": "turns", "umdr": "turns", "min^-1": "rpm", "dps": "deg/s",
     "inches": "in", "lb": "lbf", "lbs": "lbf", "rps": "turns/s", "r/s": "turns/s", "u/s": "turns/s",
     "mm": "mm", "ms": "ms", "us": "us", "s": "s", "rad": "rad", "deg": "deg",  # "MM", "Deg"
+    "arms": "A",
 }  # fmt: skip
 #: text in brackets at the end of a name; a number there counts axes: "pos (5)", "tau[1]"
 _BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])(?!\s*\d+\s*[)\]}])([^()\[\]{}]++)[)\]}]\s*+$")
@@ -44,9 +45,10 @@ _WEIGHT_AT_LEVER = re.compile(
 )
 #: a unit per second: "deg/sec", "revs per second"
 _PER_SECOND = re.compile(r"(.*[^\s/])\s*(?:/|\bper\b)\s*(?:s|secs?|seconds?|с|с\.|秒|초)", re.I)
-#: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
+#: units of two parts as names of columns write them: "v_mm_s", "meters_per_sec", "tau_N_m"
 _OF_TWO = re.compile(
-    r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
+    r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m|[a-z]+(?=_per))_(?:per_)?(?:s|sec|second)"
+    r"|(?P<force>m?N)_(?P<arm>c?m))$"
 )
 #: an object of a field bus: "0x6077:00"; and the words for those of drives (CiA 402)
 _ADDRESS = re.compile(r"\b0[xX]([0-9A-Fa-f]{2,8})(?::\d+)?\b")
@@ -91,13 +93,16 @@ WORDS: dict[str, tuple[str, ...]] = {
 #: index in these lists from which all words count as equally certain
 LAST_RANK = 12
 #: words in names of commanded values, which are no readings of a sensor
-WANTED = tuple("target ref reference desired des setpoint sp soll goal cmd command".split())
+WANTED = tuple(
+    "target ref reference desired des setpoint sp set soll goal cmd command commanded".split()
+)
 
 
-#: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;
-#: short words of drives; and endings that mark the derivatives of a position
-TERMS = {("set", "point"): "setpoint", ("process", "value"): "position"}
+#: pairs of words that are one term -> the word or quantity that they mean (ROS; field of a motor);
+#: short words of drives, and of simulators (MuJoCo); and endings of a position's derivatives
+TERMS = {("set", "point"): "setpoint", ("process", "value"): "position", ("q", "axis"): "qaxis"}
 SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
+SHORT |= {"qpos": "q", "qvel": "qd", "qacc": "acceleration", "qfrc": "force", "ctrl": "control"}
 DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
 #: words and units of quantities that are neither a position, a speed nor a force
 OTHER_QUANTITIES = frozenset(
@@ -112,8 +117,8 @@ DIFFERENCES = tuple(
     "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
 )
 
-#: units that are words or parts of names as well: "x_in" is an input, "hand_ft" force and torque
-_ONLY_IN_BRACKETS = ("in", "ft")
+#: units that are words as well: "x_in" is an input, "hand_ft" force and torque, "Arms" are A (rms)
+_ONLY_IN_BRACKETS = ("in", "ft", "arms")
 #: most letters of a text in brackets that may be a unit, without a sign of a product
 _UNIT_LETTERS = 5
 #: least letters of a name that is a unit and nothing else; a shorter one is a symbol such as "s"
@@ -151,8 +156,8 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
     of_two = _OF_TWO.search(name)
     if match is None and of_two is not None:
         length, force, arm = of_two["length"], of_two["force"], of_two["arm"]
-        both = f"{length}/s" if length else f"{force}*{arm}"
-        if quantity is None or _suits(both, quantity, axis):
+        both = unit_of_text(f"{length} per s" if length else f"{force}*{arm}")
+        if both and (quantity is None or _suits(both, quantity, axis)):
             return both
     tail = _TAIL.search(name)
     for text, sure in ((match, True), (_SLASH.search(name), True), (tail, False)):
@@ -161,7 +166,7 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
         unit = unit_of_text(text.group(1))
         if unit is None or not sure and len(text.group(1)) < 2 and quantity is None:
             continue
-        if not sure and unit in _ONLY_IN_BRACKETS:
+        if not sure and text.group(1).lower() in _ONLY_IN_BRACKETS:
             continue
         if quantity is None or _suits(unit, quantity, axis):
             return unit

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..errors import ExperimentError, did_you_mean, quote
 from .doors._in_turn import machines_apart
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
+from .doors._two_part_time import with_whole_time
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
 from .doors.folder import open_folder
@@ -122,6 +123,8 @@ def open_log(path: Path, file: str) -> Log:
     if door in OF_RECORDS:
         whole = log
         log = _read_with_errors(lambda: machines_apart(whole), file)
+        apart = log
+        log = _read_with_errors(lambda: with_whole_time(apart, file), file)
     return replace(log, read=lambda wanted: _read_with_errors(lambda: log.read(wanted), file))
 
 

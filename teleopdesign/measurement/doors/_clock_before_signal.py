@@ -1,15 +1,17 @@
-"""Tables with a time before each signal, as studios of drives and scopes write traces.
+"""Tables with a time before each signal, or before each group of signals at one rate.
 
     Position, , Torque,                   time, Force, time, Position
     X, Y, X, Y                            0.000, 0.13, 0.000, -3.21
     0, 1796, 0, 12                        0.001, 0.13, 0.002, -3.22
 
-Where all times are the same, the table has one time. Otherwise each signal has a clock of its own,
-as each topic of a bag has.
+Studios of drives, scopes of controllers and simulators write traces in this way. Where all times
+are the same, the table has one time. Otherwise each signal has a clock of its own, as each topic of
+a bag has.
 """
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -37,21 +39,31 @@ SHARED = 0.5
 def clocks_before_signals(
     names: Sequence[str], rows: Iterable[Sequence[str]], comma: bool
 ) -> dict[str, str]:
-    """Signal -> clock in the column before it; empty: any other table.
+    """Signal -> clock in the nearest such column before it; empty: any other table.
 
     rows: the first rows of the table, as cells;  comma: the decimal sign is a comma
     """
     width = len(names)
-    clocks = names[::2]
-    if width % 2 or width < 2 * FEWEST or not (word := _word_of_all(clocks)):
+    word = bare_column(names[0])
+    clocks = [name for name in names if bare_column(name) == word]
+    if len(clocks) < FEWEST and width % 2 == 0:  # below titles: "Position X, Position Y"
+        clocks = [*names[::2]]
+        word = _word_of_all(clocks)
+    if len(clocks) < FEWEST or not word or len(clocks) == width:
         return {}
     wide = [row for row in rows if len(row) == width]
     columns = [_numbers(cells, comma) for cells in zip(*wide, strict=True)]
-    if not columns or not all(map(_rises, columns[::2])) or all(map(_rises, columns[1::2])):
+    of_clocks = [x for name, x in zip(names, columns, strict=False) if name in clocks]
+    others = [x for name, x in zip(names, columns, strict=False) if name not in clocks]
+    if not columns or not all(map(_rises, of_clocks)) or all(map(_rises, others)):
         return {}
-    if not _is_name_of_time(word) and not all(map(_is_even, columns[::2])):
+    if not _is_name_of_time(word) and not (
+        list(names[::2]) == clocks and all(map(_is_even, of_clocks))
+    ):
         return {}
-    return dict(zip(names[1::2], clocks, strict=True))
+    places = [names.index(clock) for clock in clocks]
+    before = (names[places[bisect(places, k) - 1]] for k in range(width))
+    return {name: clock for name, clock in zip(names, before, strict=True) if name != clock}
 
 
 def with_clocks_before(log: Log, file: str, clock_of: Mapping[str, str]) -> Log:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import gzip
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, cast
@@ -16,8 +16,10 @@ from ...errors import ExperimentError, quote
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
 from ._header import (
+    MOSTLY,
     NAME_LABELS,
     bare_unit,
+    is_row_of_units,
     is_unit_cell,
     names_and_units,
     names_of_labelled_rows,
@@ -43,6 +45,8 @@ class Dialect:
     header, units: name and unit of each column;  first: line of the first row of numbers, from 0
     named: the file has a header;  dates: columns of dates or times of day
     remarks: lines above the first row of numbers
+    labels: texts with which they begin, as does each header that repeats in the table
+    edit: function from the lines of the file to those of the table, as with stamps of a monitor
     """
 
     encoding: str
@@ -54,6 +58,8 @@ class Dialect:
     named: bool = True
     dates: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    labels: frozenset[str] = frozenset()
+    edit: Callable[[Iterable[str]], Iterable[str]] = iter
 
 
 def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
@@ -76,7 +82,7 @@ def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
 def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
     """How a text table is written, judged from its first lines."""
     body = [line for line in lines if line.strip() and not line.lstrip().startswith(COMMENTS)]
-    separator, comma = _separator(body[1:] or body)
+    separator, comma = separator_of(body[1:] or body)
     first, width = _first_row(lines, separator, comma)
     if first >= len(lines):
         _refuse_without_rows(lines, separator, file)
@@ -96,7 +102,9 @@ def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
         if not is_number(cell, comma) and seconds_of(cell) is not None
     )
     remarks = tuple(line.strip() for line in lines[:first] if line.strip())[:MOST_REMARKS]
-    return Dialect(encoding, separator, comma, names, units, first, named, dates, remarks)
+    labels = frozenset(cells_of(line, separator)[0] for line in lines[:first] if line.strip())
+    labels -= {"", cells[0]}  # a row may begin with a text too
+    return Dialect(encoding, separator, comma, names, units, first, named, dates, remarks, labels)
 
 
 def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, int]:
@@ -122,11 +130,16 @@ def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, 
     lengths = np.diff([*begins, len(rows)])
     whole = np.flatnonzero(lengths >= min(IN_A_ROW, lengths.max()))
     here = begins[int(whole[0])]
+    # labelled rows of numbers ("SampleTime[ms]; 1", "Samples; 100; 100") belong to what stands
+    # above; a single one without more labels is a row with a garbled cell
+    begin = [cells_of(lines[k], separator)[0] for k in rows[here:]]
+    labelled = [bool(cell) and not is_value(cell, comma) for cell in begin]
+    count = labelled.index(False) if False in labelled else 0
     above = (cells_of(line, separator) for line in lines[: rows[here]])
-    if any(cells and cells[0].casefold() in NAME_LABELS for cells in above):
-        # labelled rows of numbers, such as "SampleTime[ms]; 1", belong to what stands above
-        starts = [is_value(cells_of(lines[k], separator)[0], comma) for k in rows[here:]]
-        here += starts.index(True) if any(starts) else 0
+    if any(cells and cells[0].casefold() in NAME_LABELS for cells in above) or (
+        count > 1 and labelled.count(True) < MOSTLY * len(labelled)
+    ):
+        here += count
     return rows[here], width
 
 
@@ -140,7 +153,7 @@ def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> Non
     )
 
 
-def _separator(lines: Sequence[str]) -> tuple[str, bool]:
+def separator_of(lines: Sequence[str]) -> tuple[str, bool]:
     """The separator, and whether the decimal sign is a comma: the choice with most numbers."""
     some = lines[-40:]
     best, chosen = (-1.0, 0), (",", False)
@@ -199,20 +212,13 @@ def _header(
         numbered = names_by_number(_comments(plain), width)
         if numbered is not None:
             return numbered
-    rows: list[tuple[str, ...]] = []
-    wide: list[tuple[str, ...]] = []
-    cells: list[str] = []
-    for line in plain:
-        text = line.lstrip(" ")  # not tabs: the first cell of a row of titles may be empty
-        for mark in COMMENTS:
-            text = text.removeprefix(mark)
-        cells = cells_of(text.strip() if separator == " " else text.strip("\n"), separator)
-        while len(cells) > width and not cells[-1]:
-            cells = cells[:-1]
-        if len(cells) == width:
-            wide.append(tuple(cells))
-            if not _is_data(cells, comma):
-                rows.append(tuple(cells))
+    above = _without_constants([_cells_above(line, separator, width) for line in plain], width)
+    wide = [tuple(cells) for cells in above if len(cells) == width]
+    rows = [cells for cells in wide if not _is_data(cells, comma)]
+    above_last = wide[: wide.index(rows[-1])][-1:] if rows else []
+    if above_last and above_last[0] not in rows and is_row_of_units(rows[-1], above_last[0]):
+        rows.insert(-1, above_last[0])  # "x-axis, 1, 2": channels by their numbers
+    cells = above[-1] if above else []
     if (labelled := names_of_labelled_rows(wide)) is not None:
         return labelled
     if len(cells) > width > 1 and not any(is_number(c, True) or not c for c in cells):
@@ -220,7 +226,8 @@ def _header(
     if not rows:
         last = plain[-1] if plain and not plain[-1].lstrip().startswith(COMMENTS) else ""
         names = cells_of(last, separator) if last else []
-        return (() if _is_data(names, comma) else tuple(names)), ()
+        is_title = len(names) < 2 < width and len(last.split()) < width
+        return (() if is_title or _is_data(names, comma) else tuple(names)), ()
     joined, units_by_name = names_and_units(rows)
     for label, *units in rows[:-1]:  # a row of units that says so itself: "Y_Unit_Label"
         if (
@@ -231,6 +238,35 @@ def _header(
         ):
             return rows[-1], ("", *map(bare_unit, units))
     return joined, units_by_name
+
+
+def _cells_above(line: str, separator: str, width: int) -> list[str]:
+    """The cells of a line above a table with `width` columns, without the sign of a comment."""
+    text = line.lstrip(" ")  # not tabs: the first cell of a row of titles may be empty
+    for mark in COMMENTS:
+        text = text.removeprefix(mark)
+    cells = cells_of(text.strip() if separator == " " else text.strip("\n"), separator)
+    while len(cells) > width and not cells[-1]:
+        cells = cells[:-1]
+    return cells
+
+
+def _without_constants(above: list[list[str]], width: int) -> list[list[str]]:
+    """Rows of names and units without constants that stand beside the table, as scopes write them.
+
+    X, CH1, CH2, Start, Step
+    Sequence, V, V, -0.6, 0.001
+    0, 1.23, 0.52,
+    """
+    out, beside = [*above], 0
+    for k, cells in reversed([*enumerate(above)]):
+        texts = next((n for n, cell in enumerate(cells) if is_number(cell, True)), len(cells))
+        if not beside and len(cells) > max(width, 2) and width - 1 <= texts < len(cells):
+            beside = len(cells) - texts
+        names = cells[: len(cells) - beside]
+        if beside and width - 1 <= len(names) <= width and texts >= len(names):
+            out[k] = [*names, ""][:width]  # rows of the table may end with a separator
+    return out
 
 
 def _comments(lines: Sequence[str]) -> list[str]:

@@ -13,6 +13,8 @@ _BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")
 MOSTLY = 0.5
 #: begin of a label beside that of the names
 _LABEL = re.compile(r"data.?type|sample.?time|symbol|comment|description|unit", re.IGNORECASE)
+#: a cell that says what it states: "Unit: deg", "Type: double"
+_KEYED = re.compile(r"([^\W\d][\w ]*+):(?!:)\s*+(.*)$")
 #: labels of a row above a table that holds the names, and of one that holds the units
 NAME_LABELS = ("name", "names", "channel name", "signal name")
 UNIT_LABELS = ("unit", "units")
@@ -50,9 +52,8 @@ def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tup
     Columns with the same name get the title of their group: "Motor Angle", "Bench Angle". A title
     stands above the first column of its group.
     """
-    above = list(rows)
-    units: tuple[str, ...] = ()
-    if len(above) > 1 and is_row_of_units(above[-1], above[-2]):
+    above, units = _without_keyed_rows(rows)
+    if len(above) > 1 and not units and is_row_of_units(above[-1], above[-2]):
         units = tuple(bare_unit(cell) for cell in above.pop())
     names = list(above.pop()) if above else []
     while above and not all(names) and sum(map(bool, above[-1])) > 1:
@@ -67,6 +68,25 @@ def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tup
             for name, title in zip(names, titles, strict=True)
         ]
     return tuple(names), units
+
+
+def _without_keyed_rows(
+    rows: Sequence[Sequence[str]],
+) -> tuple[list[Sequence[str]], tuple[str, ...]]:
+    """The rows without those in which each cell says what it states, and the units among these.
+
+    Simulink writes such rows below the names: "Unit: deg, Unit: N*m", "Interp: zoh, Interp: zoh".
+    """
+    plain: list[Sequence[str]] = []
+    units: tuple[str, ...] = ()
+    for row in rows:
+        keyed = [_KEYED.match(cell) for cell in row if cell]
+        keys = {match[1].strip().casefold() if match else "" for match in keyed}
+        if not plain or len(keys) != 1 or keys == {""}:
+            plain.append(row)
+        elif keys & {*UNIT_LABELS}:
+            units = tuple(bare_unit(cell.partition(":")[2]) for cell in row)
+    return plain, units
 
 
 def names_of_labelled_rows(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -44,19 +44,22 @@ def names_in_lines(lines: Sequence[str]) -> dict[str, str]:
     return units if len(units) == len(rows[1]) else {}
 
 
-def log_of_pairs(path: Path, file: str, encoding: str, units: Mapping[str, str]) -> Log:
+def log_of_pairs(
+    path: Path, file: str, encoding: str, units: Mapping[str, str], *, stamped: bool = False
+) -> Log:
     """The log of a file whose lines are pairs.
 
-    units: of each name, from `names_in_lines`
+    units: of each name, from `names_in_lines`;  stamped: with times of a serial monitor
     """
-    from ._dialect import open_bytes
+    from ._lines_of_file import open_lines, with_stamps_as_cells
 
+    edit = partial(with_stamps_as_cells, separator="=") if stamped else iter
     strays: list[int] = []
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
         strays.clear()
         names, rows = tuple(units), []
-        with open_bytes(path) as raw, io.TextIOWrapper(raw, encoding, errors="replace") as stream:
+        with open_lines(path, encoding, edit, errors="replace") as stream:
             for line in stream:
                 row = pairs_of(line)
                 if tuple(name for name, _, _ in row) == names:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +45,21 @@ def log_of_signals_in_turn(path: Path, file: str, encoding: str) -> Log:
     """The log of such a trace; raises ExperimentError: a row of text, or no row."""
     with open_bytes(path) as raw, io.TextIOWrapper(raw, encoding, errors="replace") as stream:
         signals = [*_signals(stream, file)]
+    return log_of_signals(signals, file, "a trace with a signal after the other")
+
+
+def log_of_signals(
+    signals: Iterable[tuple[str, Sequence[tuple[float, float]]]],
+    file: str,
+    note: str,
+    units: Mapping[str, str] | None = None,
+    time_unit: str | None = None,
+) -> Log:
+    """The log of signals with times of their own.
+
+    signals: name, and rows of a time and a reading;  units: signal -> unit;  note: on the file
+    raises ExperimentError: no signal has rows
+    """
     signals = [(name, rows) for name, rows in signals if rows]
     if not signals:
         raise ExperimentError(f"{file}: found signals without rows, expected at least 64 rows")
@@ -60,8 +75,8 @@ def log_of_signals_in_turn(path: Path, file: str, encoding: str) -> Log:
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {name: columns[name] for name in wanted}
 
-    log = Log((*columns,), read, notes=("a trace with a signal after the other",))
-    return with_clocks_before(log, file, clock_of)
+    stated = dict(units or {}) | (dict.fromkeys(clock_of.values(), time_unit) if time_unit else {})
+    return with_clocks_before(Log((*columns,), read, stated, (note,)), file, clock_of)
 
 
 def _signals(stream: Iterator[str], file: str) -> Iterator[tuple[str, list[tuple[float, float]]]]:

@@ -6,8 +6,8 @@ from the first rows. A time may be written as a date or a time of day.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -18,22 +18,30 @@ from ._cells import CellColumns, is_empty
 from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._dialect import (
     COMMENTS,
-    LOOKED_AT,
     SEPARATORS,
     Dialect,
     cells_of,
     dialect_of,
     first_lines,
     is_value,
-    open_bytes,
     without_end,
 )
+from ._frames import refuse_frames
 from ._in_turn import turns_of, with_machines_apart
+from ._lines_of_file import (
+    are_stamped,
+    edit_of,
+    last_lines,
+    open_lines,
+    with_stamps_as_cells,
+)
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
 from ._pairs import log_of_pairs, names_in_lines
+from ._reading_in_each_row import open_reading_in_each_row
 from ._signals_in_rows import open_signals_in_rows
 from ._signals_in_turn import has_signals_in_turn, log_of_signals_in_turn
 from ._sparse import groups_of, with_separate_clocks
+from ._two_part_time import with_whole_time
 
 #: rows that are read in one block: 20 MB of text
 _ROWS = 200_000
@@ -48,11 +56,17 @@ def open_text(path: Path, file: str) -> Log:
     if (turned := open_signals_in_rows(path, file)) is not None:
         return turned
     encoding, lines = first_lines(path, file)
-    if pairs := names_in_lines(lines):
-        return log_of_pairs(path, file, encoding, pairs)
+    refuse_frames(lines, file)
+    stamped = are_stamped(lines)
+    if pairs := names_in_lines([*with_stamps_as_cells(lines, "=")] if stamped else lines):
+        return log_of_pairs(path, file, encoding, pairs, stamped=stamped)
     if has_signals_in_turn(lines):
         return log_of_signals_in_turn(path, file, encoding)
-    dialect = dialect_of(lines, encoding, file)
+    if (log := open_reading_in_each_row(path, file, encoding, lines)) is not None:
+        return log
+    edit, notes = edit_of(lines)
+    lines = [*edit(lines)]
+    dialect = replace(dialect_of(lines, encoding, file), edit=edit)
     strays: list[int] = []
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
@@ -60,14 +74,9 @@ def open_text(path: Path, file: str) -> Log:
         return _read(path, file, dialect, wanted, strays)
 
     def left_out() -> tuple[str, ...]:
-        if not strays:
-            return ()
-        lines = (
-            f"{len(strays)} lines that are no rows" if len(strays) > 1 else "a line that is no row"
-        )
-        return (f"{lines}, the first one before row {strays[0]}: left out",)
+        lines = f"{len(strays)} lines that are no rows" if strays[1:] else "a line that is no row"
+        return (f"{lines}, the first one before row {strays[0]}: left out",) if strays else ()
 
-    notes = []
     if dialect.separator != "," or dialect.comma:
         comma = ", decimal comma" if dialect.comma else ""
         notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
@@ -83,7 +92,7 @@ def open_text(path: Path, file: str) -> Log:
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     # the last lines too: a signal may begin late; those of a short file are its first ones again
     top, first = {*lines[: dialect.first]}, lines[dialect.first :]
-    some = [*first, *(line for line in _last_lines(path, dialect)[1:] if line not in top)]
+    some = [*first, *(line for line in last_lines(path, dialect)[1:] if line not in top)]
     above = cells_of(lines[dialect.first - 1], dialect.separator) if dialect.named else []
     names = _without_blank_columns(dialect.header, above, _rows_of(some, dialect))
     log = Log(names, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
@@ -91,13 +100,14 @@ def open_text(path: Path, file: str) -> Log:
     if groups:
         return with_separate_clocks(log, file, time, groups)
     if not dialect.named:
-        return log
+        whole = all(cell.isdigit() for row in _rows_of(first, dialect) for cell in row[:2])
+        return with_whole_time(log, file, named=False) if whole else log
     if clock_of := clocks_before_signals(log.names, _rows_of(first, dialect), dialect.comma):
         return with_clocks_before(log, file, clock_of)
     turns = turns_of(log.names, _rows_of(first, dialect), dialect.comma)
     if turns is not None:
         return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
-    return log
+    return with_whole_time(log, file)
 
 
 def _rows_of(lines: Iterable[str], dialect: Dialect) -> Iterator[list[str]]:
@@ -126,27 +136,16 @@ def _without_blank_columns(
 def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
     """The cells of a column as text, one for each row that is read."""
     place = dialect.header.index(name)
-    with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+    with open_lines(path, dialect.encoding, dialect.edit) as stream:
         lines = _lines(stream, dialect, file, [])
         return [cells_of(line, dialect.separator)[place] for line in lines]
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:
     """Whether the last row has too few cells; False for packed files and for space as separator."""
-    lines = [] if dialect.separator == " " else _last_lines(path, dialect)
+    lines = [] if dialect.separator == " " else last_lines(path, dialect)
     cells = cells_of(lines[-1], dialect.separator) if len(lines) > 1 else []
     return 0 < len(cells) < len(dialect.header)
-
-
-def _last_lines(path: Path, dialect: Dialect) -> list[str]:
-    """The last lines with text, the first of them perhaps only in part; none of a packed file."""
-    if path.name.lower().endswith(".gz"):
-        return []
-    with path.open("rb") as stream:
-        stream.seek(0, 2)
-        stream.seek(max(0, stream.tell() - LOOKED_AT))
-        tail = stream.read().decode(dialect.encoding.removesuffix("-sig"), errors="ignore")
-    return [line for line in tail.replace("\r", "\n").split("\n") if line.strip()]
 
 
 def _read(
@@ -154,7 +153,7 @@ def _read(
 ) -> dict[str, Array]:
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
-        with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+        with open_lines(path, dialect.encoding, dialect.edit) as stream:
             lines = _lines(stream, dialect, file, strays)
             if dialect.comma:
                 lines = _with_points(lines, dialect.separator, places)
@@ -203,26 +202,29 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
     raises ExperimentError: a row with too many cells; too many lines that are no rows
     """
     width, separator = len(dialect.header), dialect.separator
-    count = bytes_read = 0
+    count = bytes_read = again = 0
     cut = False  # whether the last line was left out: the last line of a file may be incomplete
     for k, line in enumerate(stream):
-        if k < dialect.first or not line.strip():
-            continue
-        if line.lstrip().startswith(COMMENTS):
+        bare = line.lstrip()
+        if k < dialect.first or not bare or bare.startswith(COMMENTS):
             continue
         bytes_read += len(line)
-        line = without_end(line, separator)
-        count += 1
-        if count % 100_000 == 0:
-            refuse_size(count, file)
+        if (count + again + 1) % 100_000 == 0:
+            refuse_size(count + again + 1, file)
             if bytes_read > MOST_BYTES:
                 raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
+        line = without_end(line, separator)
+        if dialect.labels and _is_header_again(line, dialect):
+            strays.append(count + 1)
+            again, cut = again + 1, False
+            continue
+        count += 1
         cells = len(line.split()) if separator == " " else line.count(separator) + 1
         quoted_cells = '"' in line and separator != " "
         if cut := cells < width and not quoted_cells or _is_text(line, dialect):
             strays.append(count)
             count -= 1
-            if len(strays) > max(FEW_STRAYS, MOST_STRAYS * count):
+            if len(strays) - again > max(FEW_STRAYS, MOST_STRAYS * count):
                 raise _ragged_row_error(file, strays[0], cells, width)
             continue
         if cells > width and not quoted_cells and separator != " ":
@@ -257,6 +259,13 @@ def _is_text(line: str, dialect: Dialect) -> bool:
         return False
     cells = [c for c in cells_of(line, dialect.separator) if c]
     return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
+
+
+def _is_header_again(line: str, dialect: Dialect) -> bool:
+    """Whether a line is one of a header that repeats: before each block of rows, as of LabVIEW."""
+    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
+        return False
+    return cells_of(line, dialect.separator)[0] in dialect.labels
 
 
 def _ragged_row_error(
@@ -294,7 +303,7 @@ def _read_cell_by_cell(
         for name, channel in wanted.items()
     ]
     columns = CellColumns(where, comma=dialect.comma)
-    with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+    with open_lines(path, dialect.encoding, dialect.edit) as stream:
         lines = _lines(stream, dialect, file, strays)
         while rows := [cells_of(line, dialect.separator) for line in islice(lines, _ROWS)]:
             columns.add(

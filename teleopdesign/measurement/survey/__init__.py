@@ -18,7 +18,8 @@ from ..doors._log import Log, join_names
 from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
 from .axis_kind import axis_of
-from .clock import duration_of, interpolate_columns, numeric_columns, rate_of_steps, time_column
+from .candidate_clocks import counts_rows
+from .clock import duration_of, interpolate_columns, numeric_columns, rate_without_time, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
 from .position import describe_position, find_position
@@ -66,12 +67,9 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     time_name, unit = time_column(raw, log, choices, guesses, file)
     if time_name is not None:
         raw[time_name], _ = unwrap_stamps(raw[time_name])
-    elif choices.sample_rate is None and (steps := rate_of_steps(raw, log, choices)):
-        choices = replace(choices, sample_rate=steps[1])
-        guesses["sample_rate"] = (
-            f"{steps[1]:g} Hz: no column rises as a time does, and {steps[0]!r} holds the usual "
-            "time from one row to the next"
-        )
+    elif choices.sample_rate is None and (rate := rate_without_time(raw, log, choices)):
+        choices = replace(choices, sample_rate=rate[0])
+        guesses["sample_rate"] = f"{rate[0]:g} Hz: no column rises as a time does, and {rate[1]}"
     try:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
@@ -79,7 +77,9 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         how = _guessed_clock(guesses) or _stated_clock(time_name, unit, choices)
         raise ExperimentError(f"{problem}{'' if few else how}") from None
     duration = duration_of(raw, time_name, unit, choices)
-    survey = Survey("", {}, duration, guesses, time, columns, unread=unread, remarks=log.remarks)
+    # numbers of rows are no signal, though a scope calls them "X"
+    signals = {n: c for n, c in columns.items() if time_name or not counts_rows(c.readings)}
+    survey = Survey("", {}, duration, guesses, time, signals, unread=unread, remarks=log.remarks)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:

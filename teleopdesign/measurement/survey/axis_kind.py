@@ -5,6 +5,8 @@ from __future__ import annotations
 from ...quantity import AXES, is_unit, measures
 from ..column_names import words_of
 from .content import Choices, Survey
+from .derivative import turn_of
+from .encoder_counts import is_counter
 
 #: names of drives that report positions in turns; and words for rotating parts
 IN_TURNS = frozenset(("odrive", "moteus"))
@@ -30,6 +32,11 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         for axis in ("prismatic", "revolute"):
             if measures(unit, "position", axis):
                 return axis
+    if (turn := turn_of(survey.columns[position].values)) is not None:
+        survey.guesses["model.device.axis"] = (
+            f"the axis is revolute: {position!r} wraps at a turn in {turn}"
+        )
+        return "revolute"
     if choices.torque_constant is not None:
         force = choices.torque_constant[1].rpartition("/")[0]
         return "revolute" if measures(force, "force", "revolute") else "prismatic"
@@ -53,7 +60,8 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         sliding = SLIDING.intersection(words) and not ANGLES.intersection(words)
         turning = TURNING.intersection(words)
         torques = TORQUES.intersection(names)
-        revolute = turning or torques or unit == "counts" or "A" in units
+        counts = unit is None and is_counter(survey.columns[position])
+        revolute = turning or torques or counts or unit == "counts" or "A" in units
         axis = "revolute" if revolute and not sliding else "prismatic"
         why = "no unit and no name of a column determines the axis"
         if sliding:
@@ -62,5 +70,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
             why = f"the name {position!r} is that of an angle"
         elif torques:
             why = f"the name of a column contains {min(torques)!r}"
+        elif counts:
+            why = f"{position!r} holds whole numbers, as the counter of an encoder does"
     survey.guesses["model.device.axis"] = f"the axis is {axis}: {why}"
     return axis

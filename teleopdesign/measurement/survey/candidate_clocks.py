@@ -31,11 +31,11 @@ def clock_without_name(rising: Mapping[str, Array], width: int) -> tuple[str, st
     width: number of columns of the log
     """
     first, *others = rising
-    if width >= FEWEST_BESIDE_A_COUNT and _counts_rows(rising[first]):
+    if width >= FEWEST_BESIDE_A_COUNT and counts_rows(rising[first]):
         stamps = [n for n in others if _is_stamp(rising[n])]
         if stamps:
             return stamps[0], f"as even as a clock, beside {first!r}, which counts the rows"
-    uneven = {n: _unevenness(rising[n]) for n in others if not _counts_rows(rising[n])}
+    uneven = {n: _unevenness(rising[n]) for n in others if not counts_rows(rising[n])}
     even = min(uneven, key=lambda n: uneven[n], default=first)
     if even != first and FAR_LESS_EVEN * uneven[even] < _unevenness(rising[first]):
         return even, "the column that rises most evenly"
@@ -58,7 +58,8 @@ def _is_stamp(x: Array) -> bool:
     return bool(even and np.all(steps > 0) and np.array_equal(x, np.round(x)))
 
 
-def _counts_rows(x: Array) -> bool:
+def counts_rows(x: Array) -> bool:
+    """Whether a column is the number of each row."""
     return bool(np.all(np.diff(x[np.isfinite(x)]) == 1.0))
 
 

@@ -21,9 +21,11 @@ from .candidate_clocks import (
     busiest_clock,
     clock_of_position,
     clock_without_name,
+    counts_rows,
     position_by_name,
 )
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
+from .remarks import sample_rate_in
 
 #: rows that are looked at
 MOST = 60_000
@@ -115,6 +117,8 @@ def time_column(
         name = max(scores, key=lambda n: scores[n])
         if scores[name] == 0.0:
             name, why = clock_without_name(rising, len(raw))
+            if name not in choices.units and counts_rows(raw[name]) and sample_rate_in(log.remarks):
+                return None, "s"
             guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
         elif (near := clock_of_position(name, scores, raw, choices)) is not None:
             name, (first, beside) = near, (name, position_by_name(raw, choices))
@@ -129,14 +133,23 @@ def time_column(
     if unit is None or not measures(unit, "time"):
         unit, why = unit_of_steps(raw[name])
         if why:
-            guesses["channels.time.unit"] = why
+            counted = "channels.time.column" in guesses and counts_rows(raw[name])
+            more = "; if it counts the rows: --sample-rate HZ" if counted else ""
+            guesses["channels.time.unit"] = why + more
     elif name not in choices.units and (other := unit_in_place_of(unit, raw[name])):
         unit, guesses["channels.time.unit"] = other
     return name, unit
 
 
-def rate_of_steps(raw: Mapping[str, Array], log: Log, choices: Choices) -> tuple[str, float] | None:
-    """A column that holds the time from one row to the next, and the rate that it tells (Hz)."""
+def rate_without_time(
+    raw: Mapping[str, Array], log: Log, choices: Choices
+) -> tuple[float, str] | None:
+    """The rate of the rows (Hz) and what tells it: a line above the table, or a column of steps.
+
+    Such a column holds the time from one row to the next.
+    """
+    if stated := sample_rate_in(log.remarks):
+        return stated[0], f"a line of the log states {stated[1]!r}"
     for name, values in raw.items():
         steps = values[np.isfinite(values)]
         if not STEPS.intersection(words_of(name)) or len(steps) < 2 or steps.min() < 0:
@@ -147,7 +160,8 @@ def rate_of_steps(raw: Mapping[str, Array], log: Log, choices: Choices) -> tuple
         unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
         if unit is None or not measures(unit, "time"):
             unit, _ = unit_of_steps(np.cumsum(steps))
-        return name, float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
+        rate = float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
+        return rate, f"{name!r} holds the usual time from one row to the next"
     return None
 
 

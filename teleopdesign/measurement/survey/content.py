@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 #: likeness of a name from which the name alone decides, without physics
 SURE_NAME = 0.75
+#: units of a sensor that a scope or an analog input has read, as the package writes them
+OF_SENSORS = ("V", "mV")
 #: columns whose scores differ by less are equally likely, as of several joints in one log: the part
 #: of a score that comes from physics is known no better
 AS_LIKELY = 0.05

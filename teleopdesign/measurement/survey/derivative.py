@@ -82,6 +82,13 @@ def wrap_of(x: Array) -> float | None:
     return period if near and reach <= 1.001 * period else None
 
 
+def turn_of(x: Array) -> str | None:
+    """The unit of angle in which a column wraps at one turn: deg, rad; None: it does not."""
+    units = {360.0: "deg", 2 * math.pi: "rad"}
+    wrap = wrap_of(x)
+    return None if wrap is None else units.get(wrap)
+
+
 def overflow_of(x: Array) -> float | None:
     """Size of a column's leaps from one end of its range to the other, as of a number that wraps.
 

@@ -7,7 +7,14 @@ from collections.abc import Mapping
 from ...errors import ExperimentError
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
-from .content import Survey, SurveyedColumn, is_unit_of, names_at_rest, reasons
+from .content import (
+    OF_SENSORS,
+    Survey,
+    SurveyedColumn,
+    is_unit_of,
+    names_at_rest,
+    reasons,
+)
 from .derivative import is_velocity, overflow_of
 
 
@@ -68,6 +75,10 @@ def _named_as_force(moving: Mapping[str, SurveyedColumn]) -> str:
     """
     if any(map(is_velocity, moving.values())):
         return ""
-    unsure = (n for n, c in moving.items() if c.unit in (None, "V", "mV"))
+    unsure = (n for n, c in moving.items() if c.unit is None or c.unit in OF_SENSORS)
     names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
-    return f"; if {names[0]!r} is the position: --position {names[0]!r}" if names else ""
+    if not names:
+        return ""
+    volts = moving[names[0]].unit
+    more = f", then `scale` in experiment.toml, per {volts}" if volts else ""
+    return f"; if {names[0]!r} is the position: --position {names[0]!r}{more}"

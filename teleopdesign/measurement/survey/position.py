@@ -21,6 +21,7 @@ from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
 from .axis_kind import IN_TURNS
 from .content import (
+    OF_SENSORS,
     SURE_NAME,
     Array,
     Choices,
@@ -42,6 +43,7 @@ from .derivative import (
     is_velocity,
     may_be_position,
     rate_agreement,
+    turn_of,
     unwrap_column,
     wrap_of,
 )
@@ -301,9 +303,12 @@ def _position_unit(
                 return unit, f"{unit}: {why}"
     if axis == "revolute" and (drives := IN_TURNS.intersection(words_of(column.name))):
         return "turns", f"turns: {' and '.join(sorted(drives))} drives report turns"
+    if axis == "revolute" and (turn := turn_of(column.values)) is not None:
+        return turn, f"{turn}: the readings wrap at a turn in {turn}"
     if axis == "revolute":
         unit = "deg" if reach > 50 else "rad"
     else:
         unit = "mm" if reach > 3 else "m"
     why = why_no_unit(column.name, column.unit, "position", axis)
-    return unit, f"{unit}: {why}, and the readings have a range of {reach:.3g}"
+    more = f", `scale` = {unit} per {column.unit} is missing" if column.unit in OF_SENSORS else ""
+    return unit, f"{unit}: {why}, and the readings have a range of {reach:.3g}{more}"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import re
 from collections.abc import Sequence
 
-from ...quantity import is_unit
+from ...quantity import is_unit, si_factor
 from ..column_names import unit_of_text
+from ..doors._cells import number_of
 
 _TURN = r"(?:turn|rev|revolution|umdrehung|tour|u\b)"
 _COUNTS = r"(?:counts?|cnts?|ticks?|increments?|inkremente|ink|inc|pulses|impulse|cpr)"
@@ -27,6 +30,44 @@ _GEAR_RATIO = re.compile(
     r"(\d{1,5}(?:[.,]\d{1,6})?)(?:\s*:\s*1\b)?(?!\s*[:\d]|-)",
     re.I,
 )
+_RATE_NUMBER = r"([\d.,]{1,20}(?:e[-+]?\d{1,3})?)"
+#: "Sample rate: 1000 Hz", "Delta_X 0,001", "Sample Interval,0.001", "tInc = 1e-3"
+_SAMPLE_RATE = re.compile(
+    r"(?:sampl(?:e|ing)[ _]?(?:rate|frequency)|abtastrate|(?<![a-z])f_?s(?![a-z]))[^\w+-]{1,12}"
+    rf"{_RATE_NUMBER}\s*([kM]?Hz|)(?![A-Za-z:/\d-])",
+    re.I,
+)
+_SAMPLE_TIME = re.compile(
+    r"(?:sampl(?:e|ing)[ _]?(?:interval|time|period)|delta[ _]?[xt]|t_?inc|abtastzeit)"
+    rf"(?:\s*[(\[]([mun]?s)[)\]])?[^\w+-]{{1,12}}{_RATE_NUMBER}\s*([mun]?s|)(?![A-Za-z:/\d-])",
+    re.I,
+)
+
+
+def sample_rate_in(remarks: Sequence[str]) -> tuple[float, str] | None:
+    """The rate of the rows in Hz, and the line that states it or the time from row to row, in s.
+
+    A scope writes the time from row to row beside its table: "X, CH1, Start, Increment".
+    """
+    for line in remarks:
+        rate, step = (pattern.search(line[:500]) for pattern in (_SAMPLE_RATE, _SAMPLE_TIME))
+        if rate is not None and (value := _number_of(rate[1])) > 0:
+            return value * si_factor(rate[2] or "Hz", quantity="frequency"), line[:100]
+        if step is not None and (value := _number_of(step[2])) > 0:
+            unit = step[1] or step[3] or "s"
+            return float(f"{1 / (value * si_factor(unit, quantity='time')):.9g}"), line[:100]
+    for titles, values in itertools.pairwise(remarks):
+        cells = [re.split(r"[,;\t]", text[:500]) for text in (titles, values)]
+        for title, cell in zip(*cells, strict=False):
+            if title.strip().casefold() == "increment" and (value := _number_of(cell.strip())) > 0:
+                return float(f"{1 / value:.9g}"), f"{titles[:50]} / {values[:50]}"
+    return None
+
+
+def _number_of(text: str) -> float:
+    """A number with a decimal point or comma; 0: it is none."""
+    number = number_of(text.rstrip(".,"), comma="," in text)
+    return number if isinstance(number, float) and math.isfinite(number) else 0.0
 
 
 def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:
