@@ -15,7 +15,7 @@ from functools import cache, partial
 from pathlib import Path
 
 from ._cells import seconds_of
-from ._dialect import LOOKED_AT, Dialect, open_bytes, separator_of
+from ._dialect import LOOKED_AT, Dialect, cells_of, open_bytes, separator_of
 from ._vectors_in_cells import vectors_in_cells
 
 #: what a serial monitor writes before each line: a time, and "->" behind it or brackets around it
@@ -105,3 +105,10 @@ def last_lines(path: Path, dialect: Dialect) -> list[str]:
         tail = stream.read().decode(dialect.encoding.removesuffix("-sig"), errors="ignore")
     lines = tail.replace("\r", "\n").split("\n")
     return [*dialect.edit(line for line in lines if line.strip())]
+
+
+def is_cut_off(path: Path, dialect: Dialect) -> bool:
+    """Whether the last row has too few cells; False for packed files and for space as separator."""
+    lines = [] if dialect.separator == " " else last_lines(path, dialect)
+    cells = cells_of(lines[-1], dialect.separator) if len(lines) > 1 else []
+    return 0 < len(cells) < len(dialect.header)

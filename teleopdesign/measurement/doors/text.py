@@ -31,6 +31,7 @@ from ._in_turn import turns_of, with_machines_apart
 from ._lines_of_file import (
     are_stamped,
     edit_of,
+    is_cut_off,
     last_lines,
     open_lines,
     with_stamps_as_cells,
@@ -82,7 +83,7 @@ def open_text(path: Path, file: str) -> Log:
         notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
     if dialect.encoding not in ("utf-8", "utf-8-sig"):
         notes.append(f"text in {dialect.encoding}")
-    if _is_cut_off(path, dialect):
+    if is_cut_off(path, dialect):
         notes.append("a last row that was cut off")
     if not dialect.named:
         notes.append("no header: columns are named by their number")
@@ -139,13 +140,6 @@ def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
     with open_lines(path, dialect.encoding, dialect.edit) as stream:
         lines = _lines(stream, dialect, file, [])
         return [cells_of(line, dialect.separator)[place] for line in lines]
-
-
-def _is_cut_off(path: Path, dialect: Dialect) -> bool:
-    """Whether the last row has too few cells; False for packed files and for space as separator."""
-    lines = [] if dialect.separator == " " else last_lines(path, dialect)
-    cells = cells_of(lines[-1], dialect.separator) if len(lines) > 1 else []
-    return 0 < len(cells) < len(dialect.header)
 
 
 def _read(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import is_unit, measures
+from ..column_names import likeness
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode
 
@@ -117,6 +118,13 @@ def is_unit_of(unit: str | None, quantity: str) -> bool:
     if quantity == "time":
         return unit != "counts" and is_unit(unit) and measures(unit, "time")
     return any(measures(unit, quantity, axis) for axis in ("prismatic", "revolute"))
+
+
+def kinds_of(column: SurveyedColumn) -> list[str]:
+    """The quantities that a column's unit fits; of parts in per cent the name says which."""
+    if column.unit == "%" and likeness(column.name, "position") >= SURE_NAME:
+        return []
+    return [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
 
 
 def rises(x: Array) -> bool:

@@ -31,6 +31,7 @@ from .content import (
     columns_in_use,
     explain_ambiguity,
     is_unit_of,
+    kinds_of,
     moves,
     sample_time_of,
 )
@@ -81,7 +82,7 @@ def find_position(
         is_set_point = is_wanted(name) or name in followed.values()
         score = likeness(name, "position") - 0.8 * is_set_point + 0.4 * (name in followed)
         score -= 1.2 * is_difference(name)  # below a column whose name says nothing
-        kinds = _kinds_of(column)
+        kinds = kinds_of(column)
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
@@ -119,13 +120,6 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
-
-
-def _kinds_of(column: SurveyedColumn) -> list[str]:
-    """The quantities that a column's unit fits; per cent may be parts of anything: the name says"""
-    if column.unit == "%" and likeness(column.name, "position") >= SURE_NAME:
-        return []
-    return [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
 
 
 def _is_rate(name: str, derivative: Mapping[str, tuple[str, float]]) -> bool:
