@@ -73,7 +73,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "velocity": (
         "velocity", "vel", "speed", "geschwindigkeit", "drehzahl", "omega", "qd", "dq", "xd", "v",
         "vitesse", "velocidad", "velocita", "速度",
-        "속도", "скорость", "rpm",
+        "속도", "скорость", "rpm", "velocities",
     ),
     "interaction_force": (
         "interaction", "hand", "contact", "external", "ext", "sensor", "wrench", "fh", "ft", "load",

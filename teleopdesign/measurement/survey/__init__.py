@@ -10,11 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import PurePath
 
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_several_times, is_unit
 from ..column_names import as_unit
 from ..doors._log import Log, join_names
+from ..doors.folder import are_quantities
 from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
 from .axis_kind import axis_of
@@ -173,7 +175,16 @@ def spans_of(
 
 
 def require_same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
-    """Raise an ExperimentError where a later log lacks a column of the first."""
+    """Raise an ExperimentError where a later log lacks a column of the first.
+
+    So it does where the files hold one quantity each, of the same joints.
+    """
+    tables = [PurePath(file).name.split(".")[0] for file in files]
+    if are_quantities(tables, [log.names for log in logs]):
+        raise ExperimentError(
+            f"{', '.join(files)}: found the same columns in files that are called by different "
+            "quantities, expected several runs; for one run, put them into a folder and give it"
+        )
     for log, file in zip(logs[1:], files[1:], strict=True):
         missing = [n for n in logs[0].names if n not in log.names]
         if missing:
