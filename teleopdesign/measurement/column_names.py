@@ -95,9 +95,10 @@ WANTED = tuple("target ref reference desired des setpoint sp soll goal cmd comma
 
 
 #: pairs of words that are one term in controllers of ROS -> the word or quantity that they mean;
-#: short words of drives; and endings that mark the derivatives of a position
+#: short words of drives and of force sensors; and endings that mark the derivatives of a position
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position"}
 SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
+SHORT |= dict.fromkeys(("fx", "fy", "fz"), "f")
 DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
 #: words and units of quantities that are neither a position, a speed nor a force
 OTHER_QUANTITIES = frozenset(
@@ -107,6 +108,8 @@ OTHER_QUANTITIES = frozenset(
 #: units of further such quantities, which are names as well ("w" of an angular velocity)
 OTHER_UNITS = OTHER_QUANTITIES | frozenset("°c c w kw mw db ohm".split())
 
+#: words beside which "x" is a direction and no position: "ForceX", "acc_x"
+ALONG = frozenset("force torque moment effort wrench vel velocity speed acc accel gyro mag".split())
 #: words in names of differences, such as the error of a controller: "q_err", "Schleppfehler"
 DIFFERENCES = tuple(
     "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
@@ -264,6 +267,7 @@ def likeness(name: str, quantity: str) -> float:
     words = words_of(name)
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
+    words = [w for w in words if w != "x" or ALONG.isdisjoint(words)]
     listed = WORDS[quantity]
     # a word that ends in "sensor", such as "Stromsensor", names no force
     may_end = quantity != "interaction_force"
