@@ -14,11 +14,12 @@ from pathlib import PurePath
 
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_several_times, is_unit
-from ..column_names import as_unit
+from ..column_names import as_unit, unit_in_name
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
 from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
+from .assumed_rate import explain_rate
 from .axis_kind import axis_of
 from .clock import duration_of, interpolate_columns, numeric_columns, rate_of_steps, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
@@ -74,6 +75,10 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
             f"{steps[1]:g} Hz: no column rises as a time does, and {steps[0]!r} holds the usual "
             "time from one row to the next"
         )
+    elif choices.sample_rate is None:
+        known = {n: choices.units.get(n) or log.units.get(n) or unit_in_name(n) for n in raw}
+        stated = {n: u for n, u in known.items() if u is not None}
+        guesses["sample_rate"] += explain_rate(raw, stated)
     try:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
