@@ -8,7 +8,7 @@ from diagnose.stand_ins import fit, floor, ranked
 
 from teleopdesign.diagnose import constant_force, ladder_text
 from teleopdesign.diagnose.constant_force import constant_force_line
-from teleopdesign.diagnose.ladder_text import say_floors
+from teleopdesign.diagnose.ladder_text import records_line, say_floors
 from teleopdesign.diagnose.left_out import left_out_lines
 from teleopdesign.report.words import _floors
 
@@ -90,3 +90,17 @@ def test_a_candidate_whose_values_stay_open_is_reported_where_none_that_counts_l
         if message
         else []
     )
+
+
+@pytest.mark.parametrize("check", [(), ("a stretch",)])
+def test_without_check_records_the_machine_was_not_another_one_in_them(check):
+    """Of one stroke of a joint, "the machine was not the same in both" records was said."""
+    diagnosis = SimpleNamespace(
+        after=SimpleNamespace(fit_error=0.2, check_error=0.7),
+        on_all_records=None,
+        prepared=SimpleNamespace(of=lambda use: check if use == "check" else ("a stretch",)),
+    )
+    line = records_line(diagnosis)
+    assert "3.5 times that on the fit" in line
+    assert ("the machine was not the same in both" in line) == bool(check)
+    assert ("blocks that are left out of the fit" in line) != bool(check)
