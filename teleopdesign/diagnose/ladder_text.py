@@ -14,7 +14,7 @@ from .adequacy import records_differ
 from .constant_force import constant_force_line
 from .criteria import CRITERIA
 from .fit import Fit
-from .left_out import left_out_lines, percent
+from .left_out import left_out_lines, percent, possible_next
 from .noise_floor import say_floors
 from .open_parameters import open_parameters_line
 from .record_offsets import offset_groups
@@ -279,8 +279,7 @@ def _nearest(diagnosis: Diagnosis) -> str:
     if diagnosis.open is not None:  # read from a file, which has no rankings
         others = [q.others[0] for q in diagnosis.open if q.added is None]
     else:
-        ranked = diagnosis.last.ranked
-        others = [(r.candidate, r.fit) for r in ranked if r.counts and r.score > 0.0]
+        others = [(r.candidate, r.fit) for r in possible_next(diagnosis)]
     least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
     for candidate, fit in others[:1]:
         if fit.check_error**2 < least:
