@@ -39,16 +39,15 @@ def explain_rate(raw: Mapping[str, Array], units: Mapping[str, str]) -> str:
     rate = float(f"{ASSUMED * best[0]:.2g}")
     if not rate > 0 or abs(best[0] - 1.0) < SAME:
         return ""
-    unit = "" if units.get(pair[0]) else f", if it is in the unit of {pair[0]!r} per second"
+    known = all(units.get(n) for n in pair)
+    unit = "" if known else f", if it is in the unit of {pair[0]!r} per second"
     return f"; {pair[1]!r} is the derivative of {pair[0]!r} at about {rate:g} Hz{unit}"
 
 
 def _scale(of_place: str | None, of_speed: str | None) -> float | None:
     """Units of a speed over those of a position, in SI; None: they do not belong together."""
-    if of_place is None and of_speed is None:
-        return 1.0
     if of_place is None or of_speed is None:
-        return None
+        return 1.0
     for axis in ("revolute", "prismatic"):
         fits = measures(of_place, "position", axis) and measures(of_speed, "velocity", axis)
         if fits and of_place != "counts":
