@@ -19,6 +19,9 @@ RARE = 0.02
 STEADY = 0.1
 #: part of the force below which the force of inertia counts as negligible
 LIGHT = 0.1
+#: part of its way that a motion goes in one direction, and along which the forces act against it,
+#: from which something else drives it: a controller that slows a body down acts along less
+AGAINST = 0.9
 
 
 def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> dict[str, str]:
@@ -74,6 +77,15 @@ def describe_motion(
         "motionless": 1.0 - forth - back,
     }
     missing = "; ".join(dict.fromkeys(poor.values()))
+    against = _part_against(motions)
+    driven = ""
+    if against > AGAINST:
+        numbers["against"] = against
+        driven = (
+            f" Along {100 * against:.0f} % of the way, the measured forces act against the motion: "
+            "something else drives it, such as a weight that is let down, or a sign is wrong "
+            "(sign = -1 at the position)."
+        )
     return Finding(
         "motion",
         "note" if missing else "fine",
@@ -81,7 +93,18 @@ def describe_motion(
         f"{unit_of('velocity', axis)}, {turns} reversals; "
         f"{100 * forth:.0f} % of the time forward, {100 * back:.0f} % backward, "
         f"{100 * (1.0 - forth - back):.0f} % without visible motion"
-        f"{'. Limits: ' + missing if missing else ''}.",
+        f"{'. Limits: ' + missing if missing else ''}.{driven}",
         numbers,
         place,
     )
+
+
+def _part_against(motions: Sequence[Motion]) -> float:
+    """Part of a way in one direction along which the measured forces act against it; 0: no such."""
+    force = np.concatenate([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
+    direction = np.concatenate([m.direction for m in motions])
+    steps = np.concatenate([np.abs(m.velocity) for m in motions]) * (direction != 0)
+    way = float(steps.sum())
+    if way == 0.0 or abs(float(steps @ direction)) < AGAINST * way:
+        return 0.0
+    return float(steps[force * direction < 0].sum()) / way

@@ -14,7 +14,7 @@ from .adequacy import records_differ
 from .constant_force import constant_force_line
 from .criteria import CRITERIA
 from .fit import Fit
-from .left_out import left_out_lines, percent
+from .left_out import left_out_lines, percent, possible_next
 from .noise_floor import say_floors
 from .open_parameters import open_parameters_line
 from .record_offsets import offset_groups
@@ -163,7 +163,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
-        lines.append(_records_line(diagnosis))
+        lines.append(records_line(diagnosis))
     if (short := short_segments_line(diagnosis.prepared.experiment)) is not None:
         lines.append(short)
     if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
@@ -182,10 +182,16 @@ def _bandwidth_line(diagnosis: Diagnosis) -> str:
     return f"compared up to {diagnosis.prepared.bandwidth:.3g} Hz ({source})"
 
 
-def _records_line(diagnosis: Diagnosis) -> str:
+def records_line(diagnosis: Diagnosis) -> str:
     """A sentence that the check error exceeds the fit error, with the likely cause."""
     after, on_all = diagnosis.after, diagnosis.on_all_records
     ratio = after.check_error / after.fit_error
+    if not diagnosis.prepared.of("check"):
+        return (
+            f"blocks: the error on blocks that are left out of the fit in turn is {ratio:.2g} "
+            "times that on the fit: the other blocks do not determine the parameters. Record each "
+            "motion twice"
+        )
     line = f"records: the error on the check records is {ratio:.2g} times that on the fit records"
     if on_all is not None and on_all < 0.5 * after.check_error:
         return (
@@ -276,8 +282,7 @@ def _nearest(diagnosis: Diagnosis) -> str:
     if diagnosis.open is not None:  # read from a file, which has no rankings
         others = [q.others[0] for q in diagnosis.open if q.added is None]
     else:
-        ranked = diagnosis.last.ranked
-        others = [(r.candidate, r.fit) for r in ranked if r.counts and r.score > 0.0]
+        others = [(r.candidate, r.fit) for r in possible_next(diagnosis)]
     least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
     listed = [candidate for group in diagnosis.groups for candidate in group]
     for candidate, fit in others[:1]:

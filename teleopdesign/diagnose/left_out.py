@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from .decision import helps_but_is_barred, lowers_check_squares
+from .decision import helps_but_is_barred, lowers_check_squares, objection
 
 if TYPE_CHECKING:
     from .diagnosis import Diagnosis
+    from .ranking import Ranked
 
 #: a candidate is reported if its error is lower by more than this part of the last model's error: a
 #: difference that a reader can see
@@ -19,6 +20,13 @@ LESS = 0.02
 def percent(error: float) -> str:
     """An error in percent; "unknown" where it is not finite: the model is blind everywhere."""
     return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
+
+
+def possible_next(diagnosis: Diagnosis) -> list[Ranked]:
+    """The candidates that could be added next, best first: no rule excludes them."""
+    last, floor = diagnosis.last, diagnosis.floor
+    helpful = [r for r in last.ranked if r.counts and r.score > 0.0]
+    return [r for r in helpful if not objection(last.base, r, floor)]
 
 
 def left_out_lines(diagnosis: Diagnosis) -> list[str]:

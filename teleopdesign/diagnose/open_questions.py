@@ -5,6 +5,7 @@ from __future__ import annotations
 from .criteria import CRITERIA
 from .decision import is_supported
 from .diagnosis import Diagnosis, OpenQuestion
+from .left_out import possible_next
 from .ranking import Ranked
 from .rung import Rung
 from .search_plan import PLAN
@@ -22,8 +23,8 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
         _question_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None
     ]
     if diagnosis.verdict == "undecided" or _is_short(diagnosis):
-        supported = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
-        others = tuple((r.candidate, r.fit) for r in supported[: PLAN.rivals - 1])
+        possible = possible_next(diagnosis)
+        others = tuple((r.candidate, r.fit) for r in possible[: PLAN.rivals - 1])
         questions.append(OpenQuestion(None, others))
     return tuple(q for q in questions if q.others)
 

@@ -75,7 +75,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "velocity": (
         "velocity", "vel", "speed", "geschwindigkeit", "drehzahl", "omega", "qd", "dq", "xd", "v",
         "vitesse", "velocidad", "velocita", "速度",
-        "속도", "скорость", "rpm",
+        "속도", "скорость", "rpm", "velocities",
     ),
     "interaction_force": (
         "interaction", "hand", "contact", "external", "ext", "sensor", "wrench", "fh", "ft", "load",
@@ -99,10 +99,11 @@ WANTED = tuple(
 
 
 #: pairs of words that are one term -> the word or quantity that they mean (ROS; field of a motor);
-#: short words of drives, and of simulators (MuJoCo); and endings of a position's derivatives
+#: short words of drives, force sensors, simulators (MuJoCo); endings of a position's derivatives
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position", ("q", "axis"): "qaxis"}
 SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
 SHORT |= {"qpos": "q", "qvel": "qd", "qacc": "acceleration", "qfrc": "force", "ctrl": "control"}
+SHORT |= dict.fromkeys(("fx", "fy", "fz"), "f")
 DERIVATIVES = {"dot": "velocity", "ddot": "acceleration"}
 #: words and units of quantities that are neither a position, a speed nor a force
 OTHER_QUANTITIES = frozenset(
@@ -112,6 +113,8 @@ OTHER_QUANTITIES = frozenset(
 #: units of further such quantities, which are names as well ("w" of an angular velocity)
 OTHER_UNITS = OTHER_QUANTITIES | frozenset("°c c w kw mw db ohm".split())
 
+#: words beside which "x" is a direction and no position: "ForceX", "acc_x"
+ALONG = frozenset("force torque moment effort wrench vel velocity speed acc accel gyro mag".split())
 #: words in names of differences, such as the error of a controller: "q_err", "Schleppfehler"
 DIFFERENCES = tuple(
     "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
@@ -125,17 +128,7 @@ _UNIT_LETTERS = 5
 _WHOLE_NAME = 3
 
 #: beginnings of words with the same meaning as in WANTED: "Sollwinkel", "targetPosition"
-WANTED_BEGINNINGS = (
-    "soll",
-    "target",
-    "desired",
-    "demand",
-    "setpoint",
-    "referen",
-    "consigne",
-    "目標",
-    "指令",
-)
+WANTED_BEGINNINGS = tuple("soll target desired demand setpoint referen consigne 目標 指令".split())
 
 
 def bare_name(name: str) -> str:
@@ -269,6 +262,7 @@ def likeness(name: str, quantity: str) -> float:
     words = words_of(name)
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
+    words = [w for w in words if w != "x" or ALONG.isdisjoint(words)]
     listed = WORDS[quantity]
     # a word that ends in "sensor", such as "Stromsensor", names no force
     may_end = quantity != "interaction_force"

@@ -8,8 +8,8 @@ from diagnose.stand_ins import fit, floor, ranked
 
 from teleopdesign.diagnose import constant_force, ladder_text
 from teleopdesign.diagnose.constant_force import constant_force_line
-from teleopdesign.diagnose.ladder_text import say_floors
-from teleopdesign.diagnose.left_out import left_out_lines
+from teleopdesign.diagnose.ladder_text import records_line, say_floors
+from teleopdesign.diagnose.left_out import left_out_lines, possible_next
 from teleopdesign.report.words import _floors
 
 
@@ -90,3 +90,32 @@ def test_a_candidate_whose_values_stay_open_is_reported_where_none_that_counts_l
         if message
         else []
     )
+
+
+@pytest.mark.parametrize("check", [(), ("a stretch",)])
+def test_without_check_records_the_machine_was_not_another_one_in_them(check):
+    """Of one stroke of a joint, "the machine was not the same in both" records was said."""
+    diagnosis = SimpleNamespace(
+        after=SimpleNamespace(fit_error=0.2, check_error=0.7),
+        on_all_records=None,
+        prepared=SimpleNamespace(of=lambda use: check if use == "check" else ("a stretch",)),
+    )
+    line = records_line(diagnosis)
+    assert "3.5 times that on the fit" in line
+    assert ("the machine was not the same in both" in line) == bool(check)
+    assert ("blocks that are left out of the fit" in line) != bool(check)
+
+
+def test_a_candidate_that_a_rule_refuses_does_not_come_nearest():
+    """Of a joint in one stroke, friction with its amplitude at a bound was "refused", and "comes
+    nearest" below."""
+    rows = [ranked(0.1, "position_dependent_friction"), ranked(0.4, "stribeck")]
+    rows[0].fit.at_bound = ("device.position_dependent_friction.amplitude",)
+    rows[0].fit.model.declared = lambda name: SimpleNamespace(optional=False)
+    for row in rows:
+        row.fit.model.absent = ()
+    last = SimpleNamespace(ranked=rows, base=fit(0.8))
+    possible = possible_next(SimpleNamespace(last=last, floor=floor(0.05)))
+    assert [r.candidate.effect.name for r in possible] == ["stribeck"]
+    rows[0].fit.at_bound = ()
+    assert len(possible_next(SimpleNamespace(last=last, floor=floor(0.05)))) == 2

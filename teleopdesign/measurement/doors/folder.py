@@ -1,13 +1,14 @@
 """A folder of tables that one run wrote: the log of a drive, the log of a force sensor.
 
 Each table keeps its clock, as each topic of a bag does. The name of the table is put before the
-names of its columns ("drive.position").
+names of its columns ("drive.position"). Of tables whose columns are the same joints, one table for
+each quantity, it is put after them ("joint_2.torque").
 """
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -36,14 +37,20 @@ def open_folder(
     signals = dict(zip(_without_shared_words(names), logs.values(), strict=True))
     if _are_signals(signals):
         return _log_of_signals(signals)
-    _refuse_same_columns(logs, folder, [t.name for t in tables])
+    if are_quantities(names, [log.names for log in logs.values()]):
+        if not any(_names_time(log) for log in signals.values()):
+            return _log_of_signals(signals, of_joints=True)
+        logs, name_of = signals, _field_name
+    else:
+        _refuse_same_columns(logs, folder, [t.name for t in tables])
+        name_of = _topic_name
     time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
     seconds = {n: seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
     _require_shared_time(seconds, file)
     origin = min(float(np.nanmin(s)) for s in seconds.values())
-    columns = {f"{n}.{c}": (n, c) for n, log in logs.items() for c in log.names}
-    units = {f"{n}.{c}": u for n, log in logs.items() for c, u in log.units.items()}
-    units |= {f"{n}.{time}": "s" for n, time in time_of.items()}
+    columns = {name_of(n, c): (n, c) for n, log in logs.items() for c in log.names}
+    units = {name_of(n, c): u for n, log in logs.items() for c, u in log.units.items()}
+    units |= {name_of(n, time): "s" for n, time in time_of.items()}
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         out: dict[str, Any] = {}
@@ -51,14 +58,14 @@ def open_folder(
             in_table = {w: columns[w][1] for w in wanted if columns[w][0] == name}
             here = {column: wanted[w] for w, column in in_table.items()}
             values = log.read({c: ch for c, ch in here.items() if c != time_of[name]})
-            out |= {f"{name}.{c}": v for c, v in values.items()}
+            out |= {name_of(name, c): v for c, v in values.items()}
             if time_of[name] in here:
-                out[f"{name}.{time_of[name]}"] = seconds[name] - origin
+                out[name_of(name, time_of[name])] = seconds[name] - origin
         return out
 
-    clocks = {w: f"{n}.{time_of[n]}" for w, (n, c) in columns.items() if c != time_of[n]}
+    clocks = {w: name_of(n, time_of[n]) for w, (n, c) in columns.items() if c != time_of[n]}
     notes = [f"{n}: {note}" for n, log in logs.items() for note in log.notes]
-    notes.append(f"{len(logs)} tables, each with its own clock: {join_names(names)}")
+    notes.append(f"{len(logs)} tables, each with its own clock: {join_names(logs)}")
 
     def left_out() -> tuple[str, ...]:
         return tuple(f"{n}: {note}" for n, log in logs.items() for note in log.left_out())
@@ -68,13 +75,42 @@ def open_folder(
 
 def _are_signals(logs: Mapping[str, Log]) -> bool:
     """Whether tables without header are signals whose files are named by them: "position.csv"."""
-    from ..column_names import likeness
-
     plain = all(
         log.names == tuple(_names_with_numbers("column", len(log.names))) for log in logs.values()
     )
+    return plain and _name_both(logs)
+
+
+def are_quantities(tables: Sequence[str], headers: Sequence[tuple[str, ...]]) -> bool:
+    """Whether tables of the same joints hold one quantity each: "positions.csv", "efforts.csv".
+
+    Columns that are called position and force themselves belong to several runs, whatever the
+    files are called.
+
+    tables: names of the files without their endings;  headers: the columns of each
+    """
+    one = len(tables) > 1 and len(set(headers)) == 1
+    return one and _name_both(_without_shared_words(tables)) and not _name_both(headers[0])
+
+
+def _name_both(names: Iterable[str]) -> bool:
+    """Whether some of the names are that of a position, and others that of a force."""
+    from ..column_names import likeness
+
     kinds = (("position",), ("actuator_force", "interaction_force"))
-    return plain and all(any(likeness(n, k) > 0 for n in logs for k in kind) for kind in kinds)
+    of_names = [{k for k in kinds if any(likeness(n, q) > 0 for q in k)} for n in names]
+    return all({k} in of_names for k in kinds)
+
+
+def _topic_name(table: str, column: str) -> str:
+    return f"{table}.{column}"
+
+
+def _field_name(table: str, column: str) -> str:
+    """The name of a joint's quantity, as a field of a struct: "joint_2.torque"; of its clock."""
+    from ..column_names import likeness
+
+    return _topic_name(table, column) if likeness(column, "time") else f"{column}.{table}"
 
 
 def _without_shared_words(names: Sequence[str]) -> list[str]:
@@ -94,16 +130,21 @@ def _names_with_numbers(name: str, count: int) -> list[str]:
     return [f"{name} {k + 1}" for k in range(count)]
 
 
-def _log_of_signals(logs: Mapping[str, Log]) -> Log:
-    """Signals of tables without header, row by row: "position 1", "torque 1"."""
+def _log_of_signals(logs: Mapping[str, Log], of_joints: bool = False) -> Log:
+    """Signals of tables without time, row by row: "position 1", "torque 1".
+
+    of_joints: the columns have names: "joint_1.position", "joint_1.torque"
+    """
+
+    def names_in(table: str, log: Log) -> list[str]:
+        if of_joints:
+            return [_field_name(table, column) for column in log.names]
+        return _names_with_numbers(table, len(log.names)) if len(log.names) > 1 else [table]
+
     columns = {
         name: (table, column)
         for table, log in logs.items()
-        for name, column in zip(
-            _names_with_numbers(table, len(log.names)) if len(log.names) > 1 else [table],
-            log.names,
-            strict=True,
-        )
+        for name, column in zip(names_in(table, log), log.names, strict=True)
     }
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
@@ -114,7 +155,8 @@ def _log_of_signals(logs: Mapping[str, Log]) -> Log:
             out |= {w: values[column] for w, column in here.items()}
         return out
 
-    note = f"{len(logs)} tables without header, row by row: {join_names(logs)}"
+    without = "time" if of_joints else "header"
+    note = f"{len(logs)} tables without {without}, row by row: {join_names(logs)}"
     return Log(tuple(columns), read, notes=(note,))
 
 
@@ -126,6 +168,12 @@ def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[
             f"{folder}: found tables of the same columns, expected parts of one run; for several "
             f"runs: teleopdesign new {paths}"
         )
+
+
+def _names_time(log: Log) -> bool:
+    from ..column_names import likeness
+
+    return any(likeness(name, "time") > 0 for name in log.names)
 
 
 def _time_column(log: Log, file: str) -> str:

@@ -10,13 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import PurePath
 
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_several_times, is_unit
-from ..column_names import as_unit
+from ..column_names import as_unit, unit_in_name
 from ..doors._log import Log, join_names
+from ..doors.folder import are_quantities
 from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
+from .assumed_rate import explain_rate
 from .axis_kind import axis_of
 from .candidate_clocks import counts_rows
 from .clock import duration_of, interpolate_columns, numeric_columns, rate_without_time, time_column
@@ -70,6 +73,10 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     elif choices.sample_rate is None and (rate := rate_without_time(raw, log, choices)):
         choices = replace(choices, sample_rate=rate[0])
         guesses["sample_rate"] = f"{rate[0]:g} Hz: no column rises as a time does, and {rate[1]}"
+    elif choices.sample_rate is None:
+        known = {n: choices.units.get(n) or log.units.get(n) or unit_in_name(n) for n in raw}
+        stated = {n: u for n, u in known.items() if u is not None}
+        guesses["sample_rate"] += explain_rate(raw, stated)
     try:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
@@ -173,7 +180,16 @@ def spans_of(
 
 
 def require_same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
-    """Raise an ExperimentError where a later log lacks a column of the first."""
+    """Raise an ExperimentError where a later log lacks a column of the first.
+
+    So it does where the files hold one quantity each, of the same joints.
+    """
+    tables = [PurePath(file).name.split(".")[0] for file in files]
+    if are_quantities(tables, [log.names for log in logs]):
+        raise ExperimentError(
+            f"{', '.join(files)}: found the same columns in files that are called by different "
+            "quantities, expected several runs; for one run, put them into a folder and give it"
+        )
     for log, file in zip(logs[1:], files[1:], strict=True):
         missing = [n for n in logs[0].names if n not in log.names]
         if missing:

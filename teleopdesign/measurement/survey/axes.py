@@ -1,4 +1,4 @@
-"""Which columns of a log belong to one axis, from the parts and the numbers of their names."""
+"""Which columns of a log belong to one axis: parts, numbers and letters of their names tell it."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ _SIDES = (
     ("master", "slave"), ("leader", "follower"), ("local", "remote"), ("mtm", "psm"),
     ("left", "right"), ("links", "rechts"),
 )  # fmt: skip
-#: letters for these sides, at the end of a name: "q_m" and "q_s", "xl" and "xr"
-_LETTERS = (("m", "s"), ("l", "f"), ("l", "r"))
+#: letters at the end of a name: of these sides, "q_m" and "q_s", "xl" and "xr"; of axes, "fx", "fy"
+_LETTERS = (("m", "s"), ("l", "f"), ("l", "r"), ("x", "y"), ("y", "z"), ("x", "z"))
 #: the field of a struct or joint, or a whole name without one; and the numbers of axes ("J2_pos")
 _STEM = re.compile(r"(?:^|[./])[^./]*$")
 _NUMBERS = re.compile(r"\d+")
+#: the letter of an axis in space as the last word of a name: "PosX", "force_y", "Torque z"
+_SPACE = re.compile(r"(?:(?<=[a-z])[XYZ]|(?<=[_\s.-])[xyzXYZ])$")
 #: words of names that tell columns apart by their number only
 _COLUMNS = frozenset(
     ("column", "col", "channel", "chan", "ch", "var", "signal", "data", "value")
@@ -44,19 +46,20 @@ def stand_together(one: str, other: str) -> bool:
 
 
 def _axis_numbers(name: str) -> tuple[str, ...]:
-    """Numbers in a name, "J2_pos" -> 2: such numbers count axes.
+    """Numbers in a name, "J2_pos" -> 2, or its letter, "PosX" -> x: such numbers count axes.
 
     Where the name says no more, "column 2", they count columns.
     """
-    if _COLUMNS.issuperset(words_of(name)):
+    bare = bare_name(name)
+    if _COLUMNS.issuperset(words_of(_SPACE.sub("", bare))):
         return ()
-    return tuple(_NUMBERS.findall(bare_name(name)))
+    return (*_NUMBERS.findall(bare), *map(str.lower, _SPACE.findall(bare)))
 
 
 def same_but_axis(one: str, other: str) -> bool:
     """Whether two names differ in the number of their axis only, "joint1" and "joint2"."""
     numbers = {_axis_numbers(name) for name in (one, other)}
-    stems = {_NUMBERS.sub("#", bare_name(name)) for name in (one, other)}
+    stems = {_NUMBERS.sub("#", _SPACE.sub("#", bare_name(name))) for name in (one, other)}
     return len(numbers) == 2 and () not in numbers and len(stems) == 1
 
 
@@ -97,7 +100,7 @@ def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
     bare = {bare_name(name).lower() for name in names}
     for pair in _LETTERS:
         letters = [_side_letter(name, pair, bare) for name in (one, other)]
-        if None not in letters:
+        if None not in letters and max(map(len, map(bare_name, (one, other)))) > 1:
             return letters[0] != letters[1]
     return False
 

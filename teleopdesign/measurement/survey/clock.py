@@ -24,9 +24,11 @@ from .candidate_clocks import (
     counts_rows,
     position_by_name,
 )
-from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
+from .content import SURE_NAME, Array, Choices, SurveyedColumn, is_unit_of, reasons, rises
 from .remarks import sample_rate_in
 
+#: quantities whose units are not those of a time
+QUANTITIES = ("position", "velocity", "force")
 #: rows that are looked at
 MOST = 60_000
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
@@ -108,10 +110,13 @@ def time_column(
         name = busiest_clock(log, raw, choices)
     else:
         scores = {n: max(likeness(n, "time"), SURE_NAME * _is_unit_of_time(n)) for n in rising}
+        if not any(scores.values()):
+            rising = {n: x for n, x in rising.items() if not _names_signal(n, log, choices)}
+            scores = dict.fromkeys(rising, 0.0)
         if not scores:
             guesses["sample_rate"] = (
                 "no column rises as a time does: the sample rate is assumed to be 1000 Hz"
-                f"{_perhaps_coarse(raw)}"
+                f"{_perhaps_coarse(raw, log, choices)}"
             )
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
@@ -182,9 +187,24 @@ def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
 
 
-def _perhaps_coarse(raw: Mapping[str, Array]) -> str:
+def _names_signal(name: str, log: Log, choices: Choices) -> bool:
+    """Whether a column that rises is a ramp or the way of a body, by its unit or its name.
+
+    A letter tells nothing: "i" may count the rows.
+    """
+    words = words_of(name)
+    unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
+    if words and unit != "counts" and any(is_unit_of(unit, q) for q in QUANTITIES):
+        return True
+    kinds = ("position", "velocity", "actuator_force")
+    return any(len(w) > 1 and likeness(w, k) >= SURE_NAME for w in words for k in kinds)
+
+
+def _perhaps_coarse(raw: Mapping[str, Array], log: Log, choices: Choices) -> str:
     """Which column may be a time in which most rows share a stamp, as the end of a guess."""
     for name, values in raw.items():
+        if _names_signal(name, log, choices):
+            continue
         steps = np.diff(values[np.isfinite(values)])
         if np.all(steps >= 0) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES:
             return f"; {name!r} never falls and may be a coarse time"

@@ -128,7 +128,27 @@ def may_be_position(name: str, columns: Mapping[str, SurveyedColumn], sample_tim
     if column.unit is not None or likeness(name, "time") > 0 or np.all(steps == steps[0]):
         return False
     speeds = (c for n, c in columns.items() if n != name and not rises(c.readings))
-    return any(is_mean_rate(column.values, c.values, sample_time) for c in speeds)
+    x = column.values
+    return any(
+        is_mean_rate(x, c.values, sample_time)
+        or not is_force(c)
+        and _is_rate(*derivative_factor(x, c.values, sample_time))
+        for c in speeds
+    )
+
+
+def _is_rate(factor: float, agree: float) -> bool:
+    """Whether a column that is the derivative of another one but for a factor is in a usual unit.
+
+    What rises with a ramp agrees with the motion that the ramp causes, too.
+    """
+    return agree > DERIVATIVE and any(abs(factor * u - 1.0) < AT_MEAN for u in RATES)
+
+
+def may_be_ramp(column: SurveyedColumn) -> bool:
+    """Whether a column that only rises may be a force: it is called one, and counts no rows."""
+    x = column.readings
+    return is_force(column) and not np.array_equal(x, np.arange(len(x)) + x[0])
 
 
 def is_force(column: SurveyedColumn) -> bool:
@@ -188,7 +208,8 @@ def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
     """
     direction = motion_columns(x, sample_time)[2]
     inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
-    forward, backward = (v[inner][way * direction[inner] > 0] for way in (1, -1))
+    # the direction is low-passed: it rings about zero where a body is at rest before it moves
+    forward, backward = (v[inner][way * direction[inner] > 0.5] for way in (1, -1))
     if min(len(forward), len(backward)) < (1.0 - ONE_WAY) * len(v):
         return True
     return float(forward.mean() * backward.mean()) <= 0.0

@@ -24,6 +24,7 @@ from .derivative import (
     has_signs_of_steps,
     is_acceleration,
     is_velocity,
+    may_be_ramp,
 )
 from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
 
@@ -42,7 +43,6 @@ def possible_forces(
     places = [survey.columns[name].values for name in places_of_steps(survey)]
     rate = None if velocity is None else survey.columns[velocity].values
     rules: tuple[Callable[[SurveyedColumn], bool], ...] = (
-        lambda c: not rises(c.readings),
         lambda c: not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit),
         # "joint1" beside the position "joint2" is the position of another axis
         lambda c: likeness(c.name, "actuator_force") > 0 or not same_but_axis(c.name, position),
@@ -64,7 +64,7 @@ def possible_forces(
         name: column
         for name, column in moving.items()
         if all(rule(column) or is_unit_of(column.unit, "force") for rule in rules)
-        and not rises(column.readings)
+        and (not rises(column.readings) or may_be_ramp(column))
     }
 
 

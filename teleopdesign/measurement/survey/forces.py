@@ -27,6 +27,7 @@ from .content import (
     moves,
     names_at_rest,
     reasons,
+    rises,
     sample_time_of,
 )
 from .copies import pulls_back
@@ -169,15 +170,21 @@ def _explain_overruling(names: Sequence[str], kind: str) -> str:
 
 
 def _constant_columns(survey: Survey) -> str:
-    """How to choose a command that is constant in a log, for a message; "" without such a column.
+    """How to choose a command that is constant in a log, or a ramp, for a message; "": none is.
 
     Each of several logs may hold another constant command.
     """
     names = names_at_rest(survey)
-    if not names:
-        return ""
-    which = f"{join_names(names)} {'does' if len(names) == 1 else 'do'} not change here"
-    return f"; {which}: --force {names[0]!r} chooses such a command"
+    rising = [n for n, c in survey.columns.items() if rises(c.readings)]
+    rising = [n for n in rising if n not in columns_in_use(survey)]
+    text = ""
+    if names:
+        which = f"{join_names(names)} {'does' if len(names) == 1 else 'do'} not change here"
+        text += f"; {which}: --force {names[0]!r} chooses such a command"
+    if rising:
+        which = f"{join_names(rising)} only {'rises' if len(rising) == 1 else 'rise'}"
+        text += f"; {which}: --force {rising[-1]!r} chooses a ramp"
+    return text
 
 
 def _warn_of_size(survey: Survey, force: str, x: Array, h: float) -> None:

@@ -69,11 +69,9 @@ def find_position(
 ) -> tuple[str, str | None]:
     """The column of the position, and that of its velocity or None."""
     h = sample_time_of(survey)
-    moving = {
-        n: c
-        for n, c in survey.columns.items()
-        if moves(c) and may_be_position(n, survey.columns, h) and n not in columns_in_use(survey)
-    }
+    free = {n: c for n, c in survey.columns.items() if moves(c) and n not in columns_in_use(survey)}
+    chosen = choices.position
+    moving = {n: c for n, c in free.items() if n == chosen or may_be_position(n, survey.columns, h)}
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
     followed = followed_columns(_without_names(moving, flat))
     derivative: dict[str, tuple[str, float]] = {}

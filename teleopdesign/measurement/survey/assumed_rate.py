@@ -1,0 +1,56 @@
+"""What a position and its velocity tell of the rate of a log without time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import permutations
+
+import numpy as np
+
+from ...quantity import measures, si_factor
+from ..column_names import likeness
+from .content import Array
+from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
+
+#: rate that is assumed where nothing tells it, Hz: that of most controllers
+ASSUMED = 1000.0
+#: fewest rows and most columns that are looked at
+FEWEST, MOST = 60, 12
+#: part by which the rate that a velocity tells may differ from the assumed one
+SAME = 0.1
+
+
+def explain_rate(raw: Mapping[str, Array], units: Mapping[str, str]) -> str:
+    """At which rate one column is the derivative of another, as the end of a guess; "": at none.
+
+    raw: columns of numbers, by name;  units: those that are known
+    """
+    moving = {n: x for n, x in raw.items() if len(x) >= FEWEST and np.ptp(x) > 0}
+    flat = {n: unwrap_column(x, wrap_of(x)) for n, x in list(moving.items())[:MOST]}
+    best, pair = (0.0, DERIVATIVE), ("", "")
+    for place, speed in permutations(flat, 2):
+        x, v = flat[place], moving[speed]
+        scale = _scale(units.get(place), units.get(speed))
+        if len(x) != len(v) or scale is None or likeness(speed, "position") > 0:
+            continue
+        factor, agree = derivative_factor(x, v, 1 / ASSUMED)
+        if agree > best[1] and has_both_signs(x, v, 1 / ASSUMED):
+            best, pair = (factor * scale, agree), (place, speed)
+    rate = float(f"{ASSUMED * best[0]:.2g}")
+    if not rate > 0 or abs(best[0] - 1.0) < SAME:
+        return ""
+    known = all(units.get(n) for n in pair)
+    unit = "" if known else f", if it is in the unit of {pair[0]!r} per second"
+    return f"; {pair[1]!r} is the derivative of {pair[0]!r} at about {rate:g} Hz{unit}"
+
+
+def _scale(of_place: str | None, of_speed: str | None) -> float | None:
+    """Units of a speed over those of a position, in SI; None: they do not belong together."""
+    if of_place is None or of_speed is None:
+        return 1.0
+    for axis in ("revolute", "prismatic"):
+        fits = measures(of_place, "position", axis) and measures(of_speed, "velocity", axis)
+        if fits and of_place != "counts":
+            speed = si_factor(of_speed, quantity="velocity", axis=axis)
+            return speed / si_factor(of_place, quantity="position", axis=axis)
+    return None

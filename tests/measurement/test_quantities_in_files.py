@@ -1,0 +1,82 @@
+"""Tables of the same joints, one for each quantity, which the name of its file says."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.cli import main
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.column_names import likeness
+from teleopdesign.measurement.tables import open_log
+
+T = np.arange(3000) / 250.0
+RATES = 2 * np.pi * np.array([0.3, 0.4, 0.5])
+Q = np.sin(T[:, None] * RATES) * [0.2, 0.8, 0.4]
+V = np.gradient(Q, T, axis=0)
+TAU = [0.5, 0.3, 0.1] * np.gradient(V, T, axis=0) + [2.0, 1.0, 0.3] * np.sign(V)
+
+
+def write(folder, name, names, *columns):
+    folder.mkdir(exist_ok=True)
+    rows = np.column_stack(columns)
+    np.savetxt(folder / name, rows, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """Positions, velocities and efforts of three joints, as exports of joint states have them."""
+    names = ["time", "arm_joint_1", "arm_joint_2", "arm_joint_0"]
+    folder = tmp_path / "arm"
+    for name, values in (("positions", Q), ("velocities", V), ("efforts", TAU)):
+        write(folder, f"states_{name}.csv", names, T, values)
+    return folder
+
+
+def test_one_file_for_each_quantity_of_all_joints_is_one_log(arm, tmp_path, capsys):
+    assert main(["new", str(arm), "--yes", "--output", str(tmp_path / "experiment")]) == 0
+    printed = capsys.readouterr().out
+    assert 'position           "arm_joint_1.positions" in rad' in printed
+    assert 'actuator_force     "arm_joint_1.efforts" in N*m' in printed
+    assert "'arm_joint_1.velocities' is the derivative of 'arm_joint_1.positions'" in printed
+
+
+def test_the_position_chooses_the_joint_of_the_force(arm, tmp_path, capsys):
+    options = ["--position", "arm_joint_0.positions", "--output", str(tmp_path / "experiment")]
+    assert main(["new", str(arm), "--yes", *options]) == 0
+    assert 'actuator_force     "arm_joint_0.efforts" in N*m' in capsys.readouterr().out
+
+
+def test_values_and_clocks_are_those_of_the_files(arm):
+    log = open_log(arm, "arm")
+    wanted = {"arm_joint_2.efforts": "channels.actuator_force", "efforts.time": "channels.time"}
+    read = log.read(wanted)
+    assert np.asarray(read["arm_joint_2.efforts"]) == pytest.approx(TAU[:, 1], abs=1e-6)
+    assert np.asarray(read["efforts.time"]) == pytest.approx(T, abs=1e-6)
+    assert log.clocks["arm_joint_2.efforts"] == "efforts.time"
+
+
+def test_without_time_the_files_are_read_row_by_row(tmp_path):
+    for name, values in (("q_pos", Q), ("q_tau", TAU)):
+        write(tmp_path / "run", f"{name}.csv", ["j1", "j2", "j3"], values)
+    log = open_log(tmp_path / "run", "run")
+    assert log.names == ("j1.pos", "j2.pos", "j3.pos", "j1.tau", "j2.tau", "j3.tau")
+    read = log.read({"j3.tau": "channels.actuator_force"})
+    assert np.asarray(read["j3.tau"]) == pytest.approx(TAU[:, 2], abs=1e-6)
+    assert log.notes == ("2 tables without time, row by row: pos, tau",)
+
+
+def test_files_of_one_quantity_each_are_no_fit_and_check_record(arm, tmp_path, capsys):
+    logs = [str(arm / f"states_{name}.csv") for name in ("positions", "efforts")]
+    assert main(["new", *logs, "--yes", "--output", str(tmp_path / "experiment")]) == 2
+    assert "put them into a folder and give it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("names", [("position_loop", "torque_loop"), ("run_1", "run_2")])
+def test_runs_with_a_position_and_a_torque_stay_runs(tmp_path, names):
+    for name in names:
+        write(tmp_path / "run", f"{name}.csv", ["t", "q1", "tau1"], T, Q[:, 0], TAU[:, 0])
+    with pytest.raises(ExperimentError, match="tables of the same columns"):
+        open_log(tmp_path / "run", "run")
+
+
+def test_velocities_is_a_word_of_velocities():
+    assert likeness("joint.velocities", "velocity") > 0.0
