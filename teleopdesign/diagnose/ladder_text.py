@@ -285,8 +285,8 @@ def _nearest(diagnosis: Diagnosis) -> str:
         others = [(r.candidate, r.fit) for r in possible_next(diagnosis)]
     least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
     listed = [candidate for group in diagnosis.groups for candidate in group]
-    for candidate, fit in others[:1]:
-        if candidate not in listed and fit.check_error**2 < least:
+    for candidate, fit in [o for o in others if o[0] not in listed][:1]:
+        if fit.check_error**2 < least:
             why = next((a.reason for a in diagnosis.set_aside if a.candidate == candidate), "")
             return (
                 f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: "
