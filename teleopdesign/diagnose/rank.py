@@ -5,6 +5,7 @@ Candidates that count come first, in the order of their errors on the check reco
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
@@ -25,7 +26,7 @@ from .plausibility import implausible_effects
 from .prepare import Prepared
 from .progress import ProgressLine
 from .ranking import Ranked, Ranking
-from .search import base_of, from_stated
+from .search import base_of, from_stated, keep_absent
 from .search_plan import PLAN
 from .width import OpenWidths
 
@@ -35,6 +36,14 @@ def _is_part_of(small: Candidate, large: Candidate) -> bool:
     ours, theirs = ({n: p.quantity for n, p in c.effect.parameters.items()} for c in (small, large))
     alike = small.at == large.at and small.effect.role == large.effect.role
     return alike and ours.items() < theirs.items()
+
+
+def _absent_if_it_runs_away(attempt: tuple[Candidate, Fit], base: Fit) -> tuple[Candidate, Fit]:
+    """The fit, or that of the absent effect where no error is a number: a hidden body runs away."""
+    candidate, fit = attempt
+    if math.isfinite(fit.fit_error) and math.isfinite(fit.check_error):
+        return attempt
+    return candidate, keep_absent(base.model.with_effect(candidate.effect, at=candidate.at), base)
 
 
 def _from_kin(
@@ -162,10 +171,12 @@ def rank_candidates(
     fits = fit_each(possible, start, prepared, stated, worth=worth, progress=progress)
     if widely:
         fits = search_among_draws(fits, start, prepared, stated)
+    fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
     fits = [_from_kin(cf, fits, prepared) for cf in fits]
     worthless = (1.0 - worth) * fit_squares(base)
     widths = OpenWidths(prepared, criteria)
     fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, widths=widths)
+    fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
     results = sorted((_ranked_best(base, cf, widths) for cf in fits), key=rank_key)
     entries = [
         replace(r, behind=whole_score(r.fit, results[0].fit) if i else 0.0)
