@@ -65,6 +65,8 @@ class CandidateEvidence:
     def probability(self, *, criteria: Criteria = CRITERIA) -> float:
         """Probability that the effect is missing, 0 to 1."""
         real = self.share * (1.0 - chance(self.ranked.score))
+        if not np.isfinite(real):  # a model that runs away has no error: nothing speaks for it
+            return 0.0
         if not (self.accepted or self.as_good):
             return criteria.true_of_others * real * self.explained
         # of 4 accepted effects that left 3.9 to 29 noise floors none was true. Squares: only the

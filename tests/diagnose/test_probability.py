@@ -36,7 +36,11 @@ EVIDENCE = CandidateEvidence(
 )
 
 
-@given(left=st.floats(0, 100), share=st.floats(0, 1), score=st.floats(-50, 500))
+#: also of candidates whose model runs away
+SCORES = st.floats(-50, 500) | st.sampled_from([float("nan"), float("inf"), -float("inf")])
+
+
+@given(left=st.floats(0, 100), share=st.floats(0, 1), score=SCORES)
 def test_it_is_a_probability(left, share, score):
     for accepted in (True, False):
         one = replace(
