@@ -86,7 +86,7 @@ def test_the_device_of_a_diagnosis_moves_in_a_hand(short_rod, tmp_path, capsys):
     ("options", "line"),
     [
         (["--motion", "Lx", "10mm", "2Hz"], 'no signal "Lx", has R_V, L_D, L'),
-        (["--motion", "L", "10N", "2Hz"], "--motion L: found '10N', expected a value in m"),
+        (["--motion", "L", "10N", "2Hz"], '--motion L: found "N", expected a length'),
         (["--motion", "L", "10mm", "two"], "--motion L: found 'two', expected a number"),
         (["--motion", "R_V", "1N", "2Hz"], '"R_V" is no motion, has L'),
         (["--input", "L", "1mm", "2Hz"], '"L" is not from outside, inputs are R_V, L_D'),
@@ -94,9 +94,9 @@ def test_the_device_of_a_diagnosis_moves_in_a_hand(short_rod, tmp_path, capsys):
         (["--value", "Z_M.inertai=1kg"], 'did you mean "Z_M.inertia"?'),
         (
             ["--value", "Z_M.inertia=1mm"],
-            "--value Z_M.inertia: found '1mm', expected a value in kg",
+            '--value Z_M.inertia: found "mm", expected a mass',
         ),
-        (["--value", "Z_M.inertia=1qq"], "--value Z_M.inertia: found '1qq': no unit 'qq'"),
+        (["--value", "Z_M.inertia=1qq"], '--value Z_M.inertia: found "qq", expected a mass'),
         (["--signal", "Q"], 'no signal "Q", has L'),
         (["--output", "run.txt"], "run.txt: found '.txt', expected .csv or .nc"),
     ],

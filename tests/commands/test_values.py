@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from teleopdesign.commands._values import value_from
+from teleopdesign.commands._values import value_from, value_in
 from teleopdesign.errors import ExperimentError
 
 
@@ -17,6 +17,27 @@ def read(text, quantity="position", axis="revolute"):
 )
 def test_a_number_with_a_unit_or_in_si_is_read(text, value):
     np.testing.assert_allclose(read(text), value, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("5 mm", "m", 5e-3),
+        ("0.4 N*m*s", "N*m*s/rad", 0.4),
+        ("30deg/s", "rad/s", np.pi / 6),
+        ("1 rad/s", "Hz", 1 / (2 * np.pi)),
+        ("20 %", "1", 0.2),
+        ("0.2", "N^2", 0.2),
+    ],
+)
+def test_a_value_is_converted_into_a_stated_si_unit(text, unit, value):
+    np.testing.assert_allclose(value_in(text, unit=unit, where="--value"), value, rtol=1e-15)
+
+
+@pytest.mark.parametrize(("text", "unit"), [("1 N", "m"), ("50 %", "rad"), ("1 m", "N^2")])
+def test_a_unit_of_another_quantity_is_refused(text, unit):
+    with pytest.raises(ExperimentError, match="^--value: found"):
+        value_in(text, unit=unit, where="--value")
 
 
 @pytest.mark.parametrize("text", ["", "fast", "1.2.3", "deg", "1e999", "2 N", "--1"])
