@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import itertools
-import math
 import re
 from collections.abc import Sequence
 
-from ...quantity import is_unit, si_factor
+from ...quantity import is_unit, measures, si_factor
 from ..column_names import unit_of_text
 from ..doors._cells import number_of
 
@@ -42,6 +41,10 @@ _SAMPLE_TIME = re.compile(
     rf"(?:\s*[(\[]([mun]?s)[)\]])?[^\w+-]{{1,12}}{_RATE_NUMBER}\s*([mun]?s|)(?![A-Za-z:/\d-])",
     re.I,
 )
+#: units that are recognised whatever their case, where no other unit is meant by these letters
+_UNITS = {"hz": "Hz", "khz": "kHz", "mhz": "MHz"}
+#: times from row to row in s, and rates in Hz, between which a clock ticks
+_CLOCKS = (1e-9, 1e9)
 
 
 def sample_rate_in(remarks: Sequence[str]) -> tuple[float, str] | None:
@@ -51,23 +54,29 @@ def sample_rate_in(remarks: Sequence[str]) -> tuple[float, str] | None:
     """
     for line in remarks:
         rate, step = (pattern.search(line[:500]) for pattern in (_SAMPLE_RATE, _SAMPLE_TIME))
-        if rate is not None and (value := _number_of(rate[1])) > 0:
-            return value * si_factor(rate[2] or "Hz", quantity="frequency"), line[:100]
-        if step is not None and (value := _number_of(step[2])) > 0:
-            unit = step[1] or step[3] or "s"
-            return float(f"{1 / (value * si_factor(unit, quantity='time')):.9g}"), line[:100]
+        if rate is not None and (value := _size(rate[1], rate[2] or "Hz", "frequency")):
+            return value, line[:100]
+        if step is not None and (value := _size(step[2], step[1] or step[3] or "s", "time")):
+            return float(f"{1 / value:.9g}"), line[:100]
     for titles, values in itertools.pairwise(remarks):
         cells = [re.split(r"[,;\t]", text[:500]) for text in (titles, values)]
         for title, cell in zip(*cells, strict=False):
-            if title.strip().casefold() == "increment" and (value := _number_of(cell.strip())) > 0:
+            if title.strip().casefold() == "increment" and (value := _size(cell.strip())):
                 return float(f"{1 / value:.9g}"), f"{titles[:50]} / {values[:50]}"
     return None
 
 
-def _number_of(text: str) -> float:
-    """A number with a decimal point or comma; 0: it is none."""
+def _size(text: str, unit: str = "s", quantity: str = "time") -> float:
+    """A number with a decimal point or comma, in SI; 0: it is none, or no clock has such a time.
+
+    unit: as a program writes it, also "HZ" or "khz"
+    """
     number = number_of(text.rstrip(".,"), comma="," in text)
-    return number if isinstance(number, float) and math.isfinite(number) else 0.0
+    known = unit_of_text(unit) or unit_of_text(unit.lower()) or _UNITS.get(unit.lower(), unit)
+    if not isinstance(number, float) or not measures(known, quantity):
+        return 0.0
+    size = number * si_factor(known, quantity=quantity)
+    return size if _CLOCKS[0] < size < _CLOCKS[1] else 0.0
 
 
 def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:
