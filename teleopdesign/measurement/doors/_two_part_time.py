@@ -5,8 +5,8 @@
     1736150001,         2123499,            0.11
 
 Clocks of operating systems and of ROS count in this way, in ns or us, and loggers write a time of
-day beside its ms. Either column alone would be
-a wrong time: the seconds stand still, and their part is set back each second.
+day beside its ms. Either column alone would be a wrong time: the seconds stand still, and their
+part is set back each second.
 """
 
 from __future__ import annotations
