@@ -41,7 +41,8 @@ def minimise(
     function: x (p,) -> residual (n,), Jacobian (n, p)
     residual_alone: the same residual where no Jacobian is needed; None: it takes as long
     start, lower, upper: (p,)
-    tolerance: relative change of squares at which the search ends
+    tolerance: relative change of squares at which the search ends; after a step without such a
+        change, the next one must promise it
     evaluations: most calls of the function
     """
     x = np.clip(start, lower, upper)
@@ -53,7 +54,9 @@ def minimise(
             break
         trial = np.clip(x + step, lower, upper)
         expected = squares - float(np.sum((residual + jacobian @ (trial - x)) ** 2))
-        if expected <= 1e-3 * tolerance * squares:
+        # after a step that gained less than the tolerance, or failed, tangents promise too much
+        least = tolerance if quiet or failed else 1e-3 * tolerance
+        if expected <= least * squares:
             break
         # a step after one that failed mostly fails too, and its Jacobian would serve nothing
         if failed and residual_alone is not None:

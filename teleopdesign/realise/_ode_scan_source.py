@@ -145,7 +145,7 @@ def _write_rates(effect: Effect) -> list[str]:
         each.append(f"g_{i} = {moved}")
     # slopes are stored when all are known, because a state may depend on the slope of another
     each += [f"g[stage, {i}, c] = g_{i}" for i in range(len(states))]
-    lines.append("for c in range(q + 1):")
+    lines.append("for c in range(m):")
     lines += [f"    {line}" for line in each]
     return [*lines, *(line for end in ends for line in end.split("\n"))]
 
@@ -165,7 +165,7 @@ def _write_dry(effect: Effect) -> list[str]:
             f"wanted = z_{i} / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
             f"within = abs(wanted) <= most_{i}",
             f"hold[{i}] = wanted if within else copysign(most_{i}, wanted)",
-            "for c in range(q + 1):",
+            "for c in range(m):",
             *(f"    d_{j} = d[{j}, c]" for j in range(len(states))),
             "    if within:",
             f"        dhold[{i}, c] = d_{i} / w + 1.5 * g[0, {i}, c] - 0.5 * before_g[{i}, c]",
@@ -217,20 +217,23 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
     n = drive.shape[1]
     s, q = {len(effect.states)}, dout.shape[1]
 {indent(parameters, 4)}
-    # the last column is a difference without input, whose growth is measured
-    d = np.zeros((s, q + 1))
-    d[:, q] = size
+    # the last column is a difference without input, whose growth is measured for the tangents
+    m = q + 1 if q else 0
+    d = np.zeros((s, m))
     f = np.zeros((4, s))
-    g = np.zeros((4, s, q + 1))
+    g = np.zeros((4, s, m))
     w = h / steps
     hold = np.zeros(s)
-    dhold = np.zeros((s, q + 1))
+    dhold = np.zeros((s, m))
     before_f = np.zeros(s)
-    before_g = np.zeros((s, q + 1))
+    before_g = np.zeros((s, m))
+    if q:
+        d[:, q] = size
     for k in range(n):
         grown = 0.0
-        for i in range(s):
-            grown = max(grown, abs(d[i, q] / size[i]))
+        if q:
+            for i in range(s):
+                grown = max(grown, abs(d[i, q] / size[i]))
         if grown > growth:
             d[:] = 0.0
             d[:, q] = size
@@ -251,7 +254,7 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
 {indent(stage, 16)}
             for i in range(s):
                 z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
-                for c in range(q + 1):
+                for c in range(m):
                     d[i, c] += w / 6 * (
                         g[0, i, c] + 2 * g[1, i, c] + 2 * g[2, i, c] + g[3, i, c]
                     )
