@@ -94,6 +94,18 @@ def column_sizes(columns: Array) -> Array:
         return np.asarray(np.linalg.norm(columns, axis=0))
 
 
+def scaled_normal_equations(columns: Array, residual: Array) -> tuple[Array, Array, Array]:
+    """Sizes (p,) of columns (n, p), and normal equations by columns of size 1: (p, p) and (p,).
+
+    sizes: Euclidean norms, 1 for a column of zeros; inf or NaN where squares are no numbers
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        normal, gradient = columns.T @ columns, columns.T @ residual
+        size = np.sqrt(np.diagonal(normal))
+        size = np.where(size == 0.0, 1.0, size)
+        return size, normal / np.outer(size, size), gradient / size
+
+
 def gauss_newton_step(
     jacobian: Array, residual: Array, below: Array, above: Array, damping: float = 1e-3
 ) -> Array:
@@ -101,13 +113,10 @@ def gauss_newton_step(
 
     below, above: bounds of the step (p,);  returns: (p,), NaN where the Jacobian is not finite
     """
-    size = column_sizes(jacobian)
+    size, normal, gradient = scaled_normal_equations(jacobian, residual)
     if not np.isfinite(size).all():
         return np.full(len(size), np.nan)
-    size = np.where(size > 0, size, 1.0)
-    scaled = jacobian / size
-    normal = scaled.T @ scaled + damping * np.eye(len(size))
-    gradient = scaled.T @ residual
+    normal += damping * np.eye(len(size))
     root = np.linalg.cholesky(normal + 1e-12 * np.eye(len(size)))
     target = -np.linalg.solve(root, gradient)
     step = np.linalg.solve(root.T, target)

@@ -15,7 +15,7 @@ from ..measurement.filtering import Array
 from ..model import Model
 from .bodies_apart import Apart, separate_bodies
 from .fit import Fit, free_parameters
-from .least_squares import column_sizes, sum_of_squares
+from .least_squares import scaled_normal_equations, sum_of_squares
 from .prepare import Prepared
 
 
@@ -61,10 +61,8 @@ class Promises:
 
 def _remaining_squares(columns: Array, residual: Array) -> float:
     """Squares of the residual that no combination of these columns removes, by normal equations."""
-    size = column_sizes(columns)
+    size, normal, gradient = scaled_normal_equations(columns, residual)
     if not np.isfinite(size).all():
         return math.inf
-    columns = columns / np.where(size > 0, size, 1.0)
-    normal = columns.T @ columns + 1e-9 * np.eye(columns.shape[1])
-    gradient = columns.T @ residual
+    normal += 1e-9 * np.eye(len(size))
     return sum_of_squares(residual) - float(gradient @ np.linalg.solve(normal, gradient))
