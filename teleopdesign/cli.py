@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 #: new objects after which Python's garbage collector looks for unused cycles. The objects of a
 #: command live to its end, and with Python's 700 the collector took 3 % of the time of a diagnosis
 CIRCLES_SOUGHT = 10_000
+#: such collections after which older objects are looked through too: not within a short command. A
+#: diagnosis keeps what it makes, 600 000 objects, and finds no memory to free among them
+COLLECTIONS_OF_NEW = 100
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     request = threading.Event()
     is_heard = arguments is None and hear_ctrl_c(request)
     if arguments is None:
-        gc.set_threshold(CIRCLES_SOUGHT)
+        gc.set_threshold(CIRCLES_SOUGHT, COLLECTIONS_OF_NEW)
     status = 1  # of Python, where something is raised that is not named here
     try:
         from .commands._command_line import run

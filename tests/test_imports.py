@@ -31,6 +31,14 @@ def test_reading_an_experiment_needs_neither_kernels_nor_figures():
     assert loaded.isdisjoint({"numba", "control", "matplotlib", "xarray"})
 
 
+def test_a_diagnosis_imports_at_its_start_only_what_each_diagnosis_needs_there():
+    """Filters and trees come where they are used: an error of the experiment costs no import."""
+    later = ("scipy.signal", "scipy.stats", "sklearn", "pandas", "pooch", "control", "matplotlib")
+    code = "import sys, teleopdesign.commands.diagnose, teleopdesign.diagnose.answer\n"
+    loaded = modules_after(code + f"print(*[m for m in {later} if m in sys.modules])")
+    assert loaded.isdisjoint({*later, "xarray"})
+
+
 def test_a_worker_of_a_study_loads_only_what_a_simulation_needs():
     others = [f"teleopdesign.{f}" for f in ("diagnose", "passivity", "tuning", "plot")]
     code = "import sys, teleopdesign.studies.worker\n"

@@ -178,7 +178,7 @@ def _film(body: Body, speed: float, numbers: Mapping[str, float]) -> float:
         if e.role == "force" and e.energy == "dissipates" and not e.states
     )
     of_speed = (law for law in laws if law.free_symbols & signals == {SIGNALS["velocity"]})
-    return sum(float(law.subs(at)) for law in of_speed)
+    return sum(float(law.subs({s: at[s] for s in law.free_symbols})) for law in of_speed)
 
 
 def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:

@@ -31,8 +31,13 @@ def strength(effect: Effect) -> str | None:
     if len(effect.absent) != 1 or effect.states:
         return None
     ((name, value),) = effect.absent.items()
-    linear = sp.diff(effect.expression(), effect.symbols()[name], 2) == 0
-    return name if value == 0.0 and linear else None
+    if value != 0.0:
+        return None
+    symbol = effect.symbols()[name]
+    slope = sp.diff(effect.expression(), symbol)
+    # most slopes show it, and the fit needs them anyway; a second derivative is simplified too
+    linear = symbol not in slope.free_symbols or sp.diff(slope, symbol) == 0
+    return name if linear else None
 
 
 @lru_cache(maxsize=256)
@@ -44,6 +49,15 @@ def phase(effect: Effect) -> str | None:
     wave = sp.diff(effect.expression(), effect.symbols()[effect.strength])
     turned = sp.diff(wave, effect.symbols()[angles[0]], 2)
     return angles[0] if sp.simplify(wave + turned) == 0 else None
+
+
+@lru_cache(maxsize=256)
+def led_momentum(effect: Effect) -> sp.Expr:
+    """Momentum of the body that corrections of hidden states move; 0 without corrections."""
+    if effect.led is None:
+        return sp.S(0)
+    led = effect.led(SimpleNamespace(**effect.symbols()))
+    return led * sum(effect.corrections().values(), sp.S(0))
 
 
 @lru_cache(maxsize=64)

@@ -31,7 +31,7 @@ from ..arguments import check_types
 from ..notebook import html_table
 from ..quantity import unit_of
 from ..recipes import recipe
-from ._derived import channels, fix_at_zero, linear_form, phase, strength
+from ._derived import channels, fix_at_zero, led_momentum, linear_form, phase, strength
 from ._facts import RecordFacts
 from ._parameter import PERIOD, FitSearch, Parameter, positive_amplitude
 from ._roles import ACTUATION_ORDER, CONTACT_ROLES, ENERGIES, ROLES, Energy, Role
@@ -257,9 +257,7 @@ class Effect:
 
     def led_momentum(self) -> sp.Expr:
         """Momentum of the body that corrections move, on symbols; 0 without corrections."""
-        if self.led is None:
-            return sp.S(0)
-        return self.led(self._parameters(None)) * sum(self.corrections().values(), sp.S(0))
+        return led_momentum(self)
 
     def is_absent(self, values: Mapping[sp.Symbol, float]) -> bool:
         """Whether the effect is absent with these parameter values (by symbol)."""

@@ -63,9 +63,17 @@ def _is_same(one: sp.Expr, other: sp.Expr) -> bool:
             s: (first if s in SIGNALS.values() else abs(first)) + step * (k + 1) ** 2 / 97
             for k, s in enumerate(symbols)
         }
-        a, b = (sp.N(law.xreplace(values), 30) for law in (one, other))
+        a, b = (_value_at(law, values) for law in (one, other))
         if a != b and not (
             (a - b).is_number and abs(sp.N(a - b, 30)) <= _SAME * (1 + abs(sp.N(a, 30)))
         ):
             return False
     return True
+
+
+def _value_at(law: sp.Expr, values: dict[sp.Symbol, sp.Rational]) -> sp.Expr:
+    """The law with numbers in place of all symbols, to 30 digits.
+
+    First as inexact numbers: in exact ones, sympy would look for the exact sine of each angle.
+    """
+    return sp.N(law.evalf(30, subs=values).xreplace(values), 30)

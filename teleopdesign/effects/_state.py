@@ -43,6 +43,6 @@ class State:
             return rate
         z, stop = sp.Abs(getattr(now, name)), self.stop(now, p)
         at_stop = sp.And(z >= stop, getattr(now, name) * rate > 0)
-        return sp.Piecewise(
-            (rate * sp.Min((HELD * stop - z) / (stop + z), 0), at_stop), (rate, True)
-        )
+        # not evaluated: sympy would compare the two at length, and cannot decide
+        back = sp.Min((HELD * stop - z) / (stop + z), 0, evaluate=False)
+        return sp.Piecewise((rate * back, at_stop), (rate, True))

@@ -32,7 +32,7 @@ from ..measurement.motion import Motion
 from .along_motion import Residual, measured_along, residual_along, with_loads
 from .friction_along import level_along
 from .stages_along import ActuationStage, stages_along
-from .traced import Along, for_numpy, slope
+from .traced import Along, for_numpy, numpy_function, slope
 
 #: a sample is blind if the gain of the law is below this part of its largest gain: a command that
 #: is ten times as uncertain as elsewhere is not reported. With a larger part, a ripple or a soft
@@ -132,7 +132,7 @@ def _slopes(
 @lru_cache(maxsize=1024)
 def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
     symbols = tuple(sorted(expression.free_symbols, key=str))
-    return symbols, sp.lambdify(symbols, for_numpy(expression), "numpy", cse=True)
+    return symbols, numpy_function(symbols, for_numpy(expression))
 
 
 def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:

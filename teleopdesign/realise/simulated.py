@@ -118,6 +118,7 @@ def with_least_level(body: Body) -> Body:
     return body.with_values({"coulomb.level": LEAST * level})
 
 
+@lru_cache(maxsize=16)  # bristles of several lengths are put into one body
 def _levels_by_load(body: Body) -> tuple[float, float]:
     """Friction level at rest without a load, and under a typical load."""
     equation = body.equation()

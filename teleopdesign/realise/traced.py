@@ -257,6 +257,16 @@ def for_numpy(expression: sp.Expr) -> sp.Expr:
     )
 
 
+def numpy_function(arguments: Sequence[sp.Symbol], printed: Any) -> Callable[..., Any]:
+    """A numpy function of one expression, or of a list of them, without a text that documents it.
+
+    printed: from `for_numpy`
+    """
+    call: Callable[..., Any]
+    call = sp.lambdify(arguments, printed, "numpy", cse=True, docstring_limit=0)
+    return call
+
+
 @lru_cache(maxsize=512)
 def _law_beside(law: sp.Expr, more: tuple[sp.Symbol, ...]) -> NumericLaw:
     """The law on all signals and on these additional ones, which have tangents."""
@@ -278,7 +288,7 @@ def law_of(
     gradients = [slope(expression, s) if s in traced else sp.S(0) for s in used]
     gradients += [slope(expression, p) for p in parameters]
     printed = [for_numpy(e) for e in (expression, *gradients)]
-    call = sp.lambdify([*used, *parameters], printed, "numpy", cse=True)
+    call = numpy_function([*used, *parameters], printed)
     joins = any(e.has(sp.And, sp.Or) for e in printed)
     return NumericLaw(expression, used, parameters, call, joins)
 
@@ -291,7 +301,4 @@ def _slope_call(
     symbol: sp.Symbol,
 ) -> Callable[..., Any]:
     """One derivative of a law as a numpy function of its signals and parameters."""
-    arguments = [*signals, *parameters]
-    printed = for_numpy(slope(expression, symbol))
-    call: Callable[..., Any] = sp.lambdify(arguments, printed, "numpy", cse=True)
-    return call
+    return numpy_function([*signals, *parameters], for_numpy(slope(expression, symbol)))

@@ -4,6 +4,7 @@ Bounds and starts are numbers that no law repeats. What follows from a law is he
 physics says of it: which laws are linear, which repeat along the way, which follow time.
 """
 
+from dataclasses import replace
 from math import inf, pi
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 from teleopdesign.effects import (
     BLOCK_EFFECTS,
     EFFECTS,
+    Effect,
+    Parameter,
     acts_linearly,
     depends_on_position,
     depends_on_time,
@@ -287,3 +290,16 @@ def test_the_force_left_unexplained_leads_the_tip_by_the_stated_rate(name):
     momentum = effect.led_momentum()
     led_momentum = float(momentum.subs({s: values[s.name] for s in momentum.free_symbols}))
     assert led_momentum == pytest.approx(m * led)
+
+
+def test_a_law_whose_slope_does_not_show_it_is_linear_too():
+    """Of (a + b)^2 u - a^2 u the slope 2 (a + b) u - 2 a u holds a until it is expanded."""
+
+    def law(now, p):
+        return ((p.size + p.more) ** 2 - p.size**2) * now.velocity
+
+    size, more = Parameter("damping", "a"), Parameter("damping", "b")
+    effect = Effect("force", law, {"size": size, "more": more}, absent={"size": 0.0})
+    assert effect.strength == "size"
+    square = replace(effect, law=lambda now, p: p.size**2 * p.more * now.velocity)
+    assert square.strength is None
