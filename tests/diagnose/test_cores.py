@@ -13,7 +13,7 @@ import pytest
 
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
-from teleopdesign.studies.processes import one_thread
+from teleopdesign.studies.one_thread import one_thread
 
 #: arrays of 1 MiB that a residual and its tangents take together, and how often they are made
 TOGETHER, TIMES = 16, 50
