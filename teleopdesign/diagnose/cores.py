@@ -15,19 +15,14 @@ a residual page by page: a sixth of the processor time.
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import multiprocessing
 import os
 import pickle
-import signal
-import sys
-import threading
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from functools import lru_cache
+from functools import lru_cache, partial
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
@@ -35,6 +30,7 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from ..core_count import count_workers
+from ..process_copies import Copy, can_copy, shield_from_ctrl_c
 
 T = TypeVar("T")
 #: most copies, and most threads, at a time
@@ -60,7 +56,7 @@ def map_on_cores(
     results: dict[int, T] = {}
     with one_thread_of_algebra():
         copies = min(MOST, count_workers(), len(parts))
-        if copies > 1 and _can_copy():
+        if copies > 1 and can_copy():
             before()
             results = _computed_by_copies(function, parts, copies, begun)
         for i, part in enumerate(parts):
@@ -81,12 +77,6 @@ def map_in_threads(function: Callable[..., T], *arguments: Iterable[Any]) -> lis
         return list(pool.map(function, *arguments))
 
 
-def _can_copy() -> bool:
-    """Whether a copy of this process can work: only its own thread would be copied."""
-    is_alone = threading.active_count() == 1 and multiprocessing.parent_process() is None
-    return sys.platform == "linux" and is_alone
-
-
 def _computed_by_copies(
     function: Callable[[Any], T],
     parts: Sequence[Any],
@@ -99,42 +89,21 @@ def _computed_by_copies(
     os.write(added, np.arange(len(parts)).tobytes())
     os.close(added)
     gc.freeze()  # else a collection in a copy would write to, and so copy, all memory
-    running: dict[Connection, int] = {}
-    first = os.getpid()
+    running: dict[Connection, Copy] = {}
     try:
-        with suppress(OSError):  # no memory for another process: fewer copies
+        with suppress(OSError), shield_from_ctrl_c():  # no memory for another process: fewer copies
             for _ in range(copies):
                 here, there = multiprocessing.Pipe(duplex=False)
-                if (process := _fork()) == 0:
-                    _end_with(first)
-                    _compute(function, parts, waiting, there)
+                running[here] = Copy(partial(_compute, function, parts, waiting, there))
                 there.close()
-                running[here] = process
         return _collect(list(running), begun)
     finally:
         gc.unfreeze()
         os.close(waiting)
-        for connection, process in running.items():
+        for connection, copy in running.items():
             connection.close()
-            with suppress(ProcessLookupError):
-                os.kill(process, signal.SIGKILL)
-            os.waitpid(process, 0)
-
-
-def _fork() -> int:
-    """Copy the process; 0 in the copy."""
-    with warnings.catch_warnings():
-        # Python 3.12 counts threads of linear algebra, which end before a copy and begin anew
-        warnings.simplefilter("ignore", DeprecationWarning)
-        return os.fork()
-
-
-def _end_with(first: int) -> None:
-    """Let this copy end when the process that made it ends, even where that one is killed."""
-    with suppress(AttributeError, OSError):
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1: PR_SET_PDEATHSIG of Linux
-    if os.getppid() != first:
-        os._exit(0)
+            copy.kill()
+            copy.wait()
 
 
 def _compute(
@@ -143,16 +112,11 @@ def _compute(
     """Compute one part after another in this copy, which makes no copies and ends here."""
     global MOST
     MOST = 1
-    try:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process ends its copies
+    with suppress(BaseException):  # the first process computes this part, and raises its error
         while number := os.read(waiting, np.arange(1).nbytes):
             (i,) = np.frombuffer(number, dtype=int).tolist()
             results.send((i, None))
             results.send((i, pickle.dumps(function(parts[i]), pickle.HIGHEST_PROTOCOL)))
-    except BaseException:  # the first process computes this part, and raises its error
-        pass
-    finally:
-        os._exit(0)  # without a second end of all that the first process will end
 
 
 def _collect(running: list[Connection], begun: Callable[[int], None]) -> dict[int, Any]:

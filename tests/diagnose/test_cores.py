@@ -13,7 +13,7 @@ import pytest
 
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
-from teleopdesign.studies.processes import one_thread
+from teleopdesign.studies.one_thread import one_thread
 
 #: arrays of 1 MiB that a residual and its tangents take together, and how often they are made
 TOGETHER, TIMES = 16, 50
@@ -26,7 +26,7 @@ def work(request, monkeypatch):
     """How the parts are computed."""
     if request.param == "copies" and sys.platform != "linux":
         pytest.skip("processes are copied on Linux only")
-    monkeypatch.setattr(cores, "_can_copy", lambda: request.param == "copies")
+    monkeypatch.setattr(cores, "can_copy", lambda: request.param == "copies")
     monkeypatch.setattr(cores, "count_workers", lambda: 3)
     return request.param
 
@@ -71,7 +71,7 @@ def test_a_result_that_cannot_travel_is_computed_here(work):
 @copied
 def test_a_copy_that_is_killed_loses_nothing(monkeypatch):
     here = os.getpid()
-    monkeypatch.setattr(cores, "_can_copy", lambda: True)
+    monkeypatch.setattr(cores, "can_copy", lambda: True)
     monkeypatch.setattr(cores, "count_workers", lambda: 2)
 
     def die_at_two(x):
@@ -84,7 +84,7 @@ def test_a_copy_that_is_killed_loses_nothing(monkeypatch):
 
 @copied
 def test_an_interrupt_ends_the_copies(monkeypatch):
-    monkeypatch.setattr(cores, "_can_copy", lambda: True)
+    monkeypatch.setattr(cores, "can_copy", lambda: True)
     monkeypatch.setattr(cores, "count_workers", lambda: 2)
 
     def interrupt(_):
@@ -100,7 +100,7 @@ def test_an_interrupt_ends_the_copies(monkeypatch):
 
 @copied
 def test_a_worker_of_a_study_makes_no_copies(monkeypatch):
-    monkeypatch.setattr(cores, "_can_copy", lambda: True)
+    monkeypatch.setattr(cores, "can_copy", lambda: True)
     with one_thread():
         processes = map_on_cores(lambda _: os.getpid(), range(4))
     assert set(processes) == {os.getpid()}
@@ -140,7 +140,7 @@ def test_a_process_with_other_threads_is_not_copied():
     other = threading.Thread(target=stay.wait)
     other.start()
     try:
-        assert not cores._can_copy()
+        assert not cores.can_copy()
     finally:
         stay.set()
         other.join()

@@ -1,9 +1,11 @@
 """Where and how often a study is stopped, killed or spread changes its time, never its numbers."""
 
+import _thread
 import random
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -14,6 +16,12 @@ import xarray
 
 import teleopdesign as td
 from teleopdesign.errors import ExperimentError, ModelError
+from teleopdesign.studies import pool, processes, worker_processes
+from teleopdesign.studies.chosen_measures import measures_of
+from teleopdesign.studies.evaluate import StudyTask
+from teleopdesign.studies.frames import receive
+from teleopdesign.studies.journal import Journal
+from teleopdesign.studies.points import points_of
 
 TESTS = Path(__file__).parents[1]
 AXES = {"x": np.arange(6.0), "y": np.linspace(0.1, 1.0, 5)}
@@ -36,8 +44,57 @@ def study_code(out, model="slow_product", points=300, **more):
     )
 
 
+copied = pytest.mark.usefixtures("copies")
+
+
+@pytest.fixture
+def copies(monkeypatch):
+    """Processes of a study are copies of this one, also beside the thread that tests come from."""
+    if sys.platform != "linux":
+        pytest.skip("processes are copied on Linux only")
+    for module in (processes, worker_processes):
+        monkeypatch.setattr(module, "can_copy", lambda: True)
+    monkeypatch.setattr(worker_processes, "has_hidden_threads", lambda: False)
+
+
+def anew(monkeypatch):
+    """From now on no process is copied."""
+    for module in (processes, worker_processes):
+        monkeypatch.setattr(module, "can_copy", lambda: False)
+
+
+def children():
+    """Processes that this one started and has not waited for."""
+    listed = Path("/proc/self/task").glob("*/children")  # none where there is no such folder
+    return {number for file in listed for number in file.read_text().split()}
+
+
+@pytest.fixture(params=("copies", "anew"))
+def start(request, monkeypatch):
+    """How the processes of a study start; checked at the end."""
+    starts, before = {"copies": 0, "anew": 0}, children()
+
+    def counted(name, function):
+        def count(*arguments):
+            processes = function(*arguments)
+            starts[name] += len(processes) if name == "copies" else 1
+            return processes
+
+        return count
+
+    if request.param == "anew":
+        anew(monkeypatch)
+    else:
+        request.getfixturevalue("copies")
+    monkeypatch.setattr(pool, "start_copies", counted("copies", pool.start_copies))
+    monkeypatch.setattr(pool, "start_anew", counted("anew", pool.start_anew))
+    yield request.param
+    assert starts["copies"] == (2 if request.param == "copies" else 0)
+    assert children() <= before
+
+
 @pytest.mark.slow
-def test_two_processes_give_the_data_set_of_one(tmp_path):
+def test_two_processes_give_the_data_set_of_one(start):
     one = td.study(models.product, AXES, measures=models.value, workers=1)
     two = td.study(models.product, AXES, measures=models.value, workers=2)
     xarray.testing.assert_identical(one.data, two.data)
@@ -55,6 +112,7 @@ def test_functions_without_a_name_go_to_other_processes_too():
 
 @pytest.mark.slow
 def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(monkeypatch, capfd):
+    anew(monkeypatch)
     start = subprocess.Popen
 
     def start_and_interrupt(*arguments, **options):
@@ -71,6 +129,7 @@ def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(m
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_process_that_is_killed_before_its_first_point_is_replaced(monkeypatch, number):
+    anew(monkeypatch)
     start, processes = subprocess.Popen, []
 
     def start_and_kill_one(*arguments, **options):
@@ -87,13 +146,14 @@ def test_a_process_that_is_killed_before_its_first_point_is_replaced(monkeypatch
 
 @pytest.mark.slow
 def test_processes_that_all_end_before_their_first_point_are_one_line(monkeypatch):
+    anew(monkeypatch)
     monkeypatch.setattr(sys, "executable", "/bin/false")
     with pytest.raises(ModelError, match="ended before its first point, with status 1"):
         td.study(models.product, AXES, measures=models.value, workers=2)
 
 
 @pytest.mark.slow
-def test_a_point_whose_process_is_killed_is_computed_again(tmp_path):
+def test_a_point_whose_process_is_killed_is_computed_again(start, tmp_path):
     axes = {**AXES, "folder": str(tmp_path)}
     dataset = td.study(models.deadly_product, axes, measures=models.value, workers=2)
     assert (tmp_path / "killed").exists()
@@ -101,7 +161,7 @@ def test_a_point_whose_process_is_killed_is_computed_again(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_point_that_kills_its_process_every_time_is_a_failure_and_no_other_is():
+def test_a_point_that_kills_its_process_every_time_is_a_failure_and_no_other_is(start):
     dataset = td.study(models.lethal_product, AXES, measures=models.value, workers=2)
     assert dataset.failures == {"its process ended twice, by signal 9": 1}
     expected = EXPECTED.copy()
@@ -305,6 +365,172 @@ def _kept_values(part):
             assert content["point"] not in values
             values[content["point"]] = content["values"][0]
     return values
+
+
+# ---- copies of the calling process ----------------------------------------------------------
+
+
+def task_of(model, axes=AXES):
+    return StudyTask(model, {}, points_of(axes), measures_of(models.value))
+
+
+@pytest.mark.slow
+def test_simulations_in_processes_give_the_data_set_of_one(start):
+    """Of 512 points side by side; the measure of a user needs each simulation by itself."""
+    side_by_side = {"C.dahl.level": np.linspace(0.2, 1.2, 600), "C.dahl.stiffness": [1e4, 2e4]}
+    arguments = {"measures": ["force_error", "energy_drawn"], **models.SIMULATED}
+    one = td.study(models.interface(), side_by_side, workers=1, **arguments)
+    two = td.study(models.interface(), side_by_side, workers=2, **arguments)
+    xarray.testing.assert_identical(one.data, two.data)
+
+
+@copied
+def test_every_copy_killed_in_the_middle_costs_no_point(monkeypatch):
+    copies = []
+    start_copies = pool.start_copies
+
+    def keep(*arguments):
+        copies.extend(start_copies(*arguments))
+        return copies
+
+    def kill_all(progress):
+        for copy in copies:
+            copy.process.kill()
+
+    monkeypatch.setattr(pool, "start_copies", keep)
+    monkeypatch.setattr("teleopdesign.studies.progress._BETWEEN", 0.05)
+    axes = {"x": np.arange(300.0), "y": 0.5}
+    arguments = {"measures": models.value, "workers": 2, "progress": kill_all}
+    dataset = td.study(models.slow_product, axes, **arguments)
+    assert len(copies) == 2 and not dataset.failures
+    expected = [models.product(x, 0.5) for x in axes["x"]]
+    np.testing.assert_array_equal(dataset["value"].values, expected)
+
+
+def test_an_interrupt_ends_all_processes(start, monkeypatch):
+    def interrupt(progress):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("teleopdesign.studies.progress._BETWEEN", 0.05)
+    axes, begin = {"x": np.arange(1e5), "y": 0.5}, time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        arguments = {"measures": models.value, "workers": 2, "progress": interrupt}
+        td.study(models.slow_product, axes, **arguments)
+    assert time.monotonic() - begin < 60
+
+
+@copied
+def test_copies_write_and_end_nothing_of_the_calling_process(tmp_path):
+    """Text that waits to be written, functions for the exit, and handlers of signals are its."""
+    code = """
+import atexit, signal
+print("before", end=" ")
+atexit.register(print, "exit")
+signal.signal(signal.SIGTERM, lambda *_: print("terminated", flush=True))
+from teleopdesign.studies import pool
+pool.start_anew = None
+""" + study_code(tmp_path / "s.nc", "terminated_product", points=9, workers=2)
+    with in_a_process(code, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.communicate(timeout=300) == ("before exit\n", "")
+    assert td.read_study(tmp_path / "s.nc").failures == {}
+
+
+@copied
+@pytest.mark.slow
+def test_copies_end_with_a_process_that_is_killed(tmp_path):
+    out = tmp_path / "s.nc"
+    code = study_code(out, points=100_000, workers=2)
+    with in_a_process(code, stderr=subprocess.PIPE) as process:
+        wait_for_points(out, 1)
+        process.kill()
+        begin = time.monotonic()
+        assert process.stderr.read() == b""  # until the last process that may write has ended
+        assert time.monotonic() - begin < 30
+
+
+@copied
+def test_a_copy_ends_when_its_pipe_ends_whatever_the_others_hold():
+    first, second = worker_processes.start_copies(task_of(models.product), 2)
+    first.questions.close()
+    assert first.process.wait() == 0
+    second.questions.close()
+    assert second.process.wait() == 0
+    first.close()
+    second.close()
+
+
+@copied
+def test_a_copy_holds_no_lock_of_a_file(tmp_path):
+    part = tmp_path / "s.nc.part"
+    journal = Journal(part, "study", 1)
+    (copy,) = worker_processes.start_copies(task_of(models.product), 1)
+    assert receive(copy.answers) is None  # it is ready
+    journal.close()
+    Journal(part, "study", 1).close()  # where the copy had it, it would be in use
+    copy.questions.close()
+    assert copy.process.wait() == 0
+    copy.close()
+
+
+@pytest.mark.parametrize("begin", [_thread.start_new_thread, threading.Thread])
+def test_a_process_with_another_thread_is_not_copied(begin):
+    """Python counts threads of its module `threading`, but not those of libraries."""
+    stay, is_over, before = threading.Event(), threading.Event(), children()
+
+    def work():
+        stay.wait()
+        is_over.set()
+
+    if begin is threading.Thread:
+        begin(target=work).start()
+    else:
+        begin(work, ())
+    try:
+        assert worker_processes.start_copies(task_of(models.product), 2) == []
+    finally:
+        stay.set()
+        is_over.wait(60)
+    assert children() <= before
+
+
+@pytest.mark.slow
+def test_a_study_beside_another_thread_takes_processes_started_anew(monkeypatch):
+    stay, started = threading.Event(), []
+    start_anew = pool.start_anew
+    monkeypatch.setattr(pool, "start_anew", lambda: started.append(start_anew()) or started[-1])
+    other = threading.Thread(target=stay.wait)
+    other.start()
+    try:
+        td.study(models.product, AXES, measures=models.value, workers=2)
+    finally:
+        stay.set()
+        other.join()
+    assert len(started) == 2
+
+
+@copied
+def test_copies_draw_different_numbers_without_a_seed():
+    axes = {"number": np.arange(40.0)}
+    drawn = td.study(models.drawn, axes, measures=models.value, workers=2)["value"].values
+    assert len(set(drawn)) == 40
+
+
+@copied
+def test_a_worker_of_a_study_is_not_copied():
+    dataset = td.study(models.can_be_copied, {"x": [1, 2]}, measures=models.value, workers=2)
+    assert list(dataset["value"].values) == [0.0, 0.0]
+
+
+@copied
+def test_a_model_that_cannot_be_sent_needs_no_sending_to_a_copy():
+    lock = threading.Lock()
+
+    def locked(x):
+        with lock:
+            return x
+
+    dataset = td.study(locked, {"x": [1.0, 2.0]}, measures=models.value, workers=2)
+    assert list(dataset["value"].values) == [1.0, 2.0]
 
 
 # ---- a cluster ------------------------------------------------------------------------------
