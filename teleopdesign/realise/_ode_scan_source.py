@@ -223,10 +223,8 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
     f = np.zeros((4, s))
     g = np.zeros((4, s, m))
     w = h / steps
-    hold = np.zeros(s)
-    dhold = np.zeros((s, m))
-    before_f = np.zeros(s)
-    before_g = np.zeros((s, m))
+    hold, dhold = np.zeros(s), np.zeros((s, m))
+    before_f, before_g = np.zeros(s), np.zeros((s, m))
     if q:
         d[:, q] = size
     for k in range(n):
