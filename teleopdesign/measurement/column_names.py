@@ -47,7 +47,7 @@ _WEIGHT_AT_LEVER = re.compile(
 _PER_SECOND = re.compile(r"(.*[^\s/])\s*(?:/|\bper\b)\s*(?:s|secs?|seconds?|с|с\.|秒|초)", re.I)
 #: units of two parts as names of columns write them: "v_mm_s", "meters_per_sec", "tau_N_m"
 _OF_TWO = re.compile(
-    r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m|[a-z]+(?=_per))_(?:per_)?(?:s|sec|second)"
+    r"(?:^|_|\s)(?:(?P<length>rad|deg|rev|mm|um|m|[a-z]+(?=_per))_(?:per_)?(?:s|sec|second)"
     r"|(?P<force>m?N)_(?P<arm>c?m))$"
 )
 #: an object of a field bus: "0x6077:00"; and the words for those of drives (CiA 402)
@@ -101,6 +101,7 @@ WANTED = tuple(
 #: pairs of words that are one term -> the word or quantity that they mean (ROS; field of a motor);
 #: short words of drives, force sensors, simulators (MuJoCo); endings of a position's derivatives
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position", ("q", "axis"): "qaxis"}
+TERMS |= {("i", "q"): "iq", ("u", "q"): "uq"} | {("q", "current"): "iq", ("current", "q"): "iq"}
 SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
 SHORT |= {"qpos": "q", "qvel": "qd", "qacc": "acceleration", "qfrc": "force", "ctrl": "control"}
 SHORT |= dict.fromkeys(("fx", "fy", "fz"), "f")

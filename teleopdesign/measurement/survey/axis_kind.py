@@ -10,12 +10,16 @@ from .encoder_counts import is_counter
 
 #: names of drives that report positions in turns; and words for rotating parts
 IN_TURNS = frozenset(("odrive", "moteus"))
-TURNING = IN_TURNS | set(
-    "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
+#: joints of limbs turn, also where they lift: "shoulder_lift_joint"
+LIMBS = frozenset("shoulder elbow wrist hip knee ankle".split())
+TURNING = (
+    IN_TURNS
+    | LIMBS
+    | set("q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split())
 )
 #: words for parts that slide, in names without an angle: "torso_lift_joint" is a joint that slides
 SLIDING = frozenset("lift elevator slide slider prismatic linear rail carriage".split())
-ANGLES = frozenset("angle winkel theta phi".split())
+ANGLES = LIMBS | frozenset("angle winkel theta phi".split())
 #: words of a force that turns; "iq" is the current that makes the torque of a brushless motor
 TORQUES = frozenset(
     "torque torques drehmoment moment couple coppia tau effort iq "

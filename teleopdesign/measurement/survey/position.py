@@ -107,7 +107,7 @@ def find_position(
         if likeness(best, "position") == 0:
             best = most_explained([best, *as_likely(scores, best)], flat, h)
         travels = {n: float(np.ptp(x)) for n, x in flat.items()}
-        best = axis_that_moves(best, as_likely(scores, best), travels)
+        best = axis_that_moves(best, as_likely(scores, best), travels, survey.columns)
         shown = best in derivative or best in followed
         if not shown and has_only_speeds(moving[best], moving):
             raise error_without_position(survey, moving, file, best)
