@@ -129,8 +129,9 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
 
     Friction and damping take energy out, and inertia is positive. The larger of these two parts of
     the force decides, if its sign is certain. In slow motions the force of inertia is too small to
-    be distinguished from delays. A motion in one direction does not distinguish friction from a
-    constant force. A pendulum that swings below its natural frequency has a force like that of a
+    be distinguished from delays. A motion in one direction, with rests or without, does not
+    distinguish friction from a constant force and one of the place, such as a weight that a motor
+    lets down: there only inertia decides. A pendulum that swings below its natural frequency has a force like that of a
     negative mass; a force proportional to position is added where it explains most of the remaining
     force. In motions of one frequency it explains no more than the inertia does. So where friction
     brakes, a negative inertia counts only if its sign is certain beside such a force, too.
@@ -142,6 +143,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     place = place - place.mean()
     force = target - target.mean()
     parts: list[tuple[float, float, float]] = []  # size of the force, value, remaining error
+    one_way = _goes_one_way(direction)
     inertia: list[tuple[float, float]] = []
     for braked in (direction, velocity):
         apart = braked - braked.mean()  # without the part that a constant force explains
@@ -152,7 +154,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
         if fit is None:
             return False
         solution, errors, left = fit
-        if np.abs(solution[1]) > _SURELY * errors[1]:
+        if not one_way and np.abs(solution[1]) > _SURELY * errors[1]:
             parts.append((float(np.abs(solution[1]) * np.std(braked)), float(solution[1]), left))
         if np.abs(solution[0]) > _SURELY * errors[0]:
             size = float(np.abs(solution[0]) * np.std(acceleration))
@@ -167,6 +169,12 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
             inertia.pop()
     sizes = [*(p[:2] for p in sorted(parts, key=lambda p: p[2])[:1]), *inertia[:1]]
     return bool(sizes) and max(sizes)[1] < 0.0
+
+
+def _goes_one_way(direction: Array) -> bool:
+    """Whether a body rests or moves in one direction, to the part that a low-pass leaves."""
+    ways = [float(np.mean(way * direction > 0.5)) for way in (1.0, -1.0)]
+    return min(ways) < _ONE_WAY * max(ways)
 
 
 def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
