@@ -123,6 +123,8 @@ DIFFERENCES = tuple(
 
 #: units that are words as well: "x_in" is an input, "hand_ft" force and torque, "Arms" are A (rms)
 _ONLY_IN_BRACKETS = ("in", "ft", "arms")
+#: quotes at the end of a name, as dSPACE writes paths: `"Model Root"/"Plant"/"x [mm]"`
+_QUOTES = "\"'"
 #: most letters of a text in brackets that may be a unit, without a sign of a product
 _UNIT_LETTERS = 5
 #: least letters of a name that is a unit and nothing else; a shorter one is a symbol such as "s"
@@ -134,7 +136,7 @@ WANTED_BEGINNINGS = tuple("soll target desired demand setpoint referen consigne 
 
 def bare_name(name: str) -> str:
     """The name of a column without the unit at its end ("Pos (deg)", "angle / °")."""
-    bare = _BRACKETS.sub("", bare_column(name)).rstrip(" /").strip()
+    bare = _BRACKETS.sub("", bare_column(name).rstrip(_QUOTES)).rstrip(" /").strip()
     slash = _SLASH.search(bare)
     return bare[: slash.start()] if slash and unit_of_text(slash.group(1)) else bare
 
@@ -145,7 +147,7 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
     quantity: what the column is, if known: an ending that is no unit of this quantity belongs to
         the name
     """
-    name = bare_column(name)
+    name = bare_column(name).rstrip(_QUOTES)
     match = _BRACKETS.search(name)
     of_two = _OF_TWO.search(name)
     if match is None and of_two is not None:
@@ -174,7 +176,7 @@ def unfit_unit(name: str) -> str | None:
     Asked where `unit_in_name` finds no unit of the column's quantity: "Hand [N]" of a torque,
     "Pos [px]". A word such as "(filtered)" or "(cmd)" is none.
     """
-    name = bare_column(name)
+    name = bare_column(name).rstrip(_QUOTES)
     match = _BRACKETS.search(name) or _SLASH.search(name)
     if match is None:
         return None

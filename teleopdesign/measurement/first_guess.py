@@ -131,10 +131,11 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     the force decides, if its sign is certain. In slow motions the force of inertia is too small to
     be distinguished from delays. A motion in one direction, with rests or without, does not
     distinguish friction from a constant force and one of the place, such as a weight that a motor
-    lets down: there only inertia decides. A pendulum that swings below its natural frequency has a force like that of a
-    negative mass; a force proportional to position is added where it explains most of the remaining
-    force. In motions of one frequency it explains no more than the inertia does. So where friction
-    brakes, a negative inertia counts only if its sign is certain beside such a force, too.
+    lets down: there only inertia decides. A pendulum that swings below its natural frequency has a
+    force like that of a negative mass; a force proportional to position is added where it explains
+    most of the remaining force. In motions of one frequency it explains no more than the inertia
+    does. So where friction brakes, a negative inertia counts only if its sign is certain beside
+    such a force, too.
     """
     stretch = _stretch((force, position), position, sample_time)
     if stretch is None or hardly_varies(force[_inner(sample_time)]):

@@ -27,6 +27,12 @@ TORQUES = frozenset(
 )
 
 
+def drives_in_turns(name: str) -> list[str]:
+    """The drives that report turns under this name; ODrives call it "pos_estimate"."""
+    words = set(words_of(name))
+    return sorted(IN_TURNS & words) or ["ODrive"] * ({"pos", "estimate"} <= words)
+
+
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     """The axis: the user's choice, or from the unit of the position, or a guess."""
     if choices.axis is not None:
@@ -62,7 +68,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     else:
         words = words_of(position)
         sliding = SLIDING.intersection(words) and not ANGLES.intersection(words)
-        turning = TURNING.intersection(words)
+        turning = TURNING.intersection(words) or drives_in_turns(position)
         torques = TORQUES.intersection(names)
         counts = unit is None and is_counter(survey.columns[position])
         revolute = turning or torques or counts or unit == "counts" or "A" in units
