@@ -80,11 +80,15 @@ class FirstGuess:
 _NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
 
 
+def band_of_fit(sample_time: float) -> float:
+    """Hz, up to which forces and motion are compared."""
+    return min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
+
+
 def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, Array]:
     """Low-passed velocity, acceleration and direction of motion, (n,) each, of a position (n,)."""
-    band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     s = spectrum(len(position), sample_time)
-    low = s.lowpass(band)
+    low = s.lowpass(band_of_fit(sample_time))
     # relative to the first position: else rounding far from zero would look like motion
     moved = s.transform(position - position[:1]) * low
     velocity, acceleration = s.back(moved * s.derivative(1)), s.back(moved * s.derivative(2))
@@ -138,7 +142,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     such a force, too.
     """
     stretch = _stretch((force, position), position, sample_time)
-    if stretch is None or hardly_varies(force[_inner(sample_time)]):
+    if stretch is None or hardly_varies(force[inner_rows(sample_time)]):
         return False
     (acceleration, direction, velocity, _), (target, place) = stretch
     place = place - place.mean()
@@ -234,7 +238,7 @@ def balance_factor(
     return (0.0, np.inf) if fit is None else (float(fit[0][-1]), float(fit[1][-1]))
 
 
-def _inner(sample_time: float) -> slice:
+def inner_rows(sample_time: float) -> slice:
     """The rows without the ends, which the low-pass spoils."""
     trim = max(1, round(0.25 / sample_time))
     return slice(trim, -trim)
@@ -250,13 +254,12 @@ def _stretch(
     forces: Sequence[Array], position: Array, sample_time: float
 ) -> tuple[Array, Array] | None:
     """Columns of the motion (4, rows) and low-passed forces, without the ends; None: too short."""
-    inner = _inner(sample_time)
+    inner = inner_rows(sample_time)
     if len(position) < 4 * inner.start:
         return None
-    band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     v, a, direction = motion_columns(position, sample_time)
     s = spectrum(len(position), sample_time)
-    low = s.lowpass(band)
+    low = s.lowpass(band_of_fit(sample_time))
     columns = np.stack([a, direction, v, np.ones(len(v))])[:, inner]
     return columns, np.stack([s.multiply(force, low)[inner] for force in forces])
 
