@@ -47,7 +47,7 @@ _WEIGHT_AT_LEVER = re.compile(
 _PER_SECOND = re.compile(r"(.*[^\s/])\s*(?:/|\bper\b)\s*(?:s|secs?|seconds?|с|с\.|秒|초)", re.I)
 #: units of two parts as names of columns write them: "v_mm_s", "meters_per_sec", "tau_N_m"
 _OF_TWO = re.compile(
-    r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m|[a-z]+(?=_per))_(?:per_)?(?:s|sec|second)"
+    r"(?:^|_|\s)(?:(?P<length>rad|deg|rev|mm|um|m|[a-z]+(?=_per))_(?:per_)?(?:s|sec|second)"
     r"|(?P<force>m?N)_(?P<arm>c?m))$"
 )
 #: an object of a field bus: "0x6077:00"; and the words for those of drives (CiA 402)
@@ -101,6 +101,7 @@ WANTED = tuple(
 #: pairs of words that are one term -> the word or quantity that they mean (ROS; field of a motor);
 #: short words of drives, force sensors, simulators (MuJoCo); endings of a position's derivatives
 TERMS = {("set", "point"): "setpoint", ("process", "value"): "position", ("q", "axis"): "qaxis"}
+TERMS |= {("i", "q"): "iq", ("u", "q"): "uq"} | {("q", "current"): "iq", ("current", "q"): "iq"}
 SHORT = dict.fromkeys(("tor", "torq", "trq", "tq"), "torque")
 SHORT |= {"qpos": "q", "qvel": "qd", "qacc": "acceleration", "qfrc": "force", "ctrl": "control"}
 SHORT |= dict.fromkeys(("fx", "fy", "fz"), "f")
@@ -122,6 +123,8 @@ DIFFERENCES = tuple(
 
 #: units that are words as well: "x_in" is an input, "hand_ft" force and torque, "Arms" are A (rms)
 _ONLY_IN_BRACKETS = ("in", "ft", "arms")
+#: quotes at the end of a name, as dSPACE writes paths: `"Model Root"/"Plant"/"x [mm]"`
+_QUOTES = "\"'"
 #: most letters of a text in brackets that may be a unit, without a sign of a product
 _UNIT_LETTERS = 5
 #: least letters of a name that is a unit and nothing else; a shorter one is a symbol such as "s"
@@ -133,7 +136,7 @@ WANTED_BEGINNINGS = tuple("soll target desired demand setpoint referen consigne 
 
 def bare_name(name: str) -> str:
     """The name of a column without the unit at its end ("Pos (deg)", "angle / °")."""
-    bare = _BRACKETS.sub("", bare_column(name)).rstrip(" /").strip()
+    bare = _BRACKETS.sub("", bare_column(name).rstrip(_QUOTES)).rstrip(" /").strip()
     slash = _SLASH.search(bare)
     return bare[: slash.start()] if slash and unit_of_text(slash.group(1)) else bare
 
@@ -144,7 +147,7 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
     quantity: what the column is, if known: an ending that is no unit of this quantity belongs to
         the name
     """
-    name = bare_column(name)
+    name = bare_column(name).rstrip(_QUOTES)
     match = _BRACKETS.search(name)
     of_two = _OF_TWO.search(name)
     if match is None and of_two is not None:
@@ -173,7 +176,7 @@ def unfit_unit(name: str) -> str | None:
     Asked where `unit_in_name` finds no unit of the column's quantity: "Hand [N]" of a torque,
     "Pos [px]". A word such as "(filtered)" or "(cmd)" is none.
     """
-    name = bare_column(name)
+    name = bare_column(name).rstrip(_QUOTES)
     match = _BRACKETS.search(name) or _SLASH.search(name)
     if match is None:
         return None

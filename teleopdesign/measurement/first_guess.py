@@ -80,11 +80,15 @@ class FirstGuess:
 _NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
 
 
+def band_of_fit(sample_time: float) -> float:
+    """Hz, up to which forces and motion are compared."""
+    return min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
+
+
 def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, Array]:
     """Low-passed velocity, acceleration and direction of motion, (n,) each, of a position (n,)."""
-    band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     s = spectrum(len(position), sample_time)
-    low = s.lowpass(band)
+    low = s.lowpass(band_of_fit(sample_time))
     # relative to the first position: else rounding far from zero would look like motion
     moved = s.transform(position - position[:1]) * low
     velocity, acceleration = s.back(moved * s.derivative(1)), s.back(moved * s.derivative(2))
@@ -129,19 +133,22 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
 
     Friction and damping take energy out, and inertia is positive. The larger of these two parts of
     the force decides, if its sign is certain. In slow motions the force of inertia is too small to
-    be distinguished from delays. A motion in one direction does not distinguish friction from a
-    constant force. A pendulum that swings below its natural frequency has a force like that of a
-    negative mass; a force proportional to position is added where it explains most of the remaining
-    force. In motions of one frequency it explains no more than the inertia does. So where friction
-    brakes, a negative inertia counts only if its sign is certain beside such a force, too.
+    be distinguished from delays. A motion in one direction, with rests or without, does not
+    distinguish friction from a constant force and one of the place, such as a weight that a motor
+    lets down: there only inertia decides. A pendulum that swings below its natural frequency has a
+    force like that of a negative mass; a force proportional to position is added where it explains
+    most of the remaining force. In motions of one frequency it explains no more than the inertia
+    does. So where friction brakes, a negative inertia counts only if its sign is certain beside
+    such a force, too.
     """
     stretch = _stretch((force, position), position, sample_time)
-    if stretch is None or hardly_varies(force[_inner(sample_time)]):
+    if stretch is None or hardly_varies(force[inner_rows(sample_time)]):
         return False
     (acceleration, direction, velocity, _), (target, place) = stretch
     place = place - place.mean()
     force = target - target.mean()
     parts: list[tuple[float, float, float]] = []  # size of the force, value, remaining error
+    one_way = _goes_one_way(direction)
     inertia: list[tuple[float, float]] = []
     for braked in (direction, velocity):
         apart = braked - braked.mean()  # without the part that a constant force explains
@@ -152,7 +159,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
         if fit is None:
             return False
         solution, errors, left = fit
-        if np.abs(solution[1]) > _SURELY * errors[1]:
+        if not one_way and np.abs(solution[1]) > _SURELY * errors[1]:
             parts.append((float(np.abs(solution[1]) * np.std(braked)), float(solution[1]), left))
         if np.abs(solution[0]) > _SURELY * errors[0]:
             size = float(np.abs(solution[0]) * np.std(acceleration))
@@ -167,6 +174,12 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
             inertia.pop()
     sizes = [*(p[:2] for p in sorted(parts, key=lambda p: p[2])[:1]), *inertia[:1]]
     return bool(sizes) and max(sizes)[1] < 0.0
+
+
+def _goes_one_way(direction: Array) -> bool:
+    """Whether a body rests or moves in one direction, to the part that a low-pass leaves."""
+    ways = [float(np.mean(way * direction > 0.5)) for way in (1.0, -1.0)]
+    return min(ways) < _ONE_WAY * max(ways)
 
 
 def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
@@ -225,7 +238,7 @@ def balance_factor(
     return (0.0, np.inf) if fit is None else (float(fit[0][-1]), float(fit[1][-1]))
 
 
-def _inner(sample_time: float) -> slice:
+def inner_rows(sample_time: float) -> slice:
     """The rows without the ends, which the low-pass spoils."""
     trim = max(1, round(0.25 / sample_time))
     return slice(trim, -trim)
@@ -241,13 +254,12 @@ def _stretch(
     forces: Sequence[Array], position: Array, sample_time: float
 ) -> tuple[Array, Array] | None:
     """Columns of the motion (4, rows) and low-passed forces, without the ends; None: too short."""
-    inner = _inner(sample_time)
+    inner = inner_rows(sample_time)
     if len(position) < 4 * inner.start:
         return None
-    band = min(max(_BAND[0] / sample_time, _BAND[1]), _BAND[2])
     v, a, direction = motion_columns(position, sample_time)
     s = spectrum(len(position), sample_time)
-    low = s.lowpass(band)
+    low = s.lowpass(band_of_fit(sample_time))
     columns = np.stack([a, direction, v, np.ones(len(v))])[:, inner]
     return columns, np.stack([s.multiply(force, low)[inner] for force in forces])
 

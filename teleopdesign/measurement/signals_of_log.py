@@ -29,6 +29,9 @@ Array = NDArray[np.float64]
 STATES = 16
 #: mean of exp(2 pi i x / step) from which readings x lie on steps: 1 on them, 0 anywhere
 ON_STEPS = 0.9
+#: part of the steps between stamps that are usual, and times the longest of these that a pause
+#: lasts: stamps of a bus come in bursts, and some are lost
+USUAL, PAUSE = 0.9, 10.0
 
 
 def signals_of_log(
@@ -229,7 +232,7 @@ def _resample_by_stamps(
         ]
     )
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
-    rate = (len(at) - 1) / max(float(at[-1] - at[0]), 1e-300)
+    rate = _rate_without_pauses(at)
     text = f"{key.removeprefix('device.')} has stamps of its own, {rate:.4g} Hz"
     done = ReadingStep(
         file,
@@ -241,6 +244,15 @@ def _resample_by_stamps(
         channel=key,
     )
     return _restore_steps(out, values, channel, step), [*spikes, done]
+
+
+def _rate_without_pauses(stamps: Array) -> float:
+    """Stamps a second (Hz) but for the pauses of a log, which are no slow readings."""
+    steps = np.diff(stamps)
+    if len(steps) == 0:
+        return 0.0
+    steps = steps[steps <= PAUSE * np.quantile(steps, USUAL)]
+    return len(steps) / max(float(np.sum(steps)), 1e-300)
 
 
 def _describe_lost_rows(

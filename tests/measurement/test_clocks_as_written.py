@@ -166,3 +166,15 @@ def test_of_two_clocks_that_of_the_position_is_the_time():
     survey = look(plain)
     assert survey.channels["time"]["column"] == "sensor_time [ms]"
     assert "channels.time.column" not in survey.guesses
+
+
+def test_the_tick_of_a_microcontroller_is_the_time_beside_a_counter_of_steps():
+    """A counter that rose in every other row was "the first column that always rises"."""
+    tick = np.round(1e3 * T) + 4_665_633.0
+    columns = {"x_value": 0.2 * (np.arange(len(T)) // 2), "tick": tick, "q": Q, "tau": U}
+    survey = survey_log(log_of(columns), "log", Choices())
+    assert survey.channels["time"] == {"column": "tick", "unit": "ms"}
+    # beside other words, ticks are those of an encoder
+    wheel = {"t": T, "left_tick": np.round(5000 * Q), "current": U}
+    survey = survey_log(log_of(wheel), "log", Choices())
+    assert survey.channels["position"]["column"] == "left_tick"

@@ -233,3 +233,32 @@ def test_a_slow_motor_with_much_friction_gets_a_start_of_its_inertia():
         made = td.experiment(table, axis="revolute", **names)
         starts.append(made.bodies["device"].inertia.value)
     assert min(starts) > 0.0 and max(starts) < 1.0
+
+
+def stroke(way):
+    """Position of a body that rests, moves one way, rests and moves the same way again; 6 s."""
+    t = H * np.arange(1200)
+    parts = [np.clip((t - begin) / length, 0.0, 1.0) for begin, length in ((1.5, 1.2), (4.0, 1.0))]
+    first, second = (x**3 * (10.0 - 15.0 * x + 6.0 * x**2) for x in parts)
+    return way * (0.3 - 0.5 * first - 0.3 * second)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("rigid", [0.0, 0.002])
+def test_a_motor_that_lets_down_a_weight_is_not_turned(way, rigid):
+    """Its force falls with the speed, as friction with the wrong sign does: one way tells none."""
+    q = stroke(way)
+    noise = 0.01 * np.random.default_rng(2).standard_normal(len(q))
+    force = 0.9 * way - 1.2 * rate_of(q) + rigid * rate_of(q, 2) + noise
+    assert not is_turned(force, q, H)
+    assert not is_turned(force[::-1], q[::-1], H)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("inertia", [0.1, 0.5])
+def test_the_inertia_of_a_motion_one_way_tells_the_sign(way, inertia):
+    q = stroke(way)
+    v = np.round(rate_of(q), 6)
+    force = inertia * rate_of(q, 2) + 0.3 * np.sign(v)
+    force += 0.01 * np.random.default_rng(2).standard_normal(len(q))
+    assert is_turned(-force, q, H) and not is_turned(force, q, H)

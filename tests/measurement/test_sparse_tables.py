@@ -3,6 +3,10 @@
 import numpy as np
 import pytest
 
+from teleopdesign import load_experiment
+from teleopdesign.cli import main
+from teleopdesign.measurement.bandwidth import default_bandwidth
+from teleopdesign.measurement.signals_of_log import _rate_without_pauses
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -101,3 +105,29 @@ def test_readings_that_were_lost_from_two_signals_do_not_make_two_clocks(tmp_pat
     path = tmp_path / "log.csv"
     path.write_text("\n".join(["time,position,torque", *cells]) + "\n")
     assert not open_log(path, "log.csv").clocks
+
+
+@pytest.mark.parametrize("pause", [0.0, 40.0])
+def test_a_pause_of_the_log_is_no_slow_signal(tmp_path, pause):
+    """Stamps a second over all of the log lowered the bandwidth of a diagnosis to a tenth of it."""
+    later = T + pause * (T > 6.0)
+    rows = [(t, f"{q:.8f},") for t, q in zip(later, Q, strict=True)]
+    rows += [(t + 0.002, f",{u:.8f}") for t, u in zip(later[::2], U[::2], strict=True)]
+    log = tmp_path / "log.csv"
+    lines = [f"{t:.6f},{cells}" for t, cells in sorted(rows)]
+    log.write_text("\n".join(["time_s,position_rad,torque_Nm", *lines]) + "\n")
+    assert main(["new", str(log), "--yes", "--output", str(tmp_path / "out")]) == 0
+    experiment = load_experiment(tmp_path / "out")
+    for record in experiment.records:
+        assert record.rate_of("device.actuator_force") == pytest.approx(50.0, rel=0.01)
+    assert default_bandwidth(experiment) > 3.0
+
+
+@pytest.mark.parametrize("lost", [0.0, 0.05])
+def test_bursts_and_lost_stamps_are_no_pauses(lost):
+    """Two stamps 1 ms apart every 20 ms, as of a bus, and some that are lost: 100 a second."""
+    stamps = np.sort(np.r_[0.02 * np.arange(500), 0.02 * np.arange(500) + 0.001])
+    kept = stamps[np.random.default_rng(3).random(1000) >= lost]
+    rate = _rate_without_pauses(np.r_[kept, kept + 60.0])
+    assert rate == pytest.approx(len(kept) / 10.0, rel=0.02)
+    assert _rate_without_pauses(np.zeros(1)) == 0.0

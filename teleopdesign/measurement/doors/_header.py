@@ -122,3 +122,11 @@ def _carried_on(titles: Sequence[str]) -> list[str]:
     for title in titles:
         out.append(title or (out[-1] if out else ""))
     return out
+
+
+def numbers_channels(header: Sequence[str]) -> bool:
+    """Whether names only count the channels of a plotter from 0, as VOFA+ does: "I0", "I1", ...
+
+    Phases of a motor are counted from 1, or stand beside a time.
+    """
+    return len(header) > 1 and all(cell == f"I{k}" for k, cell in enumerate(header))

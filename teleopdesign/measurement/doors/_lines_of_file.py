@@ -16,6 +16,7 @@ from pathlib import Path
 
 from ._cells import seconds_of
 from ._dialect import LOOKED_AT, Dialect, cells_of, open_bytes, separator_of
+from ._units_in_cells import units_in_cells
 from ._vectors_in_cells import vectors_in_cells
 
 #: what a serial monitor writes before each line: a time, and "->" behind it or brackets around it
@@ -45,6 +46,8 @@ def edit_of(
         separator, comma = separator_of([line for line in sent if line.strip()])
         edit = partial(with_stamps_as_cells, separator=separator, comma=comma)
         return edit, ["times of a serial monitor before each line"]
+    if (units := units_in_cells(lines)) is not None:
+        return units, ["units behind the numbers"]
     if (vectors := vectors_in_cells(lines)) is not None:
         return vectors, ["vectors in cells: a column for each element"]
     return iter, []

@@ -17,9 +17,12 @@ from ._log import Array, Log, refuse_size
 #: a name, "=" or ":", a number, a unit, and what stands between pairs. Possessive, and matched from
 #: where the last pair ended: a long line is decided at once
 _PAIR = re.compile(
-    r"[\s,;|]*+([^\W\d][\w./]*+)\s*+[=:]\s*+"
+    r"[\s,;|]*+([^\W\d][\w./]*+(?:\[\d++\])?)\s*+[=:]\s*+"
     r"([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|nan)([^\W\d]*+)(?:[\s,;|]++|$)"
 )
+#: a name in quotes, as Python prints those of a dict; and a name with a vector behind it
+_QUOTED = re.compile(r"(['\"])([^\W\d][\w./ ]*+)\1(?=\s*+:)")
+_VECTOR = re.compile(r"([^\W\d][\w./]*+)\s*+[=:]\s*+(?:array\()?[\[(]([^\[\]()=:]*+)[\])]\)?")
 #: part of the lines that must be pairs with the same names; other lines are messages and left out
 MOST_OF_THEM = 0.8
 
@@ -27,10 +30,25 @@ MOST_OF_THEM = 0.8
 def pairs_of(line: str) -> list[tuple[str, str, str]]:
     """(name, number, unit) of each pair in a line; empty if the line is anything but pairs."""
     pairs, end = [], 0
+    if any(sign in line for sign in "[({"):
+        line = _with_elements(line)
     while end < len(line) and (match := _PAIR.match(line, end)) is not None:
         pairs.append((match[1], match[2], match[3]))
         end = match.end()
     return pairs if len(pairs) > 1 and end == len(line) else []
+
+
+def _with_elements(line: str) -> str:
+    """A line of pairs with a pair for each element of its vectors, without braces and quotes."""
+    line = _QUOTED.sub(lambda m: m[2].replace(" ", "_"), line.strip())
+    if line.startswith("{") and line.endswith("}"):
+        line = line[1:-1]
+    return _VECTOR.sub(lambda m: " ".join(_element_pairs(m[1], m[2])), line)
+
+
+def _element_pairs(name: str, vector: str) -> list[str]:
+    numbers = [number for number in re.split(r"[\s,;]+", vector) if number]
+    return [f"{name}[{k}]={number}" for k, number in enumerate(numbers)]
 
 
 def names_in_lines(lines: Sequence[str]) -> dict[str, str]:

@@ -43,6 +43,7 @@ from ._signals_in_rows import open_signals_in_rows
 from ._signals_in_turn import has_signals_in_turn, log_of_signals_in_turn
 from ._sparse import groups_of, with_separate_clocks
 from ._two_part_time import with_whole_time
+from ._units_in_cells import UnitCells
 
 #: rows that are read in one block: 20 MB of text
 _ROWS = 200_000
@@ -90,6 +91,7 @@ def open_text(path: Path, file: str) -> Log:
     elif dialect.header[-1].endswith(f"(:,{len(dialect.header) - 1})"):
         notes.append(f"one name for an array: {quote(dialect.header[1])} and so on")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
+    units |= edit.units if isinstance(edit, UnitCells) else {}
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
     # the last lines too: a signal may begin late; those of a short file are its first ones again
     top, first = {*lines[: dialect.first]}, lines[dialect.first :]

@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Mapping
 
 from ..column_names import bare_name, words_of
+from .joint_names import of_another_joint, same_at_another_joint
 
 #: score for a force in the same struct or joint as the position: more than the difference between
 #: similar names ("current" 0.98, "effort" 0.9), and less than that of a name of a commanded value
@@ -68,17 +69,24 @@ def has_sibling(name: str, other: str, names: Collection[str]) -> bool:
 
     For "J1_pos", "J2_vel" has the counterpart "J1_vel".
     """
+    if of_another_joint(name, other, names):
+        return True
     return of_another_axis(name, other) and any(
         n != name and same_but_axis(n, other) and stand_together(n, name) for n in names
     )
 
 
-def axis_that_moves(name: str, others: Collection[str], travels: Mapping[str, float]) -> str:
+def axis_that_moves(
+    name: str, others: Collection[str], travels: Mapping[str, float], names: Collection[str] = ()
+) -> str:
     """The column, or that of the others which is the same at another axis, if it rests beside it.
 
-    travels: column -> range of its values
+    travels: column -> range of its values;  names: all columns of the log
     """
-    alike = [name, *(n for n in others if same_but_axis(n, name))]
+    at_others = (
+        n for n in others if same_but_axis(n, name) or same_at_another_joint(n, name, names)
+    )
+    alike = [name, *at_others]
     most = max(alike, key=lambda n: travels[n])
     return most if travels[most] > MOVES * travels[name] else name
 
@@ -87,7 +95,8 @@ def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
     """Whether two columns belong to two axes: "J1_current", "J2_angle"; "slave_pos", "master_cmd".
 
     names: all columns of the log. The last letter of a name tells a side only where the log holds
-        the other side of both columns, too: "q_m", "q_s", "tau_m", "tau_s"
+        the other side of both columns, too: "q_m", "q_s", "tau_m", "tau_s"; the same is true of a
+        word that calls a joint
     """
     numbers = {_axis_numbers(name) for name in (one, other)}
     if len(numbers) == 2 and () not in numbers:
@@ -97,6 +106,8 @@ def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
         sides = [{side for side in pair if side in of_name} for of_name in words]
         if all(len(side) == 1 for side in sides):
             return sides[0] != sides[1]
+    if names and of_another_joint(one, other, names):
+        return True
     bare = {bare_name(name).lower() for name in names}
     for pair in _LETTERS:
         letters = [_side_letter(name, pair, bare) for name in (one, other)]

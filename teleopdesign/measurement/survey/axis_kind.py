@@ -10,17 +10,27 @@ from .encoder_counts import is_counter
 
 #: names of drives that report positions in turns; and words for rotating parts
 IN_TURNS = frozenset(("odrive", "moteus"))
-TURNING = IN_TURNS | set(
-    "q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split()
+#: joints of limbs turn, also where they lift: "shoulder_lift_joint"
+LIMBS = frozenset("shoulder elbow wrist hip knee ankle".split())
+TURNING = (
+    IN_TURNS
+    | LIMBS
+    | set("q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split())
 )
 #: words for parts that slide, in names without an angle: "torso_lift_joint" is a joint that slides
 SLIDING = frozenset("lift elevator slide slider prismatic linear rail carriage".split())
-ANGLES = frozenset("angle winkel theta phi".split())
+ANGLES = LIMBS | frozenset("angle winkel theta phi".split())
 #: words of a force that turns; "iq" is the current that makes the torque of a brushless motor
 TORQUES = frozenset(
     "torque torques drehmoment moment couple coppia tau effort iq "
     "トルク 力矩 扭矩 토크 момент".split()
 )
+
+
+def drives_in_turns(name: str) -> list[str]:
+    """The drives that report turns under this name; ODrives call it "pos_estimate"."""
+    words = set(words_of(name))
+    return sorted(IN_TURNS & words) or ["ODrive"] * ({"pos", "estimate"} <= words)
 
 
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
@@ -58,7 +68,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     else:
         words = words_of(position)
         sliding = SLIDING.intersection(words) and not ANGLES.intersection(words)
-        turning = TURNING.intersection(words)
+        turning = TURNING.intersection(words) or drives_in_turns(position)
         torques = TORQUES.intersection(names)
         counts = unit is None and is_counter(survey.columns[position])
         revolute = turning or torques or counts or unit == "counts" or "A" in units

@@ -36,6 +36,8 @@ FEWEST_CHANGES = 3
 #: names of a column that holds the time from one row to the next, and the part of their median by
 #: which such times may differ: more uneven ones are no clock
 STEPS, UNEVEN = frozenset(("dt", "timestep", "deltat", "δt")), 0.5
+#: names of the clock of a microcontroller; beside other words, ticks are those of an encoder
+CLOCKS = frozenset(("tick", "systick", "clock", "uptime"))
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
@@ -109,7 +111,7 @@ def time_column(
     elif log.clocks:
         name = busiest_clock(log, raw, choices)
     else:
-        scores = {n: max(likeness(n, "time"), SURE_NAME * _is_unit_of_time(n)) for n in rising}
+        scores = {n: max(likeness(n, "time"), SURE_NAME * _is_called_clock(n)) for n in rising}
         if not any(scores.values()):
             rising = {n: x for n, x in rising.items() if not _names_signal(n, log, choices)}
             scores = dict.fromkeys(rising, 0.0)
@@ -215,6 +217,11 @@ def _is_unit_of_time(name: str) -> bool:
     """Whether a name consists only of a unit of time: "ms", "Sekunden"."""
     unit = unit_of_text(bare_name(name))
     return unit is not None and unit != "counts" and measures(unit, "time")
+
+
+def _is_called_clock(name: str) -> bool:
+    """Whether a name consists only of a unit of time, or is that of a clock."""
+    return _is_unit_of_time(name) or CLOCKS.issuperset(words_of(name) or [""])
 
 
 def duration_of(

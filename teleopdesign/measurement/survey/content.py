@@ -53,6 +53,7 @@ class Survey:
     unused: column that is in no channel -> reason;  unread: column without numbers -> reason
     remarks: lines of text above the table
     trials: where the second and later trials begin, s from the first row
+    motions: column without a name that is the position of another body -> its velocity
     """
 
     axis: str
@@ -68,6 +69,7 @@ class Survey:
     remarks: tuple[str, ...] = ()
     unread: dict[str, str] = field(default_factory=dict)
     trials: tuple[float, ...] = ()
+    motions: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from ...quantity import is_unit
 from ..column_names import likeness, words_of
@@ -19,13 +19,12 @@ from .content import (
 )
 from .copies import is_copy, repeats_mostly
 from .derivative import (
-    EXACT,
-    derivative_factor,
     has_signs_of_steps,
     is_acceleration,
     is_velocity,
     may_be_ramp,
 )
+from .other_motions import agreements, other_motions, planned_paths
 from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
 
 
@@ -38,8 +37,10 @@ def possible_forces(
         c.values for c in moving.values() if may_be_set_point(c) and has_numbers_of(c.values, x)
     ]
     h = sample_time_of(survey)
-    everything = {n: c for n, c in survey.columns.items() if moves(c)}
-    paths = _planned_paths(everything, h)
+    nameless = {n: c.values for n, c in survey.columns.items() if moves(c) and _is_nameless(c)}
+    rates = agreements(nameless, h)
+    survey.motions = other_motions(rates, nameless, x, h)
+    paths = planned_paths(rates) | {*survey.motions, *survey.motions.values()}
     places = [survey.columns[name].values for name in places_of_steps(survey)]
     rate = None if velocity is None else survey.columns[velocity].values
     rules: tuple[Callable[[SurveyedColumn], bool], ...] = (
@@ -77,25 +78,6 @@ def is_set_point(column: SurveyedColumn, x: Array) -> bool:
 def _names_force(column: SurveyedColumn) -> bool:
     """Whether a name contains a word of a force, of the actuator or of the hand."""
     return max(likeness(column.name, f"{whose}_force") for whose in ("actuator", "interaction")) > 0
-
-
-def _planned_paths(moving: Mapping[str, SurveyedColumn], h: float) -> set[str]:
-    """The columns without name that hold position, velocity and acceleration of planned paths.
-
-    Each is exactly the derivative of the one before. Two such columns alone tell less: the friction
-    of a body that goes to and fro at one speed is the derivative of its position, too.
-    """
-    nameless = {name: column.values for name, column in moving.items() if _is_nameless(column)}
-    rates = {
-        one: [
-            other
-            for other, x in nameless.items()
-            if other != one and derivative_factor(values, x, h)[1] > EXACT
-        ]
-        for one, values in nameless.items()
-    }
-    chains = ((a, b, c) for a, after in rates.items() for b in after for c in rates[b])
-    return {name for chain in chains if len(set(chain)) == 3 for name in chain}
 
 
 def _is_nameless(column: SurveyedColumn) -> bool:

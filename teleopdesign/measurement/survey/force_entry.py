@@ -25,6 +25,22 @@ PER_CENT = re.compile(r"[%‰]|per ?mill?e|\b0x60(?:71|74|77|78)\b", re.I)
 #: bits of analog inputs; and part of the middle by which their mean may lie beside it: offsets of
 #: amplifiers and a mean force. A count of something else lies there by chance once in ten
 INPUT_BITS, NEAR_MIDDLE = (8, 10, 12, 14, 16), 0.1
+#: range of whole numbers from which a drive that reads amperes or volts would state parts of them
+FEWEST_STEPS = 20
+
+
+def _steps_of_driver(survey: Survey, name: str, unit: str) -> str:
+    """What whole numbers without a unit say of a current or a voltage: a driver's steps of it.
+
+    unit: the small unit in which drives write whole numbers
+    """
+    values = survey.columns[name].readings[np.isfinite(survey.columns[name].readings)]
+    if np.any(values != np.round(values)) or np.ptp(values) < FEWEST_STEPS:
+        return ""
+    return (
+        f"; but it holds whole numbers from {values.min():g} to {values.max():g}, as {unit} or the "
+        "steps of a driver are: then state this unit, or the constant of one step"
+    )
 
 
 def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
@@ -47,10 +63,12 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
             unit = choices.torque_constant[1].rpartition("/")[2]
     if unit is None and names_current(name):
         unit = "A"
-        survey.guesses[f"channels.{key}.unit"] = f"A: the name {name!r} is that of a current"
+        why = f"A: the name {name!r} is that of a current"
+        survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mA")
     if unit is None and names_voltage(name):
         unit = "V"
-        survey.guesses[f"channels.{key}.unit"] = f"V: the name {name!r} is that of a voltage"
+        why = f"V: the name {name!r} is that of a voltage"
+        survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mV")
     if unit in ("A", "mA", "V"):
         entry["unit"] = unit
         base = "V" if unit == "V" else "A"

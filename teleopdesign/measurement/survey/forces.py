@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from ...errors import ExperimentError
 from ...quantity import si_factor
 from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
@@ -24,16 +23,18 @@ from .content import (
     columns_in_use,
     explain_ambiguity,
     is_unit_of,
-    moves,
-    names_at_rest,
-    reasons,
-    rises,
     sample_time_of,
 )
 from .copies import pulls_back
-from .derivative import is_velocity, unwrap_column, wrap_of
-from .force_candidates import is_set_point, is_speed, possible_forces
+from .derivative import unwrap_column, wrap_of
+from .force_candidates import possible_forces
 from .force_entry import describe_force, force_to_si
+from .no_force import (
+    error_of_chance,
+    error_without_force,
+    taken_for_something_else,
+    tells_forces,
+)
 from .scatter import state_scatter
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
@@ -72,7 +73,7 @@ def describe_forces(
         + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
         for n, c in free.items()
     }
-    beside = _other_force(survey, velocity)
+    beside = taken_for_something_else(survey, velocity)
     force, measured = _find_driving_force(survey, free, physics, scores, choices, (file, beside))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     _warn_of_size(survey, force, x, h)
@@ -114,12 +115,7 @@ def _find_driving_force(
     if choices.actuator_force is not None:
         return choices.actuator_force, False
     if not scores:
-        raise ExperimentError(
-            f"{file}: found no column that could be a force beside "
-            f"{survey.channels['position']['column']!r}, "
-            f"found {join_names(survey.columns)}{beside}{_constant_columns(survey)}"
-            f"{reasons(survey.unread)}"
-        )
+        raise error_without_force(survey, file, beside)
     force = max(scores, key=lambda n: scores[n])
     why = None
     if (acted := current_that_acted(force, free, scores)) is not None:
@@ -131,60 +127,14 @@ def _find_driving_force(
     elif likeness(force, "actuator_force") < SURE_NAME:
         share = physics[force].explained
         named = likeness(force, "actuator_force") > 0 or is_unit_of(free[force].unit, "force")
-        if share < CHANCE and not named:
-            raise ExperimentError(
-                f"{file}: found no force: no column has the name or unit of a force, and the "
-                f"motion explains {max(share, 0.0):.0%} of {force!r}; --force COLUMN selects "
-                f"one of {join_names(free)}{beside}"
-            )
+        if not named and (share < CHANCE or not tells_forces(survey)):
+            raise error_of_chance(survey, file, (force, share), f"{join_names(free)}{beside}")
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _other_force(survey: Survey, velocity: str | None) -> str:
-    """Which columns, taken for velocities or set points, may be the force, for a message."""
-    used = columns_in_use(survey)
-    others = [c for n, c in survey.columns.items() if n not in used and moves(c)]
-    names = [c.name for c in others if is_speed(c, survey, velocity)]
-    if velocity is not None and not is_velocity(survey.columns[velocity]):
-        names = [velocity, *(n for n in names if n != velocity)]
-    position = survey.channels["position"]["column"]
-    x = survey.columns[position].values
-    x = unwrap_column(x, wrap_of(x))
-    wanted = [c.name for c in others if is_set_point(c, x)]
-    return _explain_overruling(names, "a velocity") + _explain_overruling(
-        wanted, f"a set point of {position!r}"
-    )
-
-
-def _explain_overruling(names: Sequence[str], kind: str) -> str:
-    """How to choose columns as a force that were taken for something else; "": there are none."""
-    if not names:
-        return ""
-    what = "are" if len(names) > 1 else "is"
-    return f"; {join_names(names)} {what} taken for {kind}, --force {names[0]!r} overrules this"
-
-
-def _constant_columns(survey: Survey) -> str:
-    """How to choose a command that is constant in a log, or a ramp, for a message; "": none is.
-
-    Each of several logs may hold another constant command.
-    """
-    names = names_at_rest(survey)
-    rising = [n for n, c in survey.columns.items() if rises(c.readings)]
-    rising = [n for n in rising if n not in columns_in_use(survey)]
-    text = ""
-    if names:
-        which = f"{join_names(names)} {'does' if len(names) == 1 else 'do'} not change here"
-        text += f"; {which}: --force {names[0]!r} chooses such a command"
-    if rising:
-        which = f"{join_names(rising)} only {'rises' if len(rising) == 1 else 'rise'}"
-        text += f"; {which}: --force {rising[-1]!r} chooses a ramp"
-    return text
 
 
 def _warn_of_size(survey: Survey, force: str, x: Array, h: float) -> None:

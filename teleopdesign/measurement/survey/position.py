@@ -15,11 +15,10 @@ from ..column_names import (
     is_wanted,
     likeness,
     why_no_unit,
-    words_of,
 )
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves, has_sibling
-from .axis_kind import IN_TURNS
+from .axis_kind import drives_in_turns
 from .content import (
     OF_SENSORS,
     SURE_NAME,
@@ -107,7 +106,7 @@ def find_position(
         if likeness(best, "position") == 0:
             best = most_explained([best, *as_likely(scores, best)], flat, h)
         travels = {n: float(np.ptp(x)) for n, x in flat.items()}
-        best = axis_that_moves(best, as_likely(scores, best), travels)
+        best = axis_that_moves(best, as_likely(scores, best), travels, survey.columns)
         shown = best in derivative or best in followed
         if not shown and has_only_speeds(moving[best], moving):
             raise error_without_position(survey, moving, file, best)
@@ -293,8 +292,8 @@ def _position_unit(
             if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < 0.05:
                 why = f"with it, the derivative agrees with {velocity!r} in {velocity_unit}"
                 return unit, f"{unit}: {why}"
-    if axis == "revolute" and (drives := IN_TURNS.intersection(words_of(column.name))):
-        return "turns", f"turns: {' and '.join(sorted(drives))} drives report turns"
+    if axis == "revolute" and (drives := drives_in_turns(column.name)):
+        return "turns", f"turns: {' and '.join(drives)} drives report turns"
     if axis == "revolute" and (turn := turn_of(column.values)) is not None:
         return turn, f"{turn}: the readings wrap at a turn in {turn}"
     if axis == "revolute":

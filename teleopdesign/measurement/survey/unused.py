@@ -120,14 +120,24 @@ def _explain_no_channel(column: SurveyedColumn, survey: Survey) -> str:
         place = place_of_steps(column, survey)
         by = "its name" if place is None else f"its signs, those of the steps of {place!r}"
         return f"a velocity by {by}, and no force"
-    if (speed := places_of_steps(survey).get(name)) and name not in survey.explained:
-        return f"another position: {speed!r} has the signs of its steps"
+    if (of_another := _explain_other_body(name, survey)) and name not in survey.explained:
+        return of_another
     if name not in survey.explained and is_copy(column.values, unwrap_column(x, jump)):
         return f"{position!r} times a constant plus a constant: another unit, or a control error"
     again = _set_point_again(column, survey, unwrap_column(x, jump))
     if again is not None and name not in survey.explained:
         return f"the set point {again!r} in another unit, or with the other sign"
     return _explain_no_force(name, survey)
+
+
+def _explain_other_body(name: str, survey: Survey) -> str | None:
+    """Which position or velocity of another body a column without a name is; None: it is none."""
+    if speed := places_of_steps(survey).get(name):
+        return f"another position: {speed!r} has the signs of its steps"
+    if name in survey.motions:
+        return f"the position of another body: {survey.motions[name]!r} is its derivative"
+    place = next((place for place, speed in survey.motions.items() if speed == name), None)
+    return None if place is None else f"the velocity of another body: the derivative of {place!r}"
 
 
 def _set_point_again(column: SurveyedColumn, survey: Survey, x: Array) -> str | None:
