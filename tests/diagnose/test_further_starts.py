@@ -101,6 +101,7 @@ def test_a_level_that_is_known_or_large_stays(tmp_path):
         assert with_what_they_need(model, [model], prepared) == []
 
 
+@pytest.mark.slow
 def test_a_structure_that_yields_has_a_spring_and_an_element_that_slips(tmp_path):
     """A bristle alone left 24 %: the spring beside it was lost, and alone it was refused."""
     diagnosis = find_missing(yielding(tmp_path, 16.0))

@@ -21,6 +21,7 @@ def path(seed):
     return lambda t: (size * np.sin(np.multiply.outer(t, rate) + 6 * phase)).sum(-1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", TAKES)
 def test_a_power_law_has_all_the_force_of_coulomb_friction_and_damping(tmp_path, law):
     """They end at zero beside it. The search refused it: "drives to a bound what is needed"."""
