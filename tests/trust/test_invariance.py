@@ -147,7 +147,7 @@ def test_a_fit_is_the_same_but_for_rounding(change, before, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_fit_is_the_same_on_any_number_of_cores(count, before, tmp_path, monkeypatch):
-    monkeypatch.setattr(cores, "_can_copy", lambda: count > 1)
+    monkeypatch.setattr(cores, "can_copy", lambda: count > 1)
     monkeypatch.setattr(cores, "count_workers", lambda: count)
     assert parameters(as_recorded(), tmp_path / "rod") == before
 
