@@ -20,10 +20,9 @@ from .side_by_side import Unit, evaluate_unit
 _START_TIME, _COPY_TIME = 2.5, 0.1
 #: part of this time, in which this process alone computes: an estimate for the whole study
 _TRIAL = 0.4
-#: points that are computed to compile their code: as many as the lanes of a compiled loop; then, to
-#: measure their time: so many that what each block needs beside its points, 10 ms, counts little;
-#: where both are a sixth of a unit at most
-_FIRST, _MEASURED, _MANY = 16, 64, 512
+#: points that are computed to measure their time: so many that what each block needs beside its
+#: points, 10 ms, counts little; from units of `_MANY` points, of which they are an eighth at most
+_MEASURED, _MANY = 64, 512
 
 
 def run_here(
@@ -102,8 +101,10 @@ def _start_time() -> float:
 
 def _compile_and_measure(task: StudyTask, unit: Unit) -> float:
     """Compile the code of points side by side; returns the time of a point, s. Nothing is kept."""
+    from ..realise.side_by_side import LANES
+
     with one_thread():
-        evaluate_unit(task, unit[:_FIRST])
+        evaluate_unit(task, unit[:LANES])
         start = time.monotonic()
         evaluate_unit(task, unit[:_MEASURED])
     return (time.monotonic() - start) / _MEASURED

@@ -10,15 +10,15 @@ Viewers of bags, data bases and decoders of a bus write such tables.
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ._cells import number_of, seconds_of
-from ._dialect import cells_of, open_bytes
+from ._dialect import cells_of
 from ._header import UNIT_LABELS, bare_unit
+from ._lines_of_file import open_lines
 from ._log import Log, refuse_size
 from ._signals_in_turn import log_of_signals
 
@@ -56,7 +56,7 @@ def open_reading_in_each_row(
         return None
     signals: dict[str, list[tuple[float, float]]] = {}
     units: dict[str, str] = {}
-    with open_bytes(path) as raw, io.TextIOWrapper(raw, encoding, errors="replace") as stream:
+    with open_lines(path, encoding, errors="replace") as stream:
         for k, (time, signal, reading, unit) in enumerate(_rows(stream, places)):
             signals.setdefault(signal, []).append((time, reading))
             units.setdefault(signal, unit)

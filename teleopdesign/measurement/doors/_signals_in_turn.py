@@ -13,7 +13,6 @@ Such rows are read as pairs of columns: the time of a signal, and the signal.
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -24,7 +23,7 @@ import numpy as np
 from ...errors import ExperimentError, quote
 from ._cells import is_number, number_of
 from ._clock_before_signal import with_clocks_before
-from ._dialect import open_bytes
+from ._lines_of_file import open_lines
 from ._log import Array, Log, number_names, refuse_size
 
 #: a line that names a signal, and one after which its rows begin
@@ -43,7 +42,7 @@ def has_signals_in_turn(lines: Sequence[str]) -> bool:
 
 def log_of_signals_in_turn(path: Path, file: str, encoding: str) -> Log:
     """The log of such a trace; raises ExperimentError: a row of text, or no row."""
-    with open_bytes(path) as raw, io.TextIOWrapper(raw, encoding, errors="replace") as stream:
+    with open_lines(path, encoding, errors="replace") as stream:
         signals = [*_signals(stream, file)]
     return log_of_signals(signals, file, "a trace with a signal after the other")
 
@@ -79,7 +78,7 @@ def log_of_signals(
     return with_clocks_before(Log((*columns,), read, stated, (note,)), file, clock_of)
 
 
-def _signals(stream: Iterator[str], file: str) -> Iterator[tuple[str, list[tuple[float, float]]]]:
+def _signals(stream: Iterable[str], file: str) -> Iterator[tuple[str, list[tuple[float, float]]]]:
     """The name of each signal with its times and readings."""
     name, rows, here = "", list[tuple[float, float]](), False
     for number, line in enumerate(stream, 1):
