@@ -29,7 +29,7 @@ _AHEAD = 3
 def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str) -> None:
     """Evaluate points in the workers of the scheduler at an address, such as "tcp://10.0.0.1:8786".
 
-    raises ExperimentError: no scheduler there, no worker, dask is not installed
+    raises ExperimentError: no scheduler there, or no longer, no worker, dask is not installed
     raises ModelError: workers have another version of a package
     """
     try:
@@ -52,7 +52,13 @@ def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str)
         every = as_completed([], loop=client.loop)
 
         def fill() -> None:
-            threads = max(sum(client.nthreads().values()), 1)
+            try:
+                threads = max(sum(client.nthreads().values()), 1)
+            except OSError:
+                raise ExperimentError(
+                    f"study: the scheduler at {address} answers no more; with out=, the same call "
+                    "goes on where this one stopped"
+                ) from None
             while waiting and len(known) < _AHEAD * threads:
                 batch = _take_batch(waiting, deaths, seconds_each, threads)
                 future = client.submit(_evaluate_units, payload, batch, pure=False)
@@ -62,23 +68,17 @@ def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str)
         fill()
         for future in every:
             batch = known.pop(future.key)
-            if future.status == "finished":
+            try:  # waits also for a result that a killed worker held, until it is computed again
                 outcomes, seconds = future.result()
-                seconds_each = seconds / len(batch)
-                for outcome in outcomes:
-                    sink(outcome)
+            except Exception as error:
+                failed = _put_back(batch, waiting, deaths)
+                outcomes = [
+                    PointOutcome(i, reason=f"{type(error).__name__} on the cluster") for i in failed
+                ]
             else:
-                for unit in batch:
-                    deaths[unit] = deaths.get(unit, 0) + 1
-                if len(batch) == 1 and len(batch[0]) == 1:
-                    ended = type(future.exception()).__name__
-                    sink(PointOutcome(batch[0][0], reason=f"{ended} on the cluster"))
-                elif len(batch) == 1:  # its points one by one
-                    alone = [(index,) for index in batch[0]]
-                    deaths |= dict.fromkeys(alone, 1)
-                    waiting.extendleft(reversed(alone))
-                else:
-                    waiting.extendleft(reversed(batch))
+                seconds_each = seconds / len(batch)
+            for outcome in outcomes:
+                sink(outcome)
             fill()
     finally:
         client.close(timeout=5)
@@ -96,6 +96,21 @@ def _take_batch(
         waiting.extendleft(reversed(batch[1:]))
         batch = batch[:1]
     return batch
+
+
+def _put_back(batch: list[Unit], waiting: deque[Unit], deaths: dict[Unit, int]) -> Unit:
+    """Let the units of a task that failed wait once more; the points that do not: one, or none."""
+    for unit in batch:
+        deaths[unit] = deaths.get(unit, 0) + 1
+    if len(batch) > 1:
+        waiting.extendleft(reversed(batch))
+    elif len(batch[0]) > 1:  # its points one by one
+        alone = [(index,) for index in batch[0]]
+        deaths |= dict.fromkeys(alone, 1)
+        waiting.extendleft(reversed(alone))
+    else:
+        return batch[0]
+    return ()
 
 
 def _check_versions(client: Any, address: str) -> None:
