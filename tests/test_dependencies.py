@@ -77,6 +77,7 @@ def test_a_dependency_of_an_extra_is_imported_somewhere(name):
     assert MODULES.get(name, name) in imported_anywhere()
 
 
+@pytest.mark.slow
 def test_the_package_imports_only_what_it_asks_for():
     modules = {MODULES.get(n, n) for n in CORE.union(*EXTRAS.values())}
     # markupsafe comes with jinja2, whose documentation says to import it from there; llvmlite with

@@ -69,11 +69,14 @@ def modules() -> dict[str, ast.Module]:
     return {name: syntax_trees()[path] for name, path in paths().items()}
 
 
-def functions() -> Iterator[tuple[str, Function]]:
-    for module, tree in modules().items():
-        for node in ast.walk(tree):
-            if isinstance(node, Function):
-                yield module, node
+@cache
+def functions() -> list[tuple[str, Function]]:
+    return [
+        (module, node)
+        for module, tree in modules().items()
+        for node in ast.walk(tree)
+        if isinstance(node, Function)
+    ]
 
 
 def under(module: str, places: tuple[str, ...]) -> bool:

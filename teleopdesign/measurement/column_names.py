@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 import unicodedata
+from functools import lru_cache
 
 from ..quantity import is_unit, measures, noun_of
 from .conversion import COUNTS
@@ -234,7 +235,8 @@ def _suits(unit: str, quantity: str, axis: str) -> bool:
     return measures(unit, quantity, axis)
 
 
-def words_of(name: str) -> list[str]:
+@lru_cache(4096)  # a survey asks for each name many times
+def words_of(name: str) -> tuple[str, ...]:
     """The words of a name in lower case, without accents: "Actual_Pos2 (deg)" -> actual, pos."""
     bare = _ADDRESS.sub(" ", bare_name(name))
     if not bare.strip() and (address := _ADDRESS.search(name)) is not None:
@@ -243,7 +245,7 @@ def words_of(name: str) -> list[str]:
     letters = unicodedata.normalize("NFD", bare.lower())
     plain = "".join(c for c in letters if not "\u0300" <= c <= "\u036f")
     words = [w for w in re.split(r"[\W\d_]+", unicodedata.normalize("NFC", plain)) if w]
-    return _join_terms(words)
+    return tuple(_join_terms(words))
 
 
 def _join_terms(words: list[str]) -> list[str]:
@@ -260,9 +262,10 @@ def _join_terms(words: list[str]) -> list[str]:
     return joined
 
 
+@lru_cache(4096)
 def likeness(name: str, quantity: str) -> float:
     """How much a column's name suggests a quantity: from 0 (not at all) to 1."""
-    words = words_of(name)
+    words = [*words_of(name)]
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
     words = [w for w in words if w != "x" or ALONG.isdisjoint(words)]

@@ -31,6 +31,7 @@ def status(address):
         return error.code, address
 
 
+@pytest.mark.slow
 def test_the_page_is_for_this_machine_and_for_whoever_has_the_token(served):
     address, _ = served
     assert address.startswith("http://127.0.0.1:")

@@ -29,6 +29,8 @@ from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ExperimentError
 
+pytestmark = pytest.mark.slow  # diagnoses of arms
+
 SECONDS = 10.0
 
 
@@ -91,7 +93,6 @@ def test_the_diagnosis_reads_back_as_it_was(folder, answer):
     assert "+ spring at joint2" in shown and "joint1: " in shown
 
 
-@pytest.mark.slow
 def test_the_page_has_a_part_for_each_joint(answer, tmp_path):
     path = tmp_path / "page.html"
     assert main(["report", str(answer), "--output", str(path)]) == 0
@@ -144,7 +145,6 @@ def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
     plt.close(figure)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "message"),
     [
@@ -218,7 +218,6 @@ def test_an_answer_that_was_changed_is_refused_in_one_line(
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.slow
 def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
     second = shutil.copytree(folder, tmp_path / "second")
     out = tmp_path / "out"
@@ -234,7 +233,6 @@ def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
     assert "2 of 2 folders diagnosed" in capsys.readouterr().out
 
 
-@pytest.mark.slow
 def test_two_effects_at_two_joints_are_both_named(tmp_path):
     generator = np.random.default_rng(11)
     arm = random_arm(generator, 2)

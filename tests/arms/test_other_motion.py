@@ -19,6 +19,8 @@ from teleopdesign.diagnose.arms.restored import restore_arm_diagnosis
 from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.errors import ExperimentError
 
+pytestmark = pytest.mark.slow  # a diagnosis of an arm
+
 SECONDS = 10.0
 AMONG = ("coupling", "spring", "quadratic_drag")
 
@@ -45,7 +47,6 @@ def test_the_motion_of_a_joint_stands_beside_another(coupled):
         assert "other_position" not in its.motion.further
 
 
-@pytest.mark.slow
 def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
     experiment = td.load_experiment(coupled)
     prepared, models = stated_models(experiment)
@@ -57,7 +58,6 @@ def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
     assert most_coupled("joint1", records, fit, with_channel) is None
 
 
-@pytest.mark.slow
 def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupled, tmp_path):
     experiment = td.load_experiment(coupled)
     diagnosis = td.find_missing_in_arm(experiment, plan=QUICK, among=AMONG)
@@ -82,7 +82,6 @@ def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupl
         restore_arm_diagnosis(load_answer(path), experiment)
 
 
-@pytest.mark.slow
 def test_no_coupling_is_named_where_none_is(tmp_path):
     diagnosis = td.find_missing_in_arm(
         td.load_experiment(made(tmp_path / "arm", None)), plan=QUICK, among=("coupling",)

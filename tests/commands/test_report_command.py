@@ -63,6 +63,7 @@ def test_a_folder_that_holds_an_answer_stands_for_it(answer, tmp_path):
     assert data_of(page)["answer"]["verdict"] == json.loads(answer.read_text())["verdict"]
 
 
+@pytest.mark.slow
 def test_an_answer_alone_is_described(answer, capsys):
     assert main(["describe", str(answer), "--as-is"]) == 0
     assert "Your model, re-estimated:" in capsys.readouterr().out

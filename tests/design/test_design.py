@@ -17,6 +17,8 @@ from teleopdesign.diagrams import haptic_interface, read_diagram, world_haptics_
 from teleopdesign.errors import ExperimentError, ModelError
 from teleopdesign.realise.friction_interval import friction_interval
 
+pytestmark = pytest.mark.slow  # a diagnosis of a whole case
+
 
 def with_effect(diagnosis, name, values):
     """The diagnosed rod with one effect more, its values taken as exact."""
@@ -84,7 +86,6 @@ def test_the_quasi_static_error_is_p13_for_coulomb_friction():
     assert np.abs(error) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.slow
 def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
     diagnosis = with_effect(rod, "presliding", {"stiffness": 4000.0})
     made = design(diagnosis, assumptions=Assumptions(delay=1e-4))
@@ -107,7 +108,6 @@ def test_no_law_cancels_friction_that_may_be_none(rod, designed):
     assert cancellations(designed.body, designed.friction, designed.reach, settings)
 
 
-@pytest.mark.slow
 def test_friction_that_may_be_none_is_not_cancelled(unsure):
     assert unsure.cancellation is None
     cases = unsure.prediction.cases
@@ -173,7 +173,6 @@ def test_an_assumption_without_sense_is_refused(name, value):
         Assumptions(**{name: value})
 
 
-@pytest.mark.slow
 def test_an_answer_gives_the_model_that_the_diagnosis_ended_with(experiment, tmp_path):
     from teleopdesign.diagnose.answer import write_answer
     from teleopdesign.effects import EFFECTS
@@ -225,7 +224,6 @@ def test_a_dahl_cancellation_equals_a_damper_in_linear_theory():
     assert 50.0 - factor == pytest.approx(4 * 0.5 / (np.pi * motion.peak_speed), rel=1e-3)
 
 
-@pytest.mark.slow
 def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     """P53: f_D within the friction of the motor side, whatever lies beyond."""
     tip = {"tip_inertia": 0.05, "stiffness": 2e4, "damping": 1.0}

@@ -106,6 +106,7 @@ def test_a_worker_of_a_study_makes_no_copies(monkeypatch):
     assert set(processes) == {os.getpid()}
 
 
+@pytest.mark.slow
 @copied
 def test_copies_end_with_a_process_that_is_killed():
     code = """

@@ -14,6 +14,8 @@ from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 
+pytestmark = pytest.mark.slow  # diagnoses of whole cases
+
 
 def candidate(name):
     return Candidate(EFFECTS[name], "device")

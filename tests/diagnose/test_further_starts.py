@@ -17,6 +17,8 @@ from teleopdesign.diagnose.further_starts import with_what_they_need
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import base_of, estimate_from_starts
 
+pytestmark = pytest.mark.slow  # fits from many starts
+
 ELEMENT, LEVEL = 44.0, 3.7  # N m/rad, N m
 #: turns of the fit and of the check record (rad)
 GROWING = (0.035, 0.052, 0.11, 0.112, 0.111, 0.22, 0.223, 0.222, 0.33), (0.1, 0.33, 0.335, 0.338)
@@ -101,7 +103,6 @@ def test_a_level_that_is_known_or_large_stays(tmp_path):
         assert with_what_they_need(model, [model], prepared) == []
 
 
-@pytest.mark.slow
 def test_a_structure_that_yields_has_a_spring_and_an_element_that_slips(tmp_path):
     """A bristle alone left 24 %: the spring beside it was lost, and alone it was refused."""
     diagnosis = find_missing(yielding(tmp_path, 16.0))

@@ -32,6 +32,8 @@ from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment.rivals import rival_instead
 from teleopdesign.report.parameter_table import parameter_rows
 
+pytestmark = pytest.mark.slow  # diagnoses of whole cases
+
 KNOWN = {n: EFFECTS[n] for n in ("coulomb", "viscous", "presliding", "spring", "bias", "stribeck")}
 MODEL = """coulomb = { level = { value = 1.0, unit = "N*m" } }
 viscous = { damping = { value = 30.0, unit = "N*m*s/rad" } }
@@ -132,7 +134,6 @@ def test_an_answer_read_back_knows_it_too(search, tmp_path):
     assert json.loads((tmp_path / "answer.json").read_text())["missing"][0]["instead_of"]
 
 
-@pytest.mark.slow
 def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     experiment = load_experiment(write_bristle(tmp_path / "case", viscous=300.0))
     diagnosis = find_missing(experiment, Model.from_experiment(experiment, KNOWN))
@@ -268,7 +269,6 @@ def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
     assert {n for n, _ in rung.undo_addition(after).effects} == {"coulomb", "presliding"}
 
 
-@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(axis=st.sampled_from(["prismatic", "revolute"]), data=st.data())
 def test_whatever_gave_way_to_whatever_comes_back(axis, data):

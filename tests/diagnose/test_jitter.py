@@ -76,6 +76,7 @@ def test_the_share_of_jitter_is_what_newly_drawn_readings_add_to_the_acceleratio
     assert jitter_share(still.of("fit"), adequate) == 0.0
 
 
+@pytest.mark.slow
 def test_records_with_much_jitter_tell_no_effect(adequate, monkeypatch):
     """At half a row of jitter and 500 Hz a tip behind a spring was named, which weakens it."""
     late = jittered(adequate, 0.3)

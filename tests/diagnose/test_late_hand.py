@@ -20,6 +20,8 @@ from teleopdesign.diagnose.record_shift import name_of_hand, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
 
+pytestmark = pytest.mark.slow  # diagnoses of whole cases
+
 HAND = name_of_hand("device")
 #: the first one whose device is held by a hand of measured force
 SEED = 1
@@ -124,7 +126,6 @@ def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
     assert back.log_late(HAND) == diagnosis.model.record_shift[HAND].value
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("effect", ["actuator_lag", "stribeck"])
 def test_what_is_missing_keeps_its_name_beside_a_hand_in_time_or_late(tmp_path, effect):
     """A lag of the command is no lag of the sensor: the motion tells which force is late."""

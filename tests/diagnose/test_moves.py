@@ -24,6 +24,8 @@ from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.effects import EFFECTS
 
+pytestmark = pytest.mark.slow  # diagnoses of whole cases
+
 KNOWN = ("spring", "hardening_spring", "bias", "quadratic_drag", "viscous", "coulomb")
 
 
@@ -249,7 +251,6 @@ def test_where_no_effect_is_supported_alone_the_ladder_goes_on_by_a_pair(ladder,
     assert set(added(moved)) == {"spring", "bias"} and not moved.together
 
 
-@pytest.mark.slow
 def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
     search, state = ladder
     stand_in = with_stand_in(search, state)
@@ -296,7 +297,6 @@ def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
 
 
-@pytest.mark.slow
 def test_what_only_weakens_the_jitter_of_a_clock_goes_when_the_missing_effect_is_there(tmp_path):
     experiment = jittered(
         load_experiment(write_simulated(tmp_path / "case", "quadratic_drag")), 0.3

@@ -14,6 +14,8 @@ from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
 
+pytestmark = pytest.mark.slow  # diagnoses of whole cases
+
 CATALOGUE = ("coulomb", "viscous", "stribeck", "bias", "cogging")
 LOOK_ALIKES = {"bias", "coulomb_asymmetry"}
 
@@ -34,7 +36,6 @@ def test_a_planted_effect_is_detected(diagnosis, stribeck_case):
     check_diagnosis(diagnosis, stribeck_case, "stribeck")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("effect", ["coulomb", "presliding", "spring", "actuator_lag"])
 def test_a_planted_effect_of_another_kind_is_detected(effect, tmp_path):
     folder = write_simulated(tmp_path / effect, effect)
@@ -63,7 +64,6 @@ def test_where_nothing_is_missing_nothing_is_named(tmp_path):
     assert len(diagnosis.rungs) == 1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("pushes", [1, 4])
 def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
     experiment = load_experiment(write_simulated(tmp_path / "null", None, seed=4))
@@ -90,7 +90,6 @@ def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
     assert answer(diagnosis)["one_moment"]["record"] == check.file
 
 
-@pytest.mark.slow
 def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):
     diagnosis = diagnosed(write_simulated(tmp_path / "bias", "bias"), FEW)
     assert diagnosis.verdict == "undecided"
@@ -98,7 +97,6 @@ def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):
     assert not diagnosis.missing
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("pair", "alike"),
     [
@@ -119,7 +117,6 @@ def test_two_effects_are_both_named_though_each_masks_the_other(pair, alike, tmp
     assert {c.effect.name for c in diagnosis.missing} == set(pair.split("+"))
 
 
-@pytest.mark.slow
 def test_a_parameter_led_astray_does_not_make_what_is_missing_pass_for_noise(tmp_path):
     # without cogging and without the largest force as limit, this machine's Stribeck level goes to
     # 100 kN within 0.1 mm/s, where sensor noise would ask for five times the measured force
@@ -148,7 +145,6 @@ def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(factor, experiment,
         assert off.parameters[name].value == pytest.approx(value.value, abs=0.1 * value.stderr)
 
 
-@pytest.mark.slow
 def test_an_effect_of_the_users_model_without_values_is_estimated(experiment, diagnosis):
     """`stribeck = {}` in a model: the fit finds what a diagnosis finds that adds it."""
     from teleopdesign import compare, fit
@@ -158,7 +154,6 @@ def test_an_effect_of_the_users_model_without_values_is_estimated(experiment, di
     assert comparison.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
 
 
-@pytest.mark.slow
 def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     from teleopdesign import fit
 

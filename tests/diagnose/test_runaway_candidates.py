@@ -11,6 +11,8 @@ from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.measurement import load_experiment
 from teleopdesign.model import Model
 
+pytestmark = pytest.mark.slow  # fits of candidates
+
 #: the module: the folder has a function of the same name
 rank = importlib.import_module("teleopdesign.diagnose.rank")
 

@@ -11,6 +11,8 @@ from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import base_of, estimate_from_starts
 
+pytestmark = pytest.mark.slow  # searches of three springs
+
 STIFFNESS, LEVEL = (2000.0, 300.0, 40.0), (0.2, 0.5, 0.3)  # N m/rad, N m
 NAMES = [f"device.maxwell_slip.stiffness_{i}" for i in (1, 2, 3, 4)]
 

@@ -15,6 +15,8 @@ from teleopdesign.diagnose.together import add_together
 from teleopdesign.effects import EFFECTS
 from teleopdesign.model import Model
 
+pytestmark = pytest.mark.slow  # diagnoses of whole cases
+
 KNOWN = (
     "bias coulomb coulomb_asymmetry quadratic_drag spring stribeck viscous viscous_asymmetry"
 ).split()
@@ -65,7 +67,6 @@ def with_first(search, state, name):
     return look(search, (state.rungs[0], Rung(ranked.candidate, ranked.fit, state.ranking)), state)
 
 
-@pytest.mark.slow
 def test_all_three_take_the_place_of_one_that_did_most_alone(ladder):
     search, state = ladder
     stand_in = with_first(search, state, "quadratic_drag")

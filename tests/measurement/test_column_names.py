@@ -36,7 +36,7 @@ from teleopdesign.measurement.column_names import (
     ],
 )
 def test_the_words_of_a_name(name, words):
-    assert words_of(name) == words
+    assert [*words_of(name)] == words
 
 
 @pytest.mark.parametrize(

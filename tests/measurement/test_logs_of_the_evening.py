@@ -110,7 +110,7 @@ def test_signals_of_one_name_keep_their_whole_place(tmp_path):
 
 
 def test_addresses_of_a_field_bus_are_no_words():
-    assert words_of("0x6077:00 Torque actual value [0.1%]") == ["torque", "actual", "value"]
+    assert [*words_of("0x6077:00 Torque actual value [0.1%]")] == ["torque", "actual", "value"]
     assert likeness("0x6077:00 Torque", "position") == 0.0 < likeness("x 60", "position")
 
 

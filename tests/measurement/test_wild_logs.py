@@ -59,6 +59,7 @@ def from_log(make, folder, log, monkeypatch):
     [pytest.param(m, marks=[pytest.mark.slow] * (m.__name__ == "ros_bag")) for m in LOGS],
     ids=lambda make: make.__name__,
 )
+@pytest.mark.usefixtures("picture")
 def test_a_raw_log_is_understood_without_an_editor(make, tmp_path, log, monkeypatch, capsys):
     if make.__name__ == "ros_bag":
         pytest.importorskip("rosbags")

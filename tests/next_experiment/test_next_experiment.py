@@ -34,6 +34,8 @@ from teleopdesign.next_experiment.path import Move, travel, window_length
 from teleopdesign.next_experiment.prediction import refit, with_records
 from teleopdesign.next_experiment.synthesis import command_along, exact_motion
 
+pytestmark = pytest.mark.slow  # motions are optimised
+
 FEW = {n: EFFECTS[n] for n in ("coulomb", "viscous", "quadratic_drag", "bias", "coulomb_asymmetry")}
 MOST = {n: EFFECTS[n] for n in KNOWN}
 
@@ -53,7 +55,6 @@ def one_speed(tmp_path_factory):
     return rod, experiment, propose(diagnosed(experiment, FEW))
 
 
-@pytest.mark.slow
 def test_a_proposal_from_the_answer_is_the_same(one_speed, tmp_path):
     _, experiment, proposal = one_speed
     write_answer(proposal.diagnosis, tmp_path / "answer.json")
@@ -163,7 +164,6 @@ def test_rivals_are_what_the_records_leave_open(one_speed):
     assert "if quadratic_drag at device is right, viscous at device" in proposal.sentence.lower()
 
 
-@pytest.mark.slow
 def test_the_predicted_separation_holds_on_an_independent_simulator(one_speed):
     rod, _, proposal = one_speed
     new = rod.records(proposal.reference.position["device"])
@@ -179,7 +179,6 @@ def test_the_predicted_separation_holds_on_an_independent_simulator(one_speed):
     assert after.separation(truth=other, other=truth) == 0.0
 
 
-@pytest.mark.slow
 def test_no_motion_distinguishes_two_laws_that_need_the_same_force(tmp_path):
     _, experiment = POOR["one place"].experiment(tmp_path / "bias", 1)
     proposal = propose(diagnosed(experiment, FEW))
@@ -192,7 +191,6 @@ def test_no_motion_distinguishes_two_laws_that_need_the_same_force(tmp_path):
     assert not proposal.is_useful and "follow the reference" not in proposal.sentence
 
 
-@pytest.mark.slow
 def test_where_the_records_decide_nothing_is_proposed(diagnosis):
     proposal = propose(diagnosis)
     assert proposal.reference is None and not proposal.rivals
@@ -221,7 +219,6 @@ def test_the_figure_draws_motion_residual_and_separations(one_speed):
 # what the user says
 
 
-@pytest.mark.slow
 def test_limits_of_the_user_are_kept_and_wrong_ones_refused(one_speed):
     _, _, proposal = one_speed
     shown = shown_limits(proposal.diagnosis.prepared)["device"]
@@ -283,7 +280,6 @@ def proposed(case, number, folder):
 CASES = [("one speed", 1), ("slow", 1), ("one place", 0), ("one stroke", 1)]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("case", "number"), CASES)
 def test_what_is_predicted_is_measured_and_then_named(case, number, tmp_path):
     poor, rod, experiment, proposal = proposed(case, number, tmp_path / "case")
@@ -304,7 +300,6 @@ def test_what_is_predicted_is_measured_and_then_named(case, number, tmp_path):
         assert poor.rivals[number] in named and poor.rivals[1 - number] not in named
 
 
-@pytest.mark.slow
 def test_without_a_scale_of_force_a_sensor_is_asked_for_not_a_motion(tmp_path):
     """Inertia fixed, no interaction force: a body more and a gain need the same commands."""
     poor, _, _, proposal = proposed("no scale of force", 0, tmp_path / "case")
@@ -315,7 +310,6 @@ def test_without_a_scale_of_force_a_sensor_is_asked_for_not_a_motion(tmp_path):
     assert not any("larger" in change or "finer" in change for change in helping)
 
 
-@pytest.mark.slow
 def test_each_rival_is_named_when_it_is_made_the_truth(one_speed):
     _, _, proposal = one_speed
     shown = show_in_simulation(proposal)
@@ -323,7 +317,6 @@ def test_each_rival_is_named_when_it_is_made_the_truth(one_speed):
     assert show_in_simulation(proposal, seconds=-1.0) == ()
 
 
-@pytest.mark.slow
 def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
     """Nothing missing: the model is adequate and there is no rival."""
     poor = POOR["one stroke"]
@@ -334,7 +327,6 @@ def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
     assert propose(diagnosed(experiment, FEW)).reference is None
 
 
-@pytest.mark.slow
 def test_one_candidate_beside_named_effects_has_no_rival(diagnosis):
     """More is missing, and one effect comes near: only longer check records decide."""
     nearest = Candidate(EFFECTS["cogging"], "device"), diagnosis.rungs[-1].fit

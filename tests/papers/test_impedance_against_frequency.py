@@ -6,6 +6,8 @@ import nonlinear_force_feedback_gain
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow  # simulations at many frequencies
+
 
 @pytest.fixture(scope="module")
 def sweep():
@@ -74,7 +76,6 @@ def grid():
     return amplitude_dependence.run(quick=True)[0]
 
 
-@pytest.mark.slow
 def test_amplitude_dependence_falls_with_frequency_but_stays_in_every_case(grid):
     spread = grid.spread()["size"]
     assert (spread.diff("frequency") < 0).all()
@@ -82,7 +83,6 @@ def test_amplitude_dependence_falls_with_frequency_but_stays_in_every_case(grid)
     assert (spread.isel(frequency=-1) > 3).all()
 
 
-@pytest.mark.slow
 def test_cancellation_makes_slow_motion_less_linear(grid):
     slow = grid.spread()["size"].isel(frequency=0)
     assert float(slow.sel(case="MBC")) > float(slow.sel(case="none")) + 5

@@ -299,6 +299,7 @@ def test_a_certificate_cannot_run_code(text, certificates):
         resealed(forged).check()
 
 
+@pytest.mark.slow
 def test_z3_confirms_what_the_identities_show(certificates):
     """The same inequalities without the identities; see `second_opinion`."""
     pytest.importorskip("z3", reason="the extra `proof` is not installed")

@@ -81,6 +81,7 @@ def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):
     assert np.abs(out - expected).max() <= 1e-9 * max(np.ptp(expected), 1e-12)
 
 
+@pytest.mark.slow
 @compiled
 @pytest.mark.parametrize("late", [1e-3, 2.4e-3])
 def test_a_late_lag_is_the_difference_equation_that_it_is_by_hand(late, tmp_path):

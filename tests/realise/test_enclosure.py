@@ -56,6 +56,7 @@ def exact(law, x, y):
         return call(mpmath.mpf(x), mpmath.mpf(y))
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(law=laws, x=ranges, y=ranges, shares=shares)
 def test_no_value_of_a_law_leaves_its_interval(law, x, y, shares):

@@ -36,6 +36,7 @@ def test_simulations_in_processes_give_the_data_set_of_one(start):
     xarray.testing.assert_identical(one.data, two.data)
 
 
+@pytest.mark.slow
 @copied
 def test_every_copy_killed_in_the_middle_costs_no_point(monkeypatch):
     copies = []
@@ -59,6 +60,7 @@ def test_every_copy_killed_in_the_middle_costs_no_point(monkeypatch):
     np.testing.assert_array_equal(dataset["value"].values, expected)
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_all_processes(start, monkeypatch):
     def interrupt(progress):
         raise KeyboardInterrupt
@@ -71,6 +73,7 @@ def test_an_interrupt_ends_all_processes(start, monkeypatch):
     assert time.monotonic() - begin < 60
 
 
+@pytest.mark.slow
 @copied
 def test_copies_write_and_end_nothing_of_the_calling_process(tmp_path):
     """Text that waits to be written, functions for the exit, and handlers of signals are its."""

@@ -20,6 +20,7 @@ def status(diagram, computer):
     return list(study["passivity_status"].values), list(study["passivity_holds"].values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("device", [DEVICE, RUBBING])
 def test_a_wall_that_its_computer_makes_active_is_not_called_proved(device):
     wall = td.haptic_interface(device, position_loop=controller("gain", {"gain": 1.0}))

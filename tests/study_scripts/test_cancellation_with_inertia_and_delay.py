@@ -28,6 +28,7 @@ def test_simulated_motion_gives_out_what_the_formula_says():
     assert (np.sign(energies.sel(simulated_filter="fast").values) == [1, 1, 1, -1]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hand", ["any", "hand, low-pass 30 Hz", "fingertip, low-pass 100 Hz"])
 def test_motion_decays_within_the_limit_and_grows_beyond_it(trials, hand):
     chosen = trials.isel(trial=(trials["hand"] == hand).values)

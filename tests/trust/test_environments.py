@@ -193,6 +193,7 @@ def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kerne
         assert out.split()[-1] == "1", "what was damaged was made anew"
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize("whose", ["open to others", "a link"])
 def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, run_kernel, tmp_path):
