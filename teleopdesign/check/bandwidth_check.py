@@ -12,13 +12,10 @@ from ..diagnose.narrower_band import narrower_band
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
 from ..finding import Finding
-from ..measurement.bandwidth import hides_motion, motion_beyond, share_in_motion
+from ..measurement.bandwidth import motion_beyond
 from ..measurement.experiment import Experiment
+from ..measurement.hidden_motion import find_hidden_motion
 from ..model import Model
-
-#: a bandwidth is proposed if the rows in motion are at least this part of those at a bandwidth two
-#: octaves lower
-ENOUGH = 0.9
 
 
 def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
@@ -35,22 +32,12 @@ def check_bandwidth(model: Model, prepared: Prepared) -> Iterator[Finding]:
     else:
         yield from _motion_beyond(experiment, stated)
     for body in experiment.bodies:
-        if not hides_motion(experiment, body, stated):
+        hidden = find_hidden_motion(experiment, body, stated)
+        if hidden is None:
             continue
-        shares = {b: share_in_motion(experiment, body, b) for b in (stated / 2, stated / 4)}
-        moving, could = share_in_motion(experiment, body, stated), shares[stated / 4]
-        proposed = max(b for b, share in shares.items() if share >= ENOUGH * could)
-        yield Finding(
-            "bandwidth",
-            "warning",
-            f"below {stated:.3g} Hz, the bandwidth of the comparison, the position tells a motion "
-            f"in {100 * moving:.0f} % of the rows, below {proposed:.2g} Hz in "
-            f"{100 * shares[proposed]:.0f} %. In the other rows static friction balances any "
-            f"force, and no model is tested: write bandwidth = {{ value = {proposed:.2g}, "
-            'unit = "Hz" } at comparison, or leave it out.',
-            {"bandwidth": stated, "proposed": proposed, "seen": moving, "could": could},
-            body,
-        )
+        numbers = {"bandwidth": stated, "proposed": hidden.proposed, "seen": hidden.moving}
+        numbers["could"] = hidden.could
+        yield Finding("bandwidth", "warning", str(hidden), numbers, body)
 
 
 def _leaves_noise(model: Model, prepared: Prepared) -> bool:

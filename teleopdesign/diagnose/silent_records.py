@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..measurement.encoder import rests
 from ..model import Model
 from .constant_force import describe_constant_force, lacks_scale
+from .hidden_motion import describe_hidden_motion
 from .jitter import describe_jitter, is_much_jitter
 from .prepare import Prepared
 from .unknown_drive import describe_work
@@ -25,6 +26,8 @@ def why_silent(prepared: Prepared, model: Model) -> str:
             "The body rests throughout the check records, where any friction explains the force: "
             "they cannot check a model."
         )
+    if hidden := describe_hidden_motion(prepared, model):
+        return hidden
     if work := describe_work(prepared.experiment):
         return work
     if size := describe_unsigned(prepared.experiment):

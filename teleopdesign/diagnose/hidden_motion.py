@@ -1,0 +1,40 @@
+"""Records with too few rows in motion: where friction holds the body, no model is tested."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..measurement.hidden_motion import find_hidden_motion
+from ..model import Model
+from .criteria import CRITERIA
+from .prepare import Prepared, Stretch
+
+
+def describe_hidden_motion(prepared: Prepared, model: Model) -> str:
+    """Why too few rows of the fit or check records test a model, as sentences; "": enough do.
+
+    Rows that test it hold more independent values than the model has parameters (`few_values`).
+    """
+    least = CRITERIA.for_each * max(sum(not v.fixed for v in model.parameters.values()), 1)
+    for use in ("fit", "check"):
+        stretches = prepared.of(use)
+        seconds = sum(_tested_time(s, model) for s in stretches)
+        if not stretches or 2.0 * prepared.bandwidth * seconds >= least:
+            continue
+        for body in {s.motion.body: None for s in stretches}:
+            hidden = find_hidden_motion(prepared.experiment, body, prepared.bandwidth)
+            if hidden is not None:
+                return f"B{str(hidden)[1:]}"
+        return (
+            f"The position tells a motion for only {seconds:.2g} s of the {use} records. At other "
+            "times static friction balances any force, and no model is tested: record more motion."
+        )
+    return ""
+
+
+def _tested_time(stretch: Stretch, model: Model) -> float:
+    """Time (s) for which a stretch tests the model of its body."""
+    motion, rows = stretch.motion, len(stretch.keep)
+    if model.body(motion.body).level() != 0:
+        rows = int(np.count_nonzero(motion.direction[stretch.keep]))
+    return rows * stretch.weight * motion.sample_time

@@ -1,0 +1,66 @@
+"""Where the readings tell no direction of motion, friction balances any force."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.check import check_experiment
+from teleopdesign.diagnose.hidden_motion import describe_hidden_motion
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.model import Model
+
+H = 0.002
+
+
+def swinging(every, bandwidth, coulomb=0.3):
+    """A joint with dry friction that swings for 20 s; each reading is held for `every` rows."""
+    t = H * np.arange(10_000)
+    angle = 0.3 * np.sin(2.0 * np.pi * 0.7 * t) + 0.1 * np.sin(2.0 * np.pi * 1.9 * t)
+    rate = np.gradient(angle, H)
+    torque = 0.02 * np.gradient(rate, H) + coulomb * np.tanh(rate / 0.01) + 0.1 * rate
+    read = 1e-4 * np.round(1e4 * angle[np.arange(len(t)) // every * every])
+    position = {"column": "q", "unit": "rad", "resolution": 1e-4}
+    return td.experiment(
+        {"t": t, "q": read, "u": torque},
+        axis="revolute",
+        inertia=0.02,
+        fit=[(0, 12)],
+        check=[(12, 20)],
+        bandwidth=bandwidth,
+        effects=["coulomb"] if coulomb else ["viscous"],
+        position=position,
+        actuator_force="u",
+    )
+
+
+@pytest.mark.parametrize(("every", "bandwidth", "hidden"), [(4, 50.0, True), (1, 50.0, False)])
+def test_a_bandwidth_that_hides_the_motion_is_a_reason_and_a_warning(every, bandwidth, hidden):
+    experiment = swinging(every, bandwidth)
+    sentence = describe_hidden_motion(prepare(experiment), Model.from_experiment(experiment))
+    assert ("no model is tested: write bandwidth = { value = " in sentence) == hidden
+    warnings = [f.sentence for f in check_experiment(experiment) if f.concern == "warning"]
+    assert any("no model is tested" in one for one in warnings) == hidden
+
+
+def test_without_dry_friction_each_row_tests_the_model():
+    experiment = swinging(4, 50.0, coulomb=0.0)
+    assert not describe_hidden_motion(prepare(experiment), Model.from_experiment(experiment))
+
+
+def test_records_that_hardly_move_say_for_how_long():
+    t = H * np.arange(5000)
+    moving = np.clip(t - 9.98, 0.0, 0.01)
+    table = {"t": t, "q": 1e-4 * np.round(1e4 * moving), "u": 0.2 * np.sin(3.0 * t)}
+    position = {"column": "q", "unit": "rad", "resolution": 1e-4}
+    experiment = td.experiment(
+        table, axis="revolute", inertia=0.02, bandwidth=5.0, position=position, actuator_force="u"
+    )
+    sentence = describe_hidden_motion(prepare(experiment), Model.from_experiment(experiment))
+    assert "no model is tested: record more motion" in sentence
+
+
+def test_no_model_is_adequate_where_none_is_tested():
+    """The verdict was `model_adequate`, with an error of 0.00 % and "inf noise floors"."""
+    diagnosis = td.find_missing(swinging(4, 50.0))
+    assert diagnosis.verdict == "undecided"
+    assert "no model is tested" in str(diagnosis)
