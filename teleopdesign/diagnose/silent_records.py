@@ -19,8 +19,6 @@ def why_silent(prepared: Prepared, model: Model) -> str:
     """
     if lacks_scale(prepared.stretches, model):
         return describe_constant_force()
-    if prepared.is_of_an_arm:  # its accelerations come from all joints together
-        return ""
     if rests_throughout_check(prepared):
         return (
             "The body rests throughout the check records, where any friction explains the force: "
@@ -28,6 +26,8 @@ def why_silent(prepared: Prepared, model: Model) -> str:
         )
     if hidden := describe_hidden_motion(prepared, model):
         return hidden
+    if prepared.is_of_an_arm:  # its accelerations come from all joints together
+        return ""
     if work := describe_work(prepared.experiment):
         return work
     if size := describe_unsigned(prepared.experiment):
