@@ -1,7 +1,8 @@
-"""Bodies of a log that are read more slowly than its rows: their readings get a clock of their own.
+"""Readings that are slower than the rows of their log: they get a clock of their own.
 
-A program that joins the messages of two devices into one table repeats those of the slower device
-until its next reading. Held readings would look like a motion in steps on a clock that jitters.
+A program that joins the messages of several devices or sensors into one table repeats those of the
+slower one until its next reading. Held readings would look like a motion in steps on a clock that
+jitters, or like a sensor with a delay that varies.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ from .record_clock import Array, counted_time
 from .repeated_rows import rows_between_readings
 from .tables import LogColumns
 from .time_grid import DATE
+
+#: quantities that a sensor reads, also where it is slower than the controller
+SENSED = ("position", "interaction_force")
 
 
 def with_slower_bodies(
@@ -49,6 +53,36 @@ def with_slower_bodies(
         for column in _columns(columns, signals):
             values[column] = columns.values[column][~between]
             slow_stamps[column] = stamps[~between]
+    return replace(columns, values=values, stamps=slow_stamps)
+
+
+def with_slower_sensors(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    name: str,
+    *,
+    sample_rate: float | None,
+    to_seconds: float | None,
+) -> LogColumns:
+    """The columns, those of slower sensors of one body with one value for each reading.
+
+    name, sample_rate, to_seconds: as in `clock_of_log`
+    A command that changes seldom is held by its controller, and stays as it is.
+    """
+    signals = [c for c in channels.values() if c.body is not None]
+    if len({c.body for c in signals}) > 1 or "segment" in channels:
+        return columns
+    stamps = _stamps(columns, channels, name, sample_rate, to_seconds)
+    if stamps is None or _reads_slowly(columns, signals, stamps).any():
+        return columns
+    values, slow_stamps = dict(columns.values), dict(columns.stamps)
+    for column in _columns(columns, [c for c in signals if c.quantity in SENSED]):
+        x = columns.values[column]
+        if len(x) != len(stamps) or not np.isfinite(x).all():
+            continue
+        between = rows_between_readings([x, x], [x], stamps)
+        if between.any():
+            values[column], slow_stamps[column] = x[~between], stamps[~between]
     return replace(columns, values=values, stamps=slow_stamps)
 
 
