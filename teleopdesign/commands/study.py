@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ExperimentError, did_you_mean
 from ..whole_files import read_whole
 from . import STOPPED
+from ._failures import BAD_INPUT
 from ._options import add_effect_files, add_law_files, check_output, count_argument, say
 from ._progress import PointReporter
 
@@ -82,6 +83,8 @@ def run(options: argparse.Namespace) -> int:
     say("")
     print(result)
     _print_failures(result)
+    if not result.measures and result.failures:
+        return BAD_INPUT
     if options.figure is not None:
         from ..plot import save_figure
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import ModelError
+from ..studies.points import SAMPLE
 from .design import ONE_COLUMN, TWO_COLUMNS
 from .letters import house_style
-from .study_data import StudyData, join_names, label, number, spread
+from .study_data import StudyData, join_names, label, number, sort_axes, spread
 from .study_maps import MOST_PANELS, Overlay, draw_map, draw_panels
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 FIRST, TOTAL = "#0072B2", "#9CC7E4"
 _MOST_LINES = 8
+#: points of a panel of 1.7 in that overlap if they are drawn larger than 1.5 points
+_MANY_POINTS = 300
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,16 +37,29 @@ class StudyPlots:
     def __call__(self, measure: str = "") -> matplotlib.figure.Figure:
         """Bars or points for sampled studies; else curves, a map, or maps side by side.
 
-        Bars are drawn for points of `sensitivity_samples`.
+        Bars are drawn for points of `sensitivity_samples`. Of more than three parameters, the
+        others have the value in the middle of their axis, which the title states.
         """
         if self.data.attrs.get("sampling"):
             if self.data.attrs["sampling"] == "sensitivity":
                 return self.sensitivity(measure)
             return self.scatter(measure)
+        import matplotlib.pyplot as plt
+
+        self._study.measure(measure)
         grids = [n for n in self._study.axes if self.data.sizes[n] > 1]
-        if len(grids) == 1 or not self._study.is_number(*grids):
+        if not grids:
+            raise ModelError("study: no parameter has several values: there is nothing to draw")
+        if len(grids) == 1 or len(grids) == 2 and not self._study.is_number(*grids):
             return self.curves(measure)
-        return self.map(measure) if len(grids) == 2 else self.panels(measure)
+        if len(grids) <= 3:
+            return self.map(measure) if len(grids) == 2 else self.panels(measure)
+        values = {n: self._study.data[n].values for n in grids[3:]}
+        at = {n: v[len(v) // 2] for n, v in values.items()}
+        figure = self.panels(measure, at=at)
+        with plt.style.context(house_style()):
+            figure.suptitle(", ".join(self._study.name_with_value(n, v) for n, v in at.items()))
+        return figure
 
     def curves(
         self, measure: str = "", *, over: str = "", at: Mapping[str, float] | None = None
@@ -58,6 +74,8 @@ class StudyPlots:
 
         values = self._study.at(self._study.measure(measure), at)
         dims = [str(d) for d in values.dims]
+        if not dims:
+            raise ModelError("curves: no parameter has several values: there is nothing to draw")
         across = over or dims[0]
         self._study.require(across, dims)
         each = [d for d in dims if d != across]
@@ -65,13 +83,15 @@ class StudyPlots:
             raise ModelError(f"curves: give values of all but two of {join_names(dims)}: at=...")
         with plt.style.context(house_style()):
             figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
-            lines = self.data[each[0]].values if each else [None]
+            lines = self._study.data[each[0]].values if each else [None]
             shown = spread(len(lines), _MOST_LINES)
             colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown)))
             for colour, k in zip(colours, shown, strict=True):
                 one = values.isel({each[0]: k}) if each else values
                 entry = number(lines[k]) if each else None
-                axis.plot(self.data[across].values, one.values, ".-", color=colour, label=entry)
+                axis.plot(
+                    self._study.data[across].values, one.values, ".-", color=colour, label=entry
+                )
             self._study.label_axis(axis, "x", across)
             axis.set_ylabel(label(values))
             if each:
@@ -124,13 +144,24 @@ class StudyPlots:
         return draw_panels(self._study, measure, (x, y, by), at, over)
 
     def scatter(self, measure: str = "") -> matplotlib.figure.Figure:
-        """A measure over each parameter, for points that were drawn together; a panel for each."""
+        """A measure over each parameter, for points that were drawn together; a panel for each.
+
+        A further axis has a colour for each value.
+        """
         import matplotlib.pyplot as plt
 
         values = self._study.measure(measure)
-        if values.ndim != 1:
-            raise ModelError("scatter: expected points drawn together alone, without further axes")
-        names = self._study.axes[:MOST_PANELS]
+        if SAMPLE not in values.dims or values.ndim > 2:
+            raise ModelError(
+                f"scatter: found a measure over {join_names([str(d) for d in values.dims])}, "
+                "expected points drawn together, with one more axis at most"
+            )
+        each = next((str(d) for d in values.dims if d != SAMPLE), "")
+        lines = self._study.data[each].values if each else [None]
+        shown = spread(len(lines), _MOST_LINES)
+        colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown))) if each else [FIRST]
+        names = [n for n in self._study.axes if self.data[n].dims == (SAMPLE,)][:MOST_PANELS]
+        size = 1.5 if values.sizes[SAMPLE] > _MANY_POINTS else 4.0
         columns = min(len(names), 4)
         rows = -(-len(names) // columns)
         with plt.style.context(house_style()):
@@ -142,12 +173,19 @@ class StudyPlots:
                 figsize=(TWO_COLUMNS, 0.5 + 1.7 * rows),
             )
             for name, axis in zip(names, axes.flat, strict=False):
-                axis.plot(self.data[name].values, values.values, ".", markersize=1.5, color=FIRST)
+                for colour, k in zip(colours, shown, strict=True):
+                    one = values.isel({each: k}) if each else values
+                    entry = number(lines[k]) if each else None
+                    axis.plot(self.data[name], one, ".", markersize=size, color=colour, label=entry)
                 self._study.label_axis(axis, "x", name)
             for axis in axes.flat[len(names) :]:
                 axis.remove()
             for row in axes[:, 0]:
                 row.set_ylabel(label(values))
+            if each:
+                entries = axes[0, 0].get_legend_handles_labels()
+                title = label(self.data[each])
+                figure.legend(*entries, title=title, loc="outside lower center", ncols=4)
         return figure
 
     def sensitivity(self, *measures: str) -> matplotlib.figure.Figure:
@@ -199,4 +237,4 @@ class StudyPlots:
 
     @property
     def _study(self) -> StudyData:
-        return StudyData(self.data)
+        return StudyData(sort_axes(self.data))

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import number as number_of
 from ..errors import ModelError, did_you_mean
+from ..expectations import describe_value
 from .design import symbol, unit_text
 
 if TYPE_CHECKING:
@@ -38,30 +40,46 @@ class StudyData:
         """The text for a parameter or a measure in a label."""
         return words(self.data[name].attrs.get("long_name") or name)
 
+    def name_with_value(self, name: str, value: Any) -> str:
+        """The text "parameter = value unit"."""
+        unit = "" if isinstance(value, str) else unit_text(self.data[name].attrs.get("units", ""))
+        return f"{self.name(name)} = {number(value)} {unit}".rstrip()
+
     def is_number(self, *names: str) -> bool:
         """Whether the values of all these variables are numbers and not words."""
         return all(self.data[n].dtype.kind in "biuf" for n in names)
 
     def measure(self, name: str) -> xarray.DataArray:
         """The measure of that name, which must have numbers;  "": the first such measure."""
-        known = [str(n) for n in self.data.data_vars if n != "failure" and self.is_number(str(n))]
+        listed = [str(n) for n in self.data.data_vars if n != "failure"]
+        known = [n for n in listed if self.is_number(n)]
         if not name and known:
             name = known[0]
-        if name not in known:
-            raise ModelError(
-                f'study: no measure "{name}" in numbers, has {join_names(known)}'
-                f"{did_you_mean(name, known)}"
-            )
-        return self.data[name]
+        if name in known:
+            return self.data[name]
+        if not listed:
+            raise ModelError("study: every point failed: there is nothing to draw")
+        if name in listed or not name:
+            raise ModelError(f"study: {name or join_names(listed)}: found texts, expected numbers")
+        raise ModelError(
+            f'study: no measure "{name}" in numbers, has {join_names(known) or "none"}'
+            f"{did_you_mean(name, known)}"
+        )
 
     def at(self, values: xarray.DataArray, at: Mapping[str, float] | None) -> xarray.DataArray:
         """The values nearest to the point `at`, without axes that have only one value left."""
         for name, value in (at or {}).items():
             self.require(name, [str(d) for d in values.dims])
             if self.data[name].dtype.kind in "biuf":
-                values = values.sel({name: value}, method="nearest")
-            else:
-                values = values.sel({name: value})
+                values = values.sel({name: number_of(value, f"at: {name}")}, method="nearest")
+                continue
+            texts = self.data[name].values.tolist()
+            if value not in texts:
+                raise ModelError(
+                    f"study: at: {name}: found {describe_value(value)}, expected one of "
+                    f"{join_names(texts)}{did_you_mean(str(value), texts)}"
+                )
+            values = values.sel({name: value})
         return values.squeeze(drop=True)
 
     def require(self, name: str, known: Sequence[str]) -> None:
@@ -77,11 +95,12 @@ class StudyData:
         raises ModelError: the values do not have two axes, or there is no such axis
         """
         dims = [str(d) for d in values.dims]
+        if x and x == y:
+            raise ModelError(f'study: a map over "{x}" alone: expected two axes, x and y')
         if len(dims) != 2:
             raise ModelError(
-                f"study: a map has two axes, found {join_names(dims) or 'none'}: "
-                "give values of the "
-                "others: at=..."
+                f"study: a map has two axes, found {join_names(dims) or 'none'}"
+                f"{': give values of the others: at=...' if len(dims) > 2 else ''}"
             )
         for name in (x, y):
             if name:
@@ -98,6 +117,17 @@ class StudyData:
             if np.ptp(ratios) < _EVEN * ratios[0] and ratios[0] > 1.01:
                 axis.set(**{f"{which}scale": "log"})
         axis.set(**{f"{which}label": label(self.data[name])})
+
+
+def sort_axes(data: Any) -> Any:
+    """The data (Dataset or DataArray) with the values of each axis of numbers in rising order.
+
+    Lines and cells of a figure join neighbours; the order of a study is that of its user.
+    """
+    for name in data.dims:
+        if name in data.coords and data[name].dtype.kind in "biuf":
+            data = data.sortby(name)
+    return data
 
 
 def label(array: xarray.DataArray) -> str:

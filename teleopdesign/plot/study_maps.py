@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .design import ONE_COLUMN, TWO_COLUMNS, unit_text
+from ..errors import ModelError
+from .design import ONE_COLUMN, TWO_COLUMNS
 from .letters import house_style
 from .onset import hatch_region
-from .study_data import StudyData, label, number, spread
+from .study_data import StudyData, join_names, label, sort_axes, spread
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -52,9 +53,10 @@ def draw_map(
     across, up = study.pair(values, *along)
     with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.9))
-        mesh = _draw_mesh(study, axis, values, across, up, _limits(values, over.onset))
+        limits = _limits(values, over.onset)
+        mesh = _draw_mesh(study, axis, values, across, up, limits)
         _draw_marks(study, axis, values, (across, up), over, at)
-        figure.colorbar(mesh, ax=axis, label=label(values))
+        figure.colorbar(mesh, ax=axis, label=label(values), extend=_extend(values, limits))
         _draw_legend(figure, axis)
     return figure
 
@@ -71,9 +73,11 @@ def draw_panels(
 
     *plane, by = along
     whole = study.measure(measure)
-    third = by or str(whole.dims[0])
-    study.require(third, [str(d) for d in whole.dims])
     values = study.at(whole, at)
+    third = by or next(str(d) for d in (*values.dims, *whole.dims))
+    study.require(third, [str(d) for d in whole.dims if d not in (at or {})])
+    if third not in values.dims:  # it has one value
+        values = values.expand_dims(third)
     shown = spread(values.sizes[third], MOST_PANELS)
     across, up = study.pair(values.isel({third: 0}), *plane)
     columns = min(len(shown), 3)
@@ -93,13 +97,16 @@ def draw_panels(
             mesh = _draw_mesh(study, axis, one, across, up, limits)
             where = {**(at or {}), third: study.data[third].values[k]}
             _draw_marks(study, axis, one, (across, up), over, where)
-            unit = unit_text(study.data[third].attrs.get("units", ""))
-            title = f"({letter}) {study.name(third)} = {number(study.data[third].values[k])} {unit}"
-            axis.set_title(title, loc="left", pad=3)
+            title = study.name_with_value(third, study.data[third].values[k])
+            axis.set_title(f"({letter}) {title}", loc="left", pad=3)
             axis.label_outer()
-        for axis in axes.flat[len(shown) :]:
-            axis.remove()
-        figure.colorbar(mesh, ax=axes, label=label(whole))
+        for empty in range(len(shown), axes.size):
+            axes.flat[empty].remove()
+            above = axes.flat[empty - columns]  # has the ticks of its column
+            above.tick_params(labelbottom=True)
+            study.label_axis(above, "x", across)
+        parents = axes.flat[: len(shown)].tolist()
+        figure.colorbar(mesh, ax=parents, label=label(whole), extend=_extend(values, limits))
         _draw_legend(figure, axes[0, 0])
     return figure
 
@@ -117,7 +124,7 @@ def _draw_mesh(
     mesh = axis.pcolormesh(
         _borders(study.data[across].values, axis.get_xscale()),
         _borders(study.data[up].values, axis.get_yscale()),
-        np.ma.masked_invalid(values.transpose(up, across).values),
+        np.ma.masked_invalid(_clip_infinite(values.transpose(up, across).values, limits)),
         cmap="RdBu_r" if limits[0] < 0 and limits[1] == -limits[0] else "viridis",
         vmin=limits[0],
         vmax=limits[1],
@@ -177,7 +184,13 @@ def _draw_marks(
         axis.collections[-1].set_edgecolor("black")
     elif proved is not None:
         held = study.data[proved] == "proved" if isinstance(proved, str) else proved
+        held = sort_axes(held)
         inside = study.at(held, {k: v for k, v in (at or {}).items() if k in held.dims})
+        if set(inside.dims) != {across, up} or inside.size != values.size:
+            raise ModelError(
+                f"study: proved: found an array over {join_names([*map(str, inside.dims)])} of "
+                f"shape {inside.shape}, expected one over {across} and {up} as the measure"
+            )
         shown = np.ma.masked_where(~inside.transpose(up, across).values.astype(bool), inside.T)
         borders = _borders(x, axis.get_xscale()), _borders(y, axis.get_yscale())
         axis.pcolor(*borders, shown, hatch="///", alpha=0.0)
@@ -187,7 +200,8 @@ def _draw_marks(
     if onset is not None:
         field = values.transpose(up, across).values
         if np.nanmin(field) < onset < np.nanmax(field):
-            field = np.where(np.isinf(field), np.nanmax(field[np.isfinite(field)]), field)
+            finite = field[np.isfinite(field)]
+            field = np.clip(field, finite.min(), finite.max())
             axis.contour(x, y, field, [onset], colors="black", linewidths=1.2)
             axis.plot([], [], color="black", linewidth=1.2, label=over.onset_label)
     axis.set(xlim=box[0], ylim=box[1])
@@ -212,6 +226,20 @@ def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float
         most = float(np.percentile(np.abs(finite), 95))
         return -most, most
     return float(finite.min()), float(finite.max())
+
+
+def _clip_infinite(values: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """The values, infinite ones at the ends of the colour scale."""
+    return np.asarray(np.nan_to_num(values, nan=np.nan, neginf=limits[0], posinf=limits[1]))
+
+
+def _extend(values: xarray.DataArray, limits: tuple[float, float]) -> str:
+    """Ends of the colour scale beyond which there are values, infinite ones included."""
+    below = bool((values < limits[0]).any())
+    above = bool((values > limits[1]).any())
+    return {(True, True): "both", (True, False): "min", (False, True): "max"}.get(
+        (below, above), "neither"
+    )
 
 
 def _edges(values: np.ndarray, ends: tuple[float, float] | None = None) -> np.ndarray:

@@ -17,11 +17,13 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import instance, number
 from ..by_value import ByValue
 from ..errors import ModelError, did_you_mean
 from ..expectations import describe_value
 from .measures import MEASURES
 from .point import Amount, Point, PointFunction
+from .points import check_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +66,28 @@ def measure(name: str, **options: Any) -> Measure:
     for option, default in kind.options.items():
         if default is ... and option not in options:
             raise ModelError(f'measure {name}: option "{option}" has no value')
+    for option, content in options.items():
+        _check_option(f"measure {name}: {option}", content, kind.options[option])
     values = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
     signal = values.get("signal") if kind.options.get("signal", "") is ... else None
     label = f"{name}_{signal}" if signal else name
     signals = tuple(str(values.get(s, s)) for s in kind.signals)
     return Measure(label, kind.function, values, of_package=True, signals=signals)
+
+
+#: options without a default that name something
+_NAMES = ("signal", "parameter")
+
+
+def _check_option(where: str, content: Any, default: Any) -> None:
+    """Raise ModelError for an option of another type than its default."""
+    if isinstance(default, str) or where.rpartition(" ")[2] in _NAMES:
+        instance(content, str, where, expected="a text")
+    elif isinstance(default, int | float) or default is ... and np.ndim(content) == 0:
+        number(content, where)
+    else:
+        for value in content:
+            number(value, where)
 
 
 def measures_of(content: Any) -> tuple[Measure, ...]:
@@ -80,13 +99,17 @@ def measures_of(content: Any) -> tuple[Measure, ...]:
         listed = [_measure_of(m, str(name)) for name, m in content.items()]
     elif isinstance(content, str | Measure) or callable(content):
         listed = [_measure_of(content)]
-    else:
+    elif isinstance(content, list | tuple | set | frozenset):
         listed = [_measure_of(m) for m in content]
+    else:
+        listed = [_measure_of(content)]  # refuses it
     names = [m.name for m in listed]
     if doubled := {n for n in names if names.count(n) > 1}:
         raise ModelError(
             f'measures: "{min(doubled)}" is there twice: name them, {{"name": measure}}'
         )
+    for name in names:
+        check_name(name, "measures: measure")
     if not listed:
         raise ModelError(f"measures: found none, expected a function or {', '.join(MEASURES)}")
     return tuple(listed)
@@ -114,17 +137,21 @@ def _amount(value: Any, where: str) -> Amount:
         unit, text = str(value.attrs.get("units", "1")), str(value.attrs.get("text", ""))
         if not value.dims:
             return replace(_amount(value.values[()], where), unit=unit, text=text)
-        if len(value.dims) == 1 and value.dtype.kind in "biuf":
+        along = value[value.dims[0]]
+        if len(value.dims) == 1 and {value.dtype.kind, along.dtype.kind} <= {*"biuf"}:
             (dimension,) = value.dims
-            along = value[dimension]
             over = (
                 str(dimension),
                 tuple(float(x) for x in along.values),
                 str(along.attrs.get("units", "1")),
             )
             return Amount([float(x) for x in value.values], unit, text, over)
-        raise ModelError(f"measure {where}: found {len(value.dims)} dimensions, expected one")
-    if isinstance(value, np.generic):
+        raise ModelError(
+            f"measure {where}: found an array of {value.dtype} over "
+            f"{', '.join(f'{d} ({value[d].dtype})' for d in value.dims)}, expected numbers over "
+            "one dimension of numbers"
+        )
+    if isinstance(value, np.generic) or isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, np.ndarray | list | tuple):
         array = np.asarray(value)
@@ -134,7 +161,9 @@ def _amount(value: Any, where: str) -> Amount:
     if isinstance(value, bool | int | float):
         return Amount(float(value))
     if isinstance(value, str):
-        return Amount(value)
+        # what no file can hold is escaped
+        written = value.encode("utf-8", "backslashreplace").decode().replace("\0", "\\x00")
+        return Amount(written)
     if value is None:
         raise ModelError(
             f"measure {where}: returned nothing (None), expected a number (NaN: none) or a text"

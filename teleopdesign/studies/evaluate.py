@@ -13,7 +13,7 @@ from .case import SimulatedCase
 from .chosen_measures import Measure
 from .outcomes import PointOutcome
 from .point import Amount, Point
-from .points import Points
+from .points import Points, check_name
 
 _LONGEST_REASON = 300  # most characters of the reason of a failure
 
@@ -56,16 +56,28 @@ def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointO
             for name, amount in measure(point).items():
                 if name in amounts:
                     raise ModelError(f'study: two measures give "{name}"')
+                _check_names(task, measure.name, name, amount)
                 amounts[name] = amount
     except TeleopDesignError as error:
         return PointOutcome(index, reason=_shorten(str(error)))
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         return PointOutcome(index, reason=_shorten(f"{type(error).__name__}: {error}"))
     form = tuple(
         (name, "text" if isinstance(a.value, str) else "number", a.unit, a.text, *(a.over or ()))
         for name, a in amounts.items()
     )
     return PointOutcome(index, form, tuple(_list_as_tuple(a.value) for a in amounts.values()))
+
+
+def _check_names(task: StudyTask, measure: str, name: str, amount: Amount) -> None:
+    """Raise ModelError if the data set has the name of a value, or of its dimension, already."""
+    names = (*task.points.columns, *task.points.sizes)
+    for one in (name, *(amount.over or ())[:1]):
+        check_name(str(one), f"measure {measure}:")
+        if one in names:
+            raise ModelError(f'measure {measure}: gives "{one}", the name of a parameter')
+    if amount.over and amount.over[0] == name:
+        raise ModelError(f'measure {measure}: "{name}" is over a dimension of the same name')
 
 
 def _content(task: StudyTask, values: Mapping[str, Any]) -> Any:

@@ -1,22 +1,24 @@
 """Fingerprint of a study: one text, equal for equal model, axes and measures.
 
-Numbers and texts count by value. A function counts by its source, together with all names of the
-same module, or of the enclosing function, that it uses: a changed constant above the function makes
-another study. Functions of installed packages count by name; the versions are stored separately.
+Numbers and texts count by value. A function counts by its compiled code, together with all names of
+its module, or of the enclosing function, that it uses: a changed constant above the function makes
+another study. So does a changed method of a class, and a changed function of a module of the user.
+Functions and classes of installed packages count by name; the versions are stored separately.
 """
 
 from __future__ import annotations
 
 import hashlib
-import inspect
-import sys
 import types
 from collections.abc import Iterator, Mapping, Set
 from dataclasses import fields, is_dataclass
+from functools import cached_property, partial
 from pathlib import PurePath
 from typing import Any
 
 import numpy as np
+
+from .user_code import contents_of_class, imported_files, is_installed, names_in, parts_of_code
 
 _DIGITS = 16  # hexadecimal digits of the hash: 64 bits
 
@@ -24,108 +26,151 @@ _DIGITS = 16  # hexadecimal digits of the hash: 64 bits
 def fingerprint(*things: Any) -> str:
     """The same text for the same content, in any process and on any machine."""
     whole = hashlib.sha256()
-    for part in _parts(things, set()):
+    for part in _Description().parts(things, frozenset()):
         whole.update(part.encode("utf-8", "surrogatepass"))
         whole.update(b"\0")
     return whole.hexdigest()[:_DIGITS]
 
 
-def _parts(thing: Any, above: set[int]) -> Iterator[str]:
-    if thing is None or isinstance(thing, bool | int | str | bytes | PurePath):
-        yield f"{type(thing).__name__} {thing!s}"
-    elif isinstance(thing, float | complex):
-        yield repr(thing)
-    elif isinstance(thing, np.generic):
-        yield from _parts(thing.item(), above)
-    elif isinstance(thing, np.ndarray):
-        if thing.dtype == object:
-            yield from _parts(thing.tolist(), above)
+class _Description:
+    """Parts of the text that is hashed; a function or class that is used twice is described once.
+
+    `above` holds the ids of what is being described: their caller keeps them alive, so that ids
+    stay unique.
+    """
+
+    def __init__(self) -> None:
+        self._numbers: dict[int, int] = {}
+
+    def parts(self, thing: Any, above: frozenset[int]) -> Iterator[str]:
+        if thing is None or isinstance(thing, bool | int | str | bytes | PurePath):
+            yield f"{type(thing).__name__} {thing!s}"
+        elif isinstance(thing, float | complex):
+            yield repr(thing)
+        elif isinstance(thing, np.generic):
+            yield from self.parts(thing.item(), above)
+        elif isinstance(thing, np.ndarray):
+            if thing.dtype == object:
+                yield from self.parts(thing.tolist(), above)
+            else:
+                data = hashlib.sha256(np.ascontiguousarray(thing).tobytes()).hexdigest()
+                yield f"array {thing.dtype.str} {thing.shape} {data}"
+        elif id(thing) in above:
+            yield "as before"
+        elif isinstance(thing, types.FunctionType | type):
+            yield from self._once(thing, above | {id(thing)})
         else:
-            data = hashlib.sha256(np.ascontiguousarray(thing).tobytes()).hexdigest()
-            yield f"array {thing.dtype.str} {thing.shape} {data}"
-    elif id(thing) in above:
-        yield "as before"
-    else:
-        # what is being described is kept alive by the caller: its id stays unique
-        yield from _parts_of_object(thing, above | {id(thing)})
+            yield from self._object(thing, above | {id(thing)})
 
+    def _once(self, thing: Any, above: frozenset[int]) -> Iterator[str]:
+        yield f"{type(thing).__name__} {thing.__qualname__}"
+        if is_installed(thing.__module__):
+            yield str(thing.__module__)
+        elif id(thing) in self._numbers:
+            yield f"number {self._numbers[id(thing)]}"
+        else:
+            self._numbers[id(thing)] = len(self._numbers)
+            inner = self._class if isinstance(thing, type) else self._function
+            yield from inner(thing, above)
 
-def _parts_of_object(thing: Any, above: set[int]) -> Iterator[str]:
-    if isinstance(thing, Mapping):
-        yield f"mapping {len(thing)}"
-        for key, value in thing.items():
-            yield from _parts(key, above)
-            yield from _parts(value, above)
-    elif isinstance(thing, list | tuple):
-        yield f"{len(thing)} of"
-        for value in thing:
-            yield from _parts(value, above)
-    elif isinstance(thing, Set):
-        yield from sorted(" ".join(_parts(v, above)) for v in thing)
-    elif isinstance(thing, types.FunctionType):
-        yield from _parts_of_function(thing, above)
-    elif isinstance(thing, types.MethodType):
-        yield from _parts((thing.__func__, thing.__self__), above)
-    elif isinstance(thing, type | types.BuiltinFunctionType | types.ModuleType):
-        yield f"{getattr(thing, '__module__', '')}.{getattr(thing, '__qualname__', thing)}"
-    elif is_dataclass(thing):
-        yield type(thing).__qualname__
-        for one in fields(thing):
-            yield one.name
-            yield from _parts(getattr(thing, one.name), above)
-    elif hasattr(thing, "free_symbols"):  # of sympy
-        from sympy import srepr
+    def _object(self, thing: Any, above: frozenset[int]) -> Iterator[str]:
+        if isinstance(thing, Mapping):
+            yield f"mapping {len(thing)}"
+            for key, value in thing.items():
+                yield from self.parts(key, above)
+                yield from self.parts(value, above)
+        elif isinstance(thing, list | tuple):
+            yield f"{len(thing)} of"
+            for value in thing:
+                yield from self.parts(value, above)
+        elif isinstance(thing, Set):
+            yield from sorted(" ".join(self.parts(v, above)) for v in thing)
+        elif isinstance(thing, types.CodeType):
+            yield from self.parts(parts_of_code(thing), above)
+        elif isinstance(thing, types.MethodType):
+            yield from self.parts((thing.__func__, thing.__self__), above)
+        elif isinstance(thing, partial):
+            yield from self.parts(("partial", thing.func, thing.args, thing.keywords), above)
+        elif isinstance(thing, staticmethod | classmethod):
+            yield from self.parts((type(thing).__name__, thing.__func__), above)
+        elif isinstance(thing, property):
+            yield from self.parts((thing.fget, thing.fset), above)
+        elif isinstance(thing, types.BuiltinFunctionType | types.ModuleType):
+            yield f"{getattr(thing, '__module__', '')}.{getattr(thing, '__qualname__', thing)}"
+        elif is_dataclass(thing):
+            yield from self.parts(type(thing), above)
+            for one in fields(thing):
+                yield one.name
+                yield from self.parts(getattr(thing, one.name), above)
+        elif hasattr(thing, "free_symbols"):  # of sympy
+            from sympy import srepr
 
-        yield srepr(thing)
-    else:
-        yield f"{type(thing).__module__}.{type(thing).__qualname__}"
+            yield srepr(thing)
+        elif isinstance(compiled := getattr(thing, "py_func", None), types.FunctionType):
+            yield from self.parts((compiled, getattr(thing, "targetoptions", None)), above)
+        else:
+            yield from self._instance(thing, above)
+
+    def _instance(self, thing: Any, above: frozenset[int]) -> Iterator[str]:
+        """Describe any other object: its class, and its attributes or else its pickled state."""
+        kind = type(thing)
+        yield f"{kind.__module__}.{kind.__qualname__}"
+        yield from self.parts(kind, above)
+        slots = (s for c in kind.__mro__ for s in _texts(c.__dict__.get("__slots__", ())))
+        state = {s: getattr(thing, s) for s in slots if s[:2] != "__" and hasattr(thing, s)}
         attributes = getattr(thing, "__dict__", None)
-        # a generator of random numbers that a distribution carries is no part of it
-        kept = {k: v for k, v in (attributes or {}).items() if "random_state" not in k}
+        state |= attributes if isinstance(attributes, dict) else {}
+        kept = {
+            # a generator of random numbers that a distribution carries is no part of it
+            k: v
+            for k, v in state.items()
+            if "random_state" not in k and not isinstance(getattr(kind, k, None), cached_property)
+        }
         if kept:
-            yield from _parts(kept, above)
-        elif " at 0x" not in (text := repr(thing)):
+            yield from self.parts(kept, above)
+            return
+        try:
+            made = thing.__reduce_ex__(4)
+        except Exception:  # not made to be stored: pickling may raise anything
+            made = ""
+        # what lists hold beside their state is an iterator, which can be read once
+        state_of = (
+            made if isinstance(made, str) else (*made[1:3], *map(list, filter(None, made[3:5])))
+        )
+        yield from self.parts(state_of, above)
+        if not state_of and " at 0x" not in (text := repr(thing)):
             yield text
 
+    def _function(self, function: types.FunctionType, above: frozenset[int]) -> Iterator[str]:
+        yield from self.parts(function.__code__, above)
+        yield from self.parts(function.__defaults__ or (), above)
+        yield from self.parts(function.__kwdefaults__ or {}, above)
+        yield from self.parts(vars(function), above)
+        for cell in function.__closure__ or ():
+            try:
+                yield from self.parts(cell.cell_contents, above)
+            except ValueError:  # a name that has no value yet
+                continue
+        names = names_in(function.__code__)
+        yield from self._names(function.__globals__, names, above)
+        yield from imported_files(function.__code__)
 
-def _parts_of_function(function: types.FunctionType, above: set[int]) -> Iterator[str]:
-    name = f"function {function.__qualname__}"
-    yield name
-    if _is_installed(function.__module__):
-        yield function.__module__
-        return
-    try:
-        yield inspect.getsource(function)
-    except (OSError, TypeError):  # written at a prompt: the code itself
-        yield function.__code__.co_code.hex()
-        yield from _parts([c for c in function.__code__.co_consts if _is_plain(c)], above)
-    yield from _parts(function.__defaults__ or (), above)
-    yield from _parts(function.__kwdefaults__ or {}, above)
-    for cell in function.__closure__ or ():
-        try:
-            yield from _parts(cell.cell_contents, above)
-        except ValueError:  # a name that has no value yet
-            continue
-    for used in sorted(_names(function.__code__)):
-        if used in function.__globals__:
-            yield used
-            yield from _parts(function.__globals__[used], above)
+    def _names(
+        self, known: Mapping[str, Any], names: Set[str], above: frozenset[int]
+    ) -> Iterator[str]:
+        """Describe the values of those names that are known; of modules, what is used of them."""
+        for name in sorted(names & known.keys()):
+            value = known[name]
+            yield name
+            yield from self.parts(value, above)
+            if isinstance(value, types.ModuleType) and id(value) not in above:
+                if not is_installed(value.__name__):
+                    yield from self._names(vars(value), names, above | {id(value)})
 
-
-def _names(code: types.CodeType) -> set[str]:
-    """Names that a function uses, including those of functions within it."""
-    inner = (c for c in code.co_consts if isinstance(c, types.CodeType))
-    return set(code.co_names).union(*(_names(c) for c in inner))
-
-
-def _is_plain(thing: Any) -> bool:
-    return isinstance(thing, str | int | float | bool | tuple | None)
+    def _class(self, kind: type, above: frozenset[int]) -> Iterator[str]:
+        yield from self.parts(kind.__bases__, above)
+        yield from self.parts(contents_of_class(kind), above)
 
 
-def _is_installed(module: str | None) -> bool:
-    """Whether a module is of this package, of the standard library, or of an installed one."""
-    top = (module or "").partition(".")[0]
-    if top == __package__.partition(".")[0] or top in sys.stdlib_module_names:
-        return top != "__main__"
-    file = getattr(sys.modules.get(module or ""), "__file__", "") or ""
-    return "site-packages" in PurePath(file).parts
+def _texts(slots: Any) -> tuple[str, ...]:
+    return (slots,) if isinstance(slots, str) else tuple(slots)

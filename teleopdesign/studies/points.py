@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..errors import ModelError
+from ..errors import ModelError, quote
 from ..expectations import describe_value
 from .samples import Samples, distribution_text
 
 #: name of the dimension of points that were drawn together
 SAMPLE = "sample"
+#: names of variables that every study has
+_TAKEN = ("failure",)
 #: most points of a study: each number of a point takes 8 bytes while the study runs and 8 in the
 #: result; the reason of a failure and the list of open points take some tens of bytes
 MOST_POINTS = 100_000_000
@@ -73,7 +75,7 @@ def points_of(axes: Axes) -> Points:
 
     raises ModelError: a parameter twice, an axis without a value, two samples, too many points
     """
-    parts = [axes] if isinstance(axes, Mapping | Samples) else list(axes)
+    parts = list(axes) if isinstance(axes, list | tuple) else [axes]
     sizes: dict[str, int] = {}
     columns: dict[str, Column] = {}
     fixed: dict[str, Any] = {}
@@ -90,6 +92,7 @@ def points_of(axes: Axes) -> Points:
                 raise ModelError(f'study: axes: parameter "{name}" is there twice')
             if not isinstance(name, str):
                 raise ModelError(f"study: axes: found {describe_value(name)}, expected a parameter")
+            check_name(name, "study: axes: parameter")
         if isinstance(part, Samples):
             if samples is not None:
                 raise ModelError("study: axes: points drawn together are there twice")
@@ -104,10 +107,23 @@ def points_of(axes: Axes) -> Points:
             else:
                 sizes[name] = len(values)
                 columns[name] = Column(name, values)
+    if samples is not None and SAMPLE in columns:
+        raise ModelError(
+            f'study: axes: "{SAMPLE}" numbers the points drawn together: name it otherwise'
+        )
     points = Points(sizes, columns, fixed, samples)
     if len(points) > MOST_POINTS:
         raise ModelError(f"study: {len(points):.3g} points, expected at most {MOST_POINTS:.0e}")
     return points
+
+
+def check_name(name: str, where: str) -> None:
+    """Raise ModelError for a name that no variable of a study's file can have."""
+    if name in _TAKEN or "/" in name or not name.isprintable() or not name:
+        raise ModelError(
+            f"{where} {quote(name)}: expected another name: it stands for a variable of the data "
+            f"set, not empty, without / and not {' or '.join(_TAKEN)}"
+        )
 
 
 def _values(name: str, content: Any) -> np.ndarray | None:
@@ -117,10 +133,16 @@ def _values(name: str, content: Any) -> np.ndarray | None:
             f"study: {name}: found the distribution {distribution_text(content)}, expected values; "
             'draw points with latin_hypercube({"' + name + '": ...}, 100, seed=1)'
         )
+    if isinstance(content, Mapping | Set):
+        raise ModelError(
+            f"study: {name}: found {describe_value(content)}, expected values in a list"
+        )
     is_one = not hasattr(content, "__len__") or getattr(content, "shape", None) == ()
     if is_one or isinstance(content, str):
         if not isinstance(content, str | bool | int | float | np.number | np.bool_):
             raise ModelError(f"study: {name}: found {describe_value(content)}, expected values")
+        if not isinstance(content, str) and np.isnan(content):
+            raise ModelError(f"study: {name}: found the number nan, expected a value")
         return None
     listed = list(content) if not isinstance(content, np.ndarray) else content
     if len(listed) and all(isinstance(x, str) for x in listed):
@@ -136,11 +158,14 @@ def _values(name: str, content: Any) -> np.ndarray | None:
                 "expected numbers or texts in one row"
             )
         if values.dtype.kind == "f" and not np.isfinite(values).all():
-            raise ModelError(f"study: {name}: found values that are not finite")
+            first = values[~np.isfinite(values)][0]
+            raise ModelError(f"study: {name}: found values that are not finite ({first})")
     if not len(values):
         raise ModelError(f"study: {name}: found no value, expected at least one")
-    if len(set(values.tolist())) < len(values):
-        raise ModelError(f"study: {name}: a value is there twice")
+    listed = values.tolist()
+    if len(set(listed)) < len(values):
+        twice = next(v for k, v in enumerate(listed) if v in listed[:k])
+        raise ModelError(f"study: {name}: a value is there twice ({twice!r})")
     return values
 
 

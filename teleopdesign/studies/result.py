@@ -55,7 +55,8 @@ class Study(ByName, ByValue):
     def __getitem__(self, name: str) -> xarray.DataArray:
         if name not in self.data:
             if not self.measures:
-                raise ModelError(f"study: every point failed, most: {next(iter(self.failures))}")
+                most = next(iter(self.failures), "the measures give no value")
+                raise ModelError(f"study: every point failed, most: {most}")
             known = self._names()
             raise ModelError(
                 f'study: no measure or parameter "{name}", has {", ".join(known)}'
@@ -276,7 +277,7 @@ def _range(array: Any) -> str:
         return ", ".join(f"{n} {t}" for t, n in zip(counted, counts, strict=True) if t)[:60]
     finite = values[np.isfinite(values)]
     if not finite.size:
-        return "no number"
+        return "infinite" if np.isinf(values).any() else "no number"
     return f"{finite.min():.4g} to {finite.max():.4g}"
 
 

@@ -11,11 +11,12 @@ from pathlib import Path, PurePath
 from typing import Any, Literal
 
 from ..diagrams import Diagram
-from ..errors import ExperimentError, ModelError, did_you_mean
+from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..measurement.files import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
+from .case_checks import check_case
 from .chosen_measures import measures_of
 from .evaluate import StudyTask, check_parameters
 from .fingerprint import fingerprint
@@ -81,10 +82,10 @@ def study(
         "give": give,
         "every_step": every_step,
     }
-    _check_places(workers, scheduler)
+    _check_places(workers, scheduler, seed)
     task = _task(model, settings, axes, measures, seed)
     by_name = _Words(dict(units or {}), dict(labels or {}))
-    target = None if out is None else Path(out)
+    target = None if out is None else _check_target(Path(out))
     run = partial(_run, task, workers=workers, scheduler=scheduler, progress=progress)
     return _with_file(task, by_name, target, run)
 
@@ -97,7 +98,18 @@ class _Words:
     labels: Mapping[str, str]
 
 
-def _check_places(workers: int | None, scheduler: str) -> None:
+def _check_target(target: Path) -> Path:
+    """The file of the result; raises ExperimentError: no netCDF file, or a folder."""
+    if target.suffix != ".nc":
+        raise ExperimentError(f"{target}: found {target.suffix!r}, expected a netCDF file, .nc")
+    if target.is_dir():
+        raise ExperimentError(f"{target}: is a folder, expected a file")
+    return target
+
+
+def _check_places(workers: int | None, scheduler: str, seed: int) -> None:
+    if seed < 0:
+        raise ModelError(f"study: seed: found {seed}, expected 0 or more")
     if workers is not None and workers < 1:
         raise ModelError(f"study: workers: found {workers}, expected 1 or more")
     if scheduler and workers is not None:
@@ -109,10 +121,14 @@ def _task(
 ) -> StudyTask:
     """The task for every process, checked against the parameters of the model."""
     points, chosen = points_of(axes), measures_of(measures)
+    for one in chosen:
+        if one.name in points.columns:
+            raise ModelError(f'measures: "{one.name}" is a parameter: name it otherwise')
     if isinstance(model, Diagram):
         model = SimulatedCase(model, **settings)
     if isinstance(model, SimulatedCase):
         model.check_names(points.names)
+        check_case(model, points, chosen)
     else:
         check_parameters(model, points)
     return StudyTask(model, settings, points, chosen, seed)
@@ -130,6 +146,7 @@ def _with_file(
         if target.exists():
             stored = _load_stored(target, key)
             _remove_finished(part, key, len(task.points))
+            _write_words(stored, words)
             return stored
         if not target.parent.is_dir():
             raise ExperimentError(f"{target}: there is no folder {str(target.parent)!r}")
@@ -199,7 +216,7 @@ def _units(task: StudyTask, units: Mapping[str, str]) -> dict[str, str]:
     """Units of the parameters."""
     if isinstance(task.model, SimulatedCase):
         case = task.model
-        return {n: units.get(n) or case.unit(n) for n in task.points.names}
+        return {n: case.unit(n) for n in task.points.names}
     return {n: units.get(n, "1") for n in task.points.names}
 
 
@@ -218,6 +235,12 @@ def _write_words(result: Study, words: _Words) -> None:
             )
     for name in variables:
         if name in words.units:
+            stated = result.data[name].attrs.get("units", "1")
+            if stated not in ("1", words.units[name]):
+                raise ModelError(
+                    f"study: units: {name} is in {stated}, found {quote(words.units[name])}: a "
+                    "unit is a label, and no number is converted"
+                )
             result.data[name].attrs["units"] = words.units[name]
         if name in words.labels:
             result.data[name].attrs["long_name"] = words.labels[name]
@@ -246,7 +269,6 @@ def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
             points.fixed,
             task.measures,
             task.seed,
-            words,
             made_with,
             contents,
         ),

@@ -20,6 +20,8 @@ from ..expectations import describe_value
 Method = Literal["latin_hypercube", "sobol", "random", "sensitivity"]
 #: most points of one sample: 8 bytes each and parameter, 0.8 GB for ten parameters
 _MOST = 10_000_000
+#: relative error of a range over a step that is rounding: 0.3 / 0.1 is a whole number
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +56,7 @@ def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -
     """
     from scipy.stats import qmc
 
-    _check_count("latin_hypercube", samples)
+    _check_count("latin_hypercube", samples, seed)
     unit = qmc.LatinHypercube(len(_require_ranges(ranges)), rng=np.random.default_rng(seed)).random(
         samples
     )
@@ -66,7 +68,7 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
 
     samples: a power of two: with another number the sequence loses its balance
     """
-    _check_count("sobol", samples)
+    _check_count("sobol", samples, seed)
     return _scale_to_ranges(
         ranges, _sequence("sobol", len(_require_ranges(ranges)), samples, seed), "sobol", seed
     )
@@ -78,7 +80,7 @@ def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) ->
     samples: number of points;  seed: the same seed gives the same points on every machine
     raises ModelError: no range, a range without width, no whole number of points above 0
     """
-    _check_count("random_samples", samples)
+    _check_count("random_samples", samples, seed)
     unit = np.random.default_rng(seed).random((samples, len(_require_ranges(ranges))))
     return _scale_to_ranges(ranges, unit, "random", seed)
 
@@ -93,7 +95,7 @@ def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) 
 
     base: a power of two;  ranges: as in `latin_hypercube`
     """
-    _check_count("sensitivity_samples", base)
+    _check_count("sensitivity_samples", base, seed)
     k = len(_require_ranges(ranges))
     pairs = _sequence("sensitivity_samples", 2 * k, base, seed)
     first, second = pairs[:, :k], pairs[:, k:]
@@ -129,7 +131,7 @@ def _scale_to_ranges(
         else:
             low, high, step = _ends(name, extent)
             if step:
-                count = round((high - low) / step) + 1
+                count = int((high - low) / step * (1 + _ROUNDING)) + 1
                 columns.append(low + step * np.minimum(np.floor(count * column), count - 1))
             else:
                 columns.append(low + (high - low) * column)
@@ -165,11 +167,13 @@ def _ends(name: str, extent: Any) -> tuple[float, float, float]:
         ) from None
     if not (np.isfinite([low, high]).all() and low < high):
         raise ModelError(f"ranges: {name}: found {low:g} to {high:g}, expected low < high")
-    if step < 0 or step > high - low:
+    if not 0 <= step <= high - low:
         raise ModelError(f"ranges: {name}: found a step of {step:g}, expected 0 to high - low")
     return low, high, step
 
 
-def _check_count(where: str, samples: int) -> None:
+def _check_count(where: str, samples: int, seed: int) -> None:
+    if seed < 0:
+        raise ModelError(f"{where}: seed: found {seed}, expected 0 or more")
     if not 0 < samples <= _MOST:
         raise ModelError(f"{where}: found {samples} points, expected 1 to {_MOST}")

@@ -1,0 +1,159 @@
+"""Bad input of a study is one line before its first point, and no finished point is lost."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import study_models as models
+import xarray
+
+import teleopdesign as td
+from teleopdesign.cli import main
+from teleopdesign.errors import ExperimentError, ModelError
+
+AXIS = "C.dahl.level"
+
+
+def value(result):
+    return result
+
+
+def on_interface(axes=None, measures="force_error", **changes):
+    arguments = {**models.SIMULATED, "workers": 1, **changes}
+    axes = {AXIS: [0.5, 1.0]} if axes is None else axes
+    return td.study(models.interface(), axes, measures=measures, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"axes": {AXIS: ["1 N", "2 N"]}}, 'found the text "1 N", expected a number'),
+        ({"axes": {AXIS: "1 N"}}, 'found the text "1 N", expected a number'),
+        ({"axes": {AXIS: float("nan")}}, "found the number nan"),
+        ({"axes": {AXIS: {"from": 1, "to": 2}}}, "expected values in a list"),
+        ({"axes": {"initial.Q": [1.0]}}, 'initial: no state "Q"'),
+        ({"axes": 5}, "axes: found the number 5"),
+        ({"measures": 5}, "found the number 5, expected a measure"),
+        ({"measures": None}, "found None, expected a measure"),
+        ({"measures": "tracking_error"}, 'measure tracking_error: no signal "X_e"'),
+        ({"measures": {"a/b": "force_error"}}, 'measure "a/b": expected another name'),
+        ({"measures": {"failure": "force_error"}}, "expected another name"),
+        ({"measures": {AXIS: "force_error"}}, "is a parameter: name it otherwise"),
+        ({"initial": {"Q": 1.0}}, 'initial: no state "Q"'),
+        ({"inputs": {"Q": 1.0}}, '"Q" is not from outside'),
+        ({"seed": -1}, "seed: found -1"),
+        ({"units": {"force_error": "mN"}}, 'force_error is in N, found "mN"'),
+        ({"units": {AXIS: "mN"}}, f'{AXIS} is in N, found "mN"'),
+    ],
+)
+def test_what_is_wrong_at_every_point_is_refused(changes, text):
+    with pytest.raises(ModelError, match=text):
+        on_interface(**changes)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"signal": 3}, "signal: found the number 3, expected a text"),
+        ({"signal": "E", "after": "1 s"}, "after: found the text"),
+    ],
+)
+def test_an_option_of_another_type_is_refused(options, text):
+    with pytest.raises(ModelError, match=text):
+        td.measure("rms", **options)
+
+
+def test_a_number_out_of_bounds_fails_its_point_alone():
+    assert on_interface({AXIS: [-1.0, 1.0]})["force_error"].notnull().values.tolist() == [
+        False,
+        True,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("result", "text"),
+    [
+        ({"a/b": 1.0}, "expected another name"),
+        ({"x": 1.0}, "the name of a parameter"),
+        ({"failure": 1.0}, "expected another name"),
+        (xarray.DataArray([1.0], dims="x"), "the name of a parameter"),
+        (xarray.DataArray(["a"], dims="q"), "found an array of <U1 over q"),
+        (xarray.DataArray([1.0], {"q": ["a"]}), "over q (<U1)"),
+    ],
+)
+def test_a_value_without_a_place_in_the_data_set_fails_its_point(result, text, tmp_path):
+    """All points were computed, and then lost with an error of xarray."""
+
+    def measured(x):
+        return result if x == 1.0 else {"good": x}
+
+    arguments = {"measures": value, "workers": 1, "out": tmp_path / "a.nc"}
+    got = td.study(measured, {"x": [2.0, 1.0]}, **arguments)
+    assert got["good"].values[0] == 2.0
+    (reason,) = got.failures
+    assert text in reason
+
+
+@pytest.mark.parametrize("text", ["a\0b", "\ud800"])
+def test_texts_that_no_file_holds_are_escaped(text, tmp_path):
+    arguments = {"measures": value, "workers": 1, "out": tmp_path / "a.nc"}
+    got = td.study(lambda x: text, {"x": [1.0]}, **arguments)
+    assert got["value"].values[0] in ("a\\x00b", "\\ud800")
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_measure_that_ends_python_fails_its_point(workers):
+    def ends(x):
+        if x == 2.0:
+            raise SystemExit(3)
+        return x
+
+    got = td.study(ends, {"x": [1.0, 2.0, 3.0]}, measures=value, workers=workers)
+    assert got.failures == {"SystemExit: 3": 1}
+
+
+def test_a_misspelt_label_loses_no_point_and_other_labels_are_no_other_study(tmp_path):
+    out = tmp_path / "a.nc"
+
+    def counted(result):
+        (tmp_path / f"called-{result}-{len(list(tmp_path.iterdir()))}").touch()
+        return result
+
+    def study(labels):
+        axes = {"x": [1.0, 2.0]}
+        measures = {"m": counted}
+        return td.study(lambda x: x, axes, measures=measures, labels=labels, out=out, workers=1)
+
+    with pytest.raises(ModelError, match='no measure or parameter "n"'):
+        study({"n": "a size"})
+    for label in ("a size", "another size"):
+        assert study({"m": label})["m"].attrs["long_name"] == label
+    assert len(list(tmp_path.glob("called-*"))) == 2
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.zarr", "a", "."])
+def test_a_file_that_is_no_netcdf_is_refused(name, tmp_path):
+    with pytest.raises(ExperimentError, match="expected a netCDF file"):
+        on_interface(out=Path(tmp_path / name))
+
+
+@pytest.mark.parametrize("step", [0.3, 0.35, 0.1, 1 / 3])
+def test_steps_stay_within_their_range(step):
+    drawn = td.random_samples({"a": (0.0, 1.0, step)}, 400, seed=1).values
+    assert drawn.max() == pytest.approx(step * np.floor(1 / step + 1e-9))
+
+
+@pytest.mark.parametrize("draw", [td.latin_hypercube, td.sobol, td.random_samples])
+def test_a_seed_below_zero_and_a_step_that_is_no_number_are_refused(draw):
+    with pytest.raises(ModelError, match="seed: found -1"):
+        draw({"a": (0, 1)}, 4, seed=-1)
+    with pytest.raises(ModelError, match="a step of nan"):
+        draw({"a": (0, 1, float("nan"))}, 4)
+
+
+def test_a_study_whose_points_all_fail_has_status_two(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    code = "STUDY = dict(model=lambda x: 1 / (x - x), axes={'x': [1, 2]}, measures={'m': abs})"
+    (tmp_path / "s.py").write_text(code)
+    assert main(["study", "s.py", "--workers", "1"]) == 2
+    assert "2 of 2 points failed, most: ZeroDivisionError" in capsys.readouterr().out
