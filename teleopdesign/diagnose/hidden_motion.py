@@ -21,9 +21,10 @@ def describe_hidden_motion(prepared: Prepared, model: Model) -> str:
         seconds = sum(_tested_time(s, model) for s in stretches)
         if not stretches or 2.0 * prepared.bandwidth * seconds >= least:
             continue
+        whole = sum(len(s.keep) * s.weight * s.motion.sample_time for s in stretches)
         for body in {s.motion.body: None for s in stretches}:
             hidden = find_hidden_motion(prepared.experiment, body, prepared.bandwidth)
-            if hidden is not None:
+            if hidden is not None and 2.0 * hidden.proposed * hidden.shown * whole >= least:
                 return f"B{str(hidden)[1:]}"
         return (
             f"The position tells a motion for only {seconds:.2g} s of the {use} records. At other "

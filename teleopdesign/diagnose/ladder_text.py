@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..blocks import Value
+from ..measurement.bandwidth import slower_sensors
 from ..notebook import html_table
 from ..quantity import unit_after_number, unit_of
 from ..standard_error import with_standard_error
@@ -177,9 +178,14 @@ def ladder_text(diagnosis: Diagnosis) -> str:
 
 def _bandwidth_line(diagnosis: Diagnosis) -> str:
     """A sentence on the frequencies that the errors of the table include."""
-    stated = diagnosis.experiment.bandwidth == diagnosis.prepared.bandwidth
-    source = "stated" if stated else "chosen: up to there the positions show motion"
-    return f"compared up to {diagnosis.prepared.bandwidth:.3g} Hz ({source})"
+    stated, used = diagnosis.experiment.bandwidth, diagnosis.prepared.bandwidth
+    source = "chosen: up to there the positions show motion"
+    if stated is not None:
+        source = "stated"
+        if used < stated:
+            name, rate = min(slower_sensors(diagnosis.experiment), key=lambda one: one[1])
+            source = f"stated: {stated:.3g} Hz, but {name} has {rate:.4g} readings in a second"
+    return f"compared up to {used:.3g} Hz ({source})"
 
 
 def records_line(diagnosis: Diagnosis) -> str:

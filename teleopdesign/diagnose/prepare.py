@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..by_value import ByValue
 from ..errors import ExperimentError
-from ..measurement.bandwidth import default_bandwidth
+from ..measurement.bandwidth import bandwidth_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array, spectrum
 from ..measurement.motion import SHORTEST, SMOOTHING, Motion, motions
@@ -128,7 +128,7 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             f"{experiment.folder.name}/experiment.toml: model.arm: found an arm, expected one body "
             "or two: only `teleopdesign diagnose` (find_missing_in_arm) compares an arm"
         )
-    chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
+    chosen = bandwidth or bandwidth_of(experiment)
     stretches = []
     for record in experiment.records:
         _refuse_huge(experiment, record)

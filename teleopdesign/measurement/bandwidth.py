@@ -12,6 +12,7 @@ from .experiment import Experiment
 from .filtering import Array
 from .motion import motions
 from .record import Record
+from .slower_body import SENSED
 
 #: a bandwidth hides the motion if the share of rows in motion, over the share at a bandwidth two
 #: octaves lower, is below this: then most rows that could be tested are lost
@@ -20,6 +21,9 @@ LEAST_SHARE = 0.5
 LOWEST = 1.0
 #: highest bandwidth that is chosen, and that is proposed, as parts of the sample rate
 CHOSEN, PROPOSED = 0.1, 0.3
+#: highest bandwidth of a comparison as a part of the rate of a sensor whose readings are
+#: interpolated: a cubic between readings passes 0.97 of a signal there, 0.87 at 0.3
+INTERPOLATED = 0.2
 #: a position shows a motion if its spectral density is above this multiple of that of reading
 #: noise: 10 dB
 ABOVE = 10.0
@@ -30,6 +34,23 @@ DENSE, THIRD_OCTAVE = 0.5, 2.0 ** (1.0 / 3.0)
 #: the frequency below which this share of the squared velocity lies is that of the motion, and the
 #: bandwidth is at least `FULLY` times that frequency: the low-pass then passes 0.996 of the motion
 SHARE, FULLY = 0.9, 2.0
+
+
+def bandwidth_of(experiment: Experiment) -> float:
+    """Bandwidth of a comparison in Hz: as stated or chosen, and within the rate of slow sensors."""
+    limits = [INTERPOLATED * rate for _, rate in slower_sensors(experiment)]
+    return min([experiment.bandwidth or default_bandwidth(experiment), *limits])
+
+
+def slower_sensors(experiment: Experiment) -> list[tuple[str, float]]:
+    """Positions and measured forces that are interpolated in a record, with their rate in Hz."""
+    sensors = [key for key, c in experiment.channels.items() if c.quantity in SENSED]
+    return [
+        (name, record.rate_of(name))
+        for record in experiment.records
+        for name in sensors
+        if record.rate_of(name) < 0.99 / record.sample_time
+    ]
 
 
 def default_bandwidth(experiment: Experiment) -> float:

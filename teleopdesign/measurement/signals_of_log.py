@@ -218,6 +218,9 @@ def _resample_by_stamps(
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
     h = clock.clock.sample_time
     rule, step = rule_of(channel, values), encoder_step(channel, values)
+    rate = _rate_without_pauses(at)
+    if channel.quantity == "interaction_force" and rate * h < 0.99:
+        rule = "position"  # a line between slow readings would weaken what changes fast
     out = np.concatenate(
         [
             interpolate_by_rule(
@@ -232,7 +235,6 @@ def _resample_by_stamps(
         ]
     )
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
-    rate = _rate_without_pauses(at)
     text = f"{key.removeprefix('device.')} has stamps of its own, {rate:.4g} Hz"
     done = ReadingStep(
         file,

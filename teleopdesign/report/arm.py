@@ -124,7 +124,7 @@ def arm_page_of(
         reading=experiment.reading,
         channels=channel_rows(experiment),
         bandwidth=diagnosis.prepared.bandwidth,
-        bandwidth_stated=experiment.bandwidth is not None,
+        bandwidth_stated=experiment.bandwidth == diagnosis.prepared.bandwidth,
         version=version(),
     )
 

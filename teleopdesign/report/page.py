@@ -111,7 +111,7 @@ def page_of(
         reading=experiment.reading,
         channels=channel_rows(experiment),
         bandwidth=diagnosis.prepared.bandwidth,
-        bandwidth_stated=experiment.bandwidth is not None,
+        bandwidth_stated=experiment.bandwidth == diagnosis.prepared.bandwidth,
         version=version(),
     )
 

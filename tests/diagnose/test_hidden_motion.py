@@ -12,13 +12,14 @@ from teleopdesign.model import Model
 H = 0.002
 
 
-def swinging(every, bandwidth, coulomb=0.3):
-    """A joint with dry friction that swings for 20 s; each reading is held for `every` rows."""
+def swinging(noise, bandwidth, coulomb=0.3):
+    """A joint with dry friction that swings for 20 s; noise (rad, rms) of its position."""
     t = H * np.arange(10_000)
-    angle = 0.3 * np.sin(2.0 * np.pi * 0.7 * t) + 0.1 * np.sin(2.0 * np.pi * 1.9 * t)
+    angle = 0.1 * np.sin(2.0 * np.pi * 0.7 * t) + 0.03 * np.sin(2.0 * np.pi * 1.9 * t)
     rate = np.gradient(angle, H)
     torque = 0.02 * np.gradient(rate, H) + coulomb * np.tanh(rate / 0.01) + 0.1 * rate
-    read = 1e-4 * np.round(1e4 * angle[np.arange(len(t)) // every * every])
+    scatter = noise * np.random.default_rng(0).standard_normal(len(t))
+    read = 1e-4 * np.round(1e4 * (angle + scatter))
     position = {"column": "q", "unit": "rad", "resolution": 1e-4}
     return td.experiment(
         {"t": t, "q": read, "u": torque},
@@ -33,17 +34,25 @@ def swinging(every, bandwidth, coulomb=0.3):
     )
 
 
-@pytest.mark.parametrize(("every", "bandwidth", "hidden"), [(4, 50.0, True), (1, 50.0, False)])
-def test_a_bandwidth_that_hides_the_motion_is_a_reason_and_a_warning(every, bandwidth, hidden):
-    experiment = swinging(every, bandwidth)
+@pytest.mark.parametrize(
+    ("noise", "bandwidth", "hidden"), [(0.002, 100.0, True), (0.0, 100.0, False)]
+)
+def test_a_bandwidth_that_hides_the_motion_is_a_reason_and_a_warning(noise, bandwidth, hidden):
+    experiment = swinging(noise, bandwidth)
     sentence = describe_hidden_motion(prepare(experiment), Model.from_experiment(experiment))
     assert ("no model is tested: write bandwidth = { value = " in sentence) == hidden
     warnings = [f.sentence for f in check_experiment(experiment) if f.concern == "warning"]
     assert any("no model is tested" in one for one in warnings) == hidden
 
 
+def test_no_bandwidth_is_proposed_that_hides_the_motion_too():
+    experiment = swinging(0.005, 100.0)
+    sentence = describe_hidden_motion(prepare(experiment), Model.from_experiment(experiment))
+    assert "record more motion" in sentence
+
+
 def test_without_dry_friction_each_row_tests_the_model():
-    experiment = swinging(4, 50.0, coulomb=0.0)
+    experiment = swinging(0.002, 100.0, coulomb=0.0)
     assert not describe_hidden_motion(prepare(experiment), Model.from_experiment(experiment))
 
 
@@ -61,6 +70,6 @@ def test_records_that_hardly_move_say_for_how_long():
 
 def test_no_model_is_adequate_where_none_is_tested():
     """The verdict was `model_adequate`, with an error of 0.00 % and "inf noise floors"."""
-    diagnosis = td.find_missing(swinging(4, 50.0))
+    diagnosis = td.find_missing(swinging(0.002, 100.0))
     assert diagnosis.verdict == "undecided"
     assert "no model is tested" in str(diagnosis)

@@ -1,10 +1,13 @@
 """A sensor slower than its log: readings that are held until the next one are no motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import teleopdesign as td
 from teleopdesign.check import check_experiment
+from teleopdesign.measurement.bandwidth import INTERPOLATED, bandwidth_of
 
 RATE, STEP = 1000.0, 1e-6
 T = np.arange(8000) / RATE
@@ -67,3 +70,10 @@ def test_a_log_without_slower_sensors_is_as_it_was():
     fast = record().records[0]
     np.testing.assert_array_equal(fast.signals["device.position"], STEP * np.round(ANGLE / STEP))
     assert not fast.reading
+
+
+def test_a_comparison_ends_where_the_readings_of_a_slower_sensor_end():
+    slow, fast = (replace(record(push=n), bandwidth=50.0) for n in (8, 1))
+    assert bandwidth_of(slow) == pytest.approx(INTERPOLATED * RATE / 8, rel=1e-3)
+    assert bandwidth_of(fast) == 50.0
+    assert bandwidth_of(replace(slow, bandwidth=5.0)) == 5.0

@@ -10,6 +10,7 @@ from typing import Any
 from ...blocks import CONTACT
 from ...effects import EFFECTS, Effect
 from ...errors import ExperimentError, did_you_mean, quote
+from ...measurement.bandwidth import bandwidth_of
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ...quantity import AXES, unit_of
@@ -261,6 +262,6 @@ def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
     if others := [file for file in named_records if file not in files]:
         return f"a record {quote(others[0])}, found {', '.join(sorted(files))}"
     bandwidth = content.get("bandwidth", {}).get("value", experiment.bandwidth)
-    if experiment.bandwidth is not None and bandwidth != experiment.bandwidth:
-        return f"bandwidth {bandwidth:g} Hz, found {experiment.bandwidth:g} Hz"
+    if experiment.bandwidth is not None and bandwidth != (now := bandwidth_of(experiment)):
+        return f"bandwidth {bandwidth:g} Hz, found {now:g} Hz"
     return None

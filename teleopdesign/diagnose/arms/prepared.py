@@ -12,7 +12,7 @@ from ...arms.base_parameters import columns_with_motors
 from ...by_value import ByValue
 from ...effects import EFFECTS
 from ...errors import ExperimentError
-from ...measurement.bandwidth import default_bandwidth
+from ...measurement.bandwidth import bandwidth_of
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array
 from ...measurement.motion import LinkForces, Motion
@@ -69,7 +69,7 @@ def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
     """
     if experiment.arm is None:
         raise ExperimentError(f"{experiment.folder.name}/experiment.toml: no [model.arm]")
-    bandwidth = experiment.bandwidth or default_bandwidth(experiment)
+    bandwidth = bandwidth_of(experiment)
     arm, joints = experiment.arm.arm, tuple(experiment.bodies)
     base = base_parameters(arm) if experiment.arm.estimate == "base parameters" else None
     prepared = {j: prepare(isolate_joint(experiment, j), bandwidth=bandwidth) for j in joints}
