@@ -13,10 +13,11 @@ from .prepare import Prepared, Stretch
 def describe_hidden_motion(prepared: Prepared, model: Model) -> str:
     """Why too few rows of the fit or check records test a model, as sentences; "": enough do.
 
-    Rows that test it hold more independent values than the model has parameters (`few_values`).
+    Rows of a fit hold at least as many independent values (`few_values`) as parameters are
+    estimated from them, and those of a check `Criteria.for_each`.
     """
-    least = CRITERIA.for_each * max(sum(not v.fixed for v in model.parameters.values()), 1)
-    for use in ("fit", "check"):
+    estimated = float(sum(not v.fixed for v in model.parameters.values()))
+    for use, least in (("fit", estimated), ("check", CRITERIA.for_each)):
         stretches = prepared.of(use)
         seconds = sum(_tested_time(s, model) for s in stretches)
         if not stretches or 2.0 * prepared.bandwidth * seconds >= least:
