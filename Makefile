@@ -21,6 +21,8 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 # what one process has compiled to bytecode, hundreds of others need not compile again: collecting the
 # tests takes each process 5.6 s of processor time, 9.5 s without
 unexport PYTHONDONTWRITEBYTECODE
+# as many processes as cores, each with a thread for each core, wait for each other: 8 % more processor time
+test slow: export OPENBLAS_NUM_THREADS = 1
 
 .DEFAULT_GOAL := help
 
