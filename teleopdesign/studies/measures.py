@@ -119,7 +119,8 @@ def _onset(
 ) -> Amount:
     """least value of a parameter, between low and high (> 0), at which a motion grows
 
-    by bisection of the logarithm; NaN where the motion grows at low already, or not at high
+    by bisection of the logarithm: the least one only where growth, once begun, goes on up to high;
+    NaN where the motion grows at low already, or not at high
     """
     from .onset import find_onset, growth
 

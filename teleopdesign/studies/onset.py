@@ -1,4 +1,4 @@
-"""Onset of instability: whether an oscillation grows, and the smallest parameter for that."""
+"""Onset of instability: whether an oscillation grows, and the parameter at which that begins."""
 
 from __future__ import annotations
 
@@ -36,8 +36,10 @@ def growth_of(samples: Callable[[], np.ndarray]) -> float:
 
 
 def find_onset(grows: Callable[[float], bool], *, within: tuple[float, float], steps: int) -> float:
-    """Smallest value at which a simulation grows; NaN if no such value lies between the ends.
+    """A value at which growth begins; NaN if a simulation grows at low already, or not at high.
 
+    It is the smallest one only where every larger value grows too: bisection sees no island of
+    growth below it.
     grows: whether the simulation with a value grows;  within: lowest and highest value, > 0
     steps: halvings of the logarithm: the result is within (high/low)^(2^-steps) of the onset
     """
