@@ -70,6 +70,13 @@ def lost_product(x, y, folder):
     return product(x, y)
 
 
+def ending(x):
+    """The number x; at x = 2 the function ends Python."""
+    if x == 2.0:
+        raise SystemExit(3)
+    return x
+
+
 def wait_for(path, most=20.0):
     """Return as soon as a file exists, at the latest after `most` seconds."""
     end = time.monotonic() + most

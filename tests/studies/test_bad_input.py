@@ -102,13 +102,9 @@ def test_texts_that_no_file_holds_are_escaped(text, tmp_path):
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_a_measure_that_ends_python_fails_its_point(workers):
-    def ends(x):
-        if x == 2.0:
-            raise SystemExit(3)
-        return x
-
-    got = td.study(ends, {"x": [1.0, 2.0, 3.0]}, measures=value, workers=workers)
+def test_a_point_that_ends_python_fails_alone(workers):
+    axes = {"x": [1.0, 2.0, 3.0]}
+    got = td.study(models.ending, axes, measures=models.value, workers=workers)
     assert got.failures == {"SystemExit: 3": 1}
 
 
