@@ -65,7 +65,7 @@ def interpolate_by_rule(
     if rule == "held":
         return _average_held(*((values, at) if slower_clock else _fill_held(values, at)), grid)
     if rule == "position":
-        return _position(values, at, grid, step)
+        return _position(values, at, grid, step, slower_clock)
     return np.interp(grid, at, values)
 
 
@@ -151,8 +151,13 @@ def _average_held(values: Array, at: Array, grid: Array) -> Array:
     return mean
 
 
-def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
-    """Local cubic through four readings; where these are few steps apart, a line in such steps."""
+def _position(
+    values: Array, at: Array, grid: Array, step: float, slower_clock: bool = False
+) -> Array:
+    """Local cubic through four readings; where these are few steps apart, a line in such steps.
+
+    slower_clock: readings are so far apart that the motion between them bends, also in steps
+    """
     right = np.clip(np.searchsorted(at, grid), 1, len(at) - 1)
     left = right - 1
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
@@ -163,7 +168,10 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
     # beyond the ends the last reading is kept
     smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
-    return np.where(slow, _interpolate_in_steps(values[left], values[right], part, step), smooth)
+    in_steps = _interpolate_in_steps(values[left], values[right], part, step)
+    if slower_clock and step > 0.0:
+        in_steps = values[left] + step * np.rint((smooth - values[left]) / step)
+    return np.where(slow, in_steps, smooth)
 
 
 def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:

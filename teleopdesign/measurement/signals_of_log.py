@@ -288,8 +288,8 @@ def _describe_lost_rows(
         file,
         f"{count_of(lost, 'row')} lost, {100 * part:.2g} %",
         "filled: positions by the curve through their neighbours, commands by the line between",
-        f"adds at most {100 * size:.2g} % of the force; positions there err by "
-        + " and ".join(positions),
+        f"adds at most {100 * size:.2g} % of the force"
+        + (f"; positions there err by {' and '.join(positions)}" if positions else ""),
         size,
         "lost rows",
         (("lost", float(lost)), ("part", part), ("force_error", size)),

@@ -8,6 +8,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.check import check_experiment
 from teleopdesign.measurement.bandwidth import INTERPOLATED, bandwidth_of
+from teleopdesign.measurement.resample import interpolate_by_rule
 
 RATE, STEP = 1000.0, 1e-6
 T = np.arange(8000) / RATE
@@ -77,3 +78,13 @@ def test_a_comparison_ends_where_the_readings_of_a_slower_sensor_end():
     assert bandwidth_of(slow) == pytest.approx(INTERPOLATED * RATE / 8, rel=1e-3)
     assert bandwidth_of(fast) == 50.0
     assert bandwidth_of(replace(slow, bandwidth=5.0)) == 5.0
+
+
+def test_a_motion_that_turns_between_two_readings_of_a_coarse_encoder_bends():
+    grid, step = np.arange(2000.0), 1e-3
+    place = 0.05 * np.sin(2 * np.pi * grid / 64.0)
+    read = step * np.round(place / step)
+    at = grid[::8]
+    between = interpolate_by_rule(read[::8], at, grid, "position", step=step, slower_clock=True)
+    inner = slice(16, -16)
+    assert np.abs(between - place)[inner].max() < 1.5 * step
