@@ -12,7 +12,7 @@ from .experiment import Experiment
 from .filtering import Array
 from .motion import motions
 from .record import Record
-from .slower_body import SENSED
+from .slower_signals import SENSED
 
 #: a bandwidth hides the motion if the share of rows in motion, over the share at a bandwidth two
 #: octaves lower, is below this: then most rows that could be tested are lost

@@ -164,7 +164,8 @@ def _mark_between_readings(
     """Rows that the log wrote before its source had a new reading."""
     every, of = _columns_by_quantity(columns, channels, on_this_clock, filled)
     between = np.zeros(len(filled), dtype=bool)
-    between[filled] = rows_between_readings(every, of("position"), stamps[filled])
+    if len(every) > 1:  # one column alone has the rows of its log
+        between[filled] = rows_between_readings(every, of("position"), stamps[filled])
     return between
 
 

@@ -15,7 +15,7 @@ from .description import BodyDescription
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
-from .slower_body import with_slower_bodies, with_slower_sensors
+from .slower_signals import with_slower_signals
 from .spans import cut_to
 from .tables import LogColumns, read_columns
 
@@ -140,8 +140,9 @@ def record_of(
     to_seconds = None
     if sample_rate is None:
         to_seconds = factor_of(channels["time"], bodies, "channels.time")
-    for separate in (with_slower_bodies, with_slower_sensors):
-        columns = separate(columns, channels, name, sample_rate=sample_rate, to_seconds=to_seconds)
+    columns = with_slower_signals(
+        columns, channels, name, sample_rate=sample_rate, to_seconds=to_seconds
+    )
     clock, steps = clock_of_log(
         columns, channels, name, file=file, sample_rate=sample_rate, to_seconds=to_seconds
     )

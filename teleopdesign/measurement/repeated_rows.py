@@ -108,7 +108,7 @@ def rows_between_readings(
     returns: all False where the log has no such source
     """
     none = np.zeros(len(stamps), dtype=bool)
-    if len(channels) < 2 or len(stamps) < 2:
+    if not channels or len(stamps) < 2:
         return none
     changed = np.flatnonzero(~np.logical_and.reduce([np.diff(y) == 0 for y in channels])) + 1
     if len(changed) < READINGS or len(changed) > (1.0 - MOST) * len(stamps):

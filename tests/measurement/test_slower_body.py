@@ -17,12 +17,12 @@ def motion(t, body):
     return 0.05 * np.sin(2 * np.pi * f * t) + 0.01 * np.sin(2 * np.pi * 3.7 * f * t)
 
 
-def columns(held):
-    """The table of both; held: rows for which each body's readings stay."""
+def columns(held, commands):
+    """The table of both; held, commands: rows for which a body's readings and its command stay."""
     table = {"t": T + 12.5}
     for body, rows in held.items():
         x = motion(T, body)[::rows].repeat(rows)
-        force = np.sign(np.gradient(motion(T, body)))[::rows].repeat(rows)
+        force = np.sign(np.gradient(motion(T, body)))[:: commands[body]].repeat(commands[body])
         table |= {f"{body}_x": STEP * np.round(x / STEP), f"{body}_u": force}
     return table
 
@@ -40,10 +40,12 @@ CHANNELS = """
 """
 
 
-def read(folder, held):
+def read(folder, held, commands=None):
     """The experiment of a table, with both bodies."""
     folder.mkdir(exist_ok=True)
-    pd.DataFrame(columns(held)).to_csv(folder / "log.csv", index=False, float_format="%.12g")
+    pd.DataFrame(columns(held, commands or held)).to_csv(
+        folder / "log.csv", index=False, float_format="%.12g"
+    )
     text = "".join(MODEL.format(body) for body in held)
     text += '\n[channels]\ntime = { column = "t", unit = "s" }\n'
     text += "".join(CHANNELS.format(body) for body in held)
@@ -62,6 +64,15 @@ def test_the_readings_of_a_slower_body_are_interpolated_and_its_commands_held(tm
     assert record.rate_of("slave.position") == pytest.approx(RATE / EVERY, rel=1e-3)
     assert record.rate_of("master.position") == pytest.approx(RATE)
     assert any("slave.position has stamps of its own" in s.observed for s in record.reading)
+
+
+def test_a_slower_sensor_of_one_of_two_bodies_leaves_its_command_as_it_is(tmp_path):
+    record = read(tmp_path, {"master": 1, "slave": EVERY}, {"master": 1, "slave": 1}).records[0]
+    error = record.signals["slave.position"] - motion(T, "slave")
+    assert np.abs(error[EVERY:-EVERY]).max() < 2e-5
+    command = np.sign(np.gradient(motion(T, "slave")))
+    np.testing.assert_array_equal(record.signals["slave.actuator_force"], command)
+    assert record.rate_of("slave.actuator_force") == pytest.approx(RATE)
 
 
 def test_the_bandwidth_is_that_of_the_slower_body(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.errors import ExperimentError
-from teleopdesign.measurement import slower_body
+from teleopdesign.measurement import slower_signals
 from teleopdesign.measurement.channel import Channel
 from teleopdesign.measurement.description import value_from
 from teleopdesign.measurement.doors._cells import number_of
@@ -143,7 +143,7 @@ def test_the_time_of_rows_for_slower_bodies():
 
     def stamps(t, rate=None, to_seconds=1e-3):
         columns = LogColumns({"t": np.asarray(t, dtype=float), "s": np.zeros(999)}, {"s": None})
-        return slower_body._stamps(columns, channels, "log", rate, to_seconds)
+        return slower_signals._stamps(columns, channels, "log", rate, to_seconds)
 
     assert stamps([5.0, 7.0, 11.0]) == pytest.approx([0.005, 0.007, 0.011])
     assert stamps([2e9, 2e9 + 2, 2e9 + 6], to_seconds=1.0).tolist() == [0.0, 2.0, 6.0]

@@ -22,7 +22,7 @@ from .time_grid import DATE
 SENSED = ("position", "interaction_force")
 
 
-def with_slower_bodies(
+def with_slower_signals(
     columns: LogColumns,
     channels: Mapping[str, Channel],
     name: str,
@@ -30,23 +30,20 @@ def with_slower_bodies(
     sample_rate: float | None,
     to_seconds: float | None,
 ) -> LogColumns:
-    """The columns, those of slower bodies with one value for each reading, and its stamp.
+    """The columns; those of slower bodies and sensors have one value and stamp for each reading.
 
     name, sample_rate, to_seconds: as in `clock_of_log`
-    Where all bodies change together, or there is one, the whole log has a slower source, and its
-    rows are left out instead (`clock_of_log`).
+    Where all channels change together, the whole log has a slower source, and its rows are left out
+    instead (`clock_of_log`). A command that alone changes seldom is held by its controller, and
+    stays as it is.
     """
-    of_body: dict[str, list[Channel]] = {}
-    for channel in channels.values():
-        if channel.body is not None:
-            of_body.setdefault(channel.body, []).append(channel)
-    if len(of_body) < 2 or "segment" in channels:
+    if "segment" in channels:
         return columns
     stamps = _stamps(columns, channels, name, sample_rate, to_seconds)
     if stamps is None or _reads_slowly(columns, [*channels.values()], stamps).any():
         return columns
     values, slow_stamps = dict(columns.values), dict(columns.stamps)
-    for signals in of_body.values():
+    for signals in _sources(columns, channels, stamps):
         between = _reads_slowly(columns, signals, stamps)
         if not between.any():
             continue
@@ -56,34 +53,20 @@ def with_slower_bodies(
     return replace(columns, values=values, stamps=slow_stamps)
 
 
-def with_slower_sensors(
-    columns: LogColumns,
-    channels: Mapping[str, Channel],
-    name: str,
-    *,
-    sample_rate: float | None,
-    to_seconds: float | None,
-) -> LogColumns:
-    """The columns, those of slower sensors of one body with one value for each reading.
-
-    name, sample_rate, to_seconds: as in `clock_of_log`
-    A command that changes seldom is held by its controller, and stays as it is.
-    """
-    signals = [c for c in channels.values() if c.body is not None]
-    if len({c.body for c in signals}) > 1 or "segment" in channels:
-        return columns
-    stamps = _stamps(columns, channels, name, sample_rate, to_seconds)
-    if stamps is None or _reads_slowly(columns, signals, stamps).any():
-        return columns
-    values, slow_stamps = dict(columns.values), dict(columns.stamps)
-    for column in _columns(columns, [c for c in signals if c.quantity in SENSED]):
-        x = columns.values[column]
-        if len(x) != len(stamps) or not np.isfinite(x).all():
-            continue
-        between = rows_between_readings([x, x], [x], stamps)
-        if between.any():
-            values[column], slow_stamps[column] = x[~between], stamps[~between]
-    return replace(columns, values=values, stamps=slow_stamps)
+def _sources(
+    columns: LogColumns, channels: Mapping[str, Channel], stamps: Array
+) -> list[list[Channel]]:
+    """Channels that may have a clock of their own: of a slower body all, else each sensor."""
+    of_body: dict[str, list[Channel]] = {}
+    for channel in channels.values():
+        if channel.body is not None:
+            of_body.setdefault(channel.body, []).append(channel)
+    sources = []
+    for signals in of_body.values():
+        together = len(of_body) > 1 and _reads_slowly(columns, signals, stamps).any()
+        alone = [[s] for s in signals if s.quantity in SENSED]
+        sources += [signals] if together else alone
+    return sources
 
 
 def _stamps(
@@ -111,8 +94,8 @@ def _columns(columns: LogColumns, signals: list[Channel]) -> list[str]:
 
 def _reads_slowly(columns: LogColumns, signals: list[Channel], stamps: Array) -> np.ndarray:
     """Mask (n,) of the rows between two readings of these signals; none where a cell is empty."""
-    positions = _columns(columns, [s for s in signals if s.quantity == "position"])
+    sensed = _columns(columns, [s for s in signals if s.quantity == "position"] or signals)
     every = [columns.values[c] for c in _columns(columns, signals)]
     if not all(len(x) == len(stamps) and np.isfinite(x).all() for x in every):
         return np.zeros(len(stamps), dtype=bool)
-    return rows_between_readings(every, [columns.values[c] for c in positions], stamps)
+    return rows_between_readings(every, [columns.values[c] for c in sensed], stamps)
