@@ -40,5 +40,5 @@ def independent_values(residual: Array, prepared: Prepared) -> float:
     squares = (residual / size) ** 2
     # of normal noise, which fails everywhere, the mean fourth power is three squared mean squares
     part = 3.0 * float(np.mean(squares) ** 2 / np.mean(squares**2))
-    seconds = sum(len(s.keep) * s.weight * s.motion.sample_time for s in prepared.of("fit"))
+    seconds = sum(s.counted_time for s in prepared.of("fit"))
     return 2.0 * prepared.bandwidth * seconds * min(part, 1.0)

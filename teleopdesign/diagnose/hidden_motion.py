@@ -22,7 +22,7 @@ def describe_hidden_motion(prepared: Prepared, model: Model) -> str:
         seconds = sum(_tested_time(s, model) for s in stretches)
         if not stretches or 2.0 * prepared.bandwidth * seconds >= least:
             continue
-        whole = sum(len(s.keep) * s.weight * s.motion.sample_time for s in stretches)
+        whole = sum(s.counted_time for s in stretches)
         for body in {s.motion.body: None for s in stretches}:
             hidden = find_hidden_motion(prepared.experiment, body, prepared.bandwidth)
             if hidden is not None and 2.0 * hidden.proposed * hidden.shown * whole >= least:
@@ -36,7 +36,8 @@ def describe_hidden_motion(prepared: Prepared, model: Model) -> str:
 
 def _tested_time(stretch: Stretch, model: Model) -> float:
     """Time (s) for which a stretch tests the model of its body."""
-    motion, rows = stretch.motion, len(stretch.keep)
-    if model.body(motion.body).level() != 0:
-        rows = int(np.count_nonzero(motion.direction[stretch.keep]))
-    return rows * stretch.weight * motion.sample_time
+    motion = stretch.motion
+    if model.body(motion.body).level() == 0:
+        return stretch.counted_time
+    moving = np.count_nonzero(motion.direction[stretch.keep])
+    return moving * stretch.weight * motion.sample_time

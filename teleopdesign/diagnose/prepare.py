@@ -61,6 +61,11 @@ class Stretch(ByValue):
     force_is_sensed: bool = False
 
     @property
+    def counted_time(self) -> float:
+        """Seconds of the record that the rows which count stand for."""
+        return len(self.keep) * self.weight * self.motion.sample_time
+
+    @property
     def row(self) -> float:
         """Seconds between rows of the record."""
         return self.motion.sample_time / self.motion.merged

@@ -9,6 +9,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.few_values import explain_few_values, independent_values
+from teleopdesign.diagnose.prepare import Stretch
 
 #: the module, not the function of its name
 rank = import_module("teleopdesign.diagnose.rank")
@@ -21,6 +22,7 @@ def records(weight=1.0):
     stretch = SimpleNamespace(
         keep=np.arange(ROWS), weight=weight, motion=SimpleNamespace(sample_time=1 / RATE / weight)
     )
+    stretch.counted_time = Stretch.counted_time.fget(stretch)
     return SimpleNamespace(of=lambda use: [stretch] * (use == "fit"), bandwidth=BANDWIDTH)
 
 

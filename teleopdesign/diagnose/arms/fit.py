@@ -219,7 +219,7 @@ def _linear(
         shifts, and the stretches
     """
     plain, free = remove_links(add_links(model, stretches)), _list_inner_parameters(model)
-    lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
+    lasts = sum(s.counted_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK), model)
     parts = relative_residuals(model, plain, (*free, *shifts.names))
     roots = [np.sqrt(s.weight) for s in plain]
