@@ -22,6 +22,10 @@ class ModelError(TeleopDesignError):
     """A model, diagram or effect is inconsistent."""
 
 
+class UnknownSignal(ModelError):
+    """A diagram has no such signal, state or motion, whatever its parameters are."""
+
+
 class UnstableLoop(ModelError):
     """A loop is unstable without any change, so that it has no stability margin."""
 

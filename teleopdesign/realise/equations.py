@@ -17,7 +17,7 @@ from ..blocks import Body, solve_carried_force
 from ..controllers import parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..effects import SIGNALS
-from ..errors import ModelError, did_you_mean
+from ..errors import ModelError, UnknownSignal, did_you_mean
 from ._linear import Steps, solve_linear
 from .computer import (
     ComputerEquations,
@@ -109,7 +109,7 @@ class _Builder:
         motions = [b.motion for b in self.moving]
         for motion in prescribed:
             if motion not in motions:
-                raise ModelError(
+                raise UnknownSignal(
                     f'{diagram.name}: "{motion}" is no motion, has {", ".join(motions)}'
                     f"{did_you_mean(motion, motions)}"
                 )

@@ -85,7 +85,7 @@ class PrivateNames:
             yield
         except ModelError as error:
             text = _BEGIN.sub(lambda m: self.public.get(m[0], m[0]), str(error))
-            raise ModelError(text) from None
+            raise type(error)(text) from None
 
 
 def private_names(diagram: Diagram) -> PrivateNames:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..diagrams import Diagram, Moving, with_shared_states
-from ..errors import ModelError, did_you_mean
+from ..errors import ModelError, UnknownSignal, did_you_mean
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
 from . import on_grid
@@ -49,7 +49,7 @@ def prepare(
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
     for name in inputs:
         if name not in diagram.outside:
-            raise ModelError(
+            raise UnknownSignal(
                 f'{diagram.name}: "{name}" is not from outside, inputs are '
                 f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
             )
@@ -63,7 +63,7 @@ def prepare(
     states = (*made.layout.states, *made.layout.computer_states)
     for name in initial:
         if name not in states:
-            raise ModelError(
+            raise UnknownSignal(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
     return Setup(body, made, setting, duration, step, inputs, motion, initial)

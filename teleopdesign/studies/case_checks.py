@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..errors import ModelError, did_you_mean
+from ..errors import ModelError, UnknownSignal, did_you_mean
 from ..expectations import describe_value, number_check
 from ..simulate import Setup
 from .case import SimulatedCase
@@ -27,12 +27,6 @@ def check_case(case: SimulatedCase, points: Points, measures: Iterable[Measure])
     if setup is None:
         return
     layout = setup.program.layout
-    states = (*layout.states, *layout.computer_states)
-    for name in (n.partition(".")[2] for n in points.names if n.startswith("initial.")):
-        if name not in states:
-            raise ModelError(
-                f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
-            )
     for measure in measures:
         for signal in measure.signals:
             if signal not in layout.columns:
@@ -50,14 +44,9 @@ def _setup(case: SimulatedCase, points: Points) -> Setup | None:
     """The simulation at the first point; None if there is none, for reasons of its values."""
     if not case.duration and "duration" not in points.names:
         return None
-    first = {n: v for n, v in points.at(0).items() if not n.startswith("initial.")}
     try:
-        return case.with_values(first).setup()
-    except ModelError as error:
-        if any(words in str(error) for words in _OF_NAMES):
-            raise
+        return case.with_values(points.at(0)).setup()
+    except UnknownSignal:
+        raise
+    except ModelError:
         return None
-
-
-#: what messages about names say, which are wrong at every point
-_OF_NAMES = ("no state", "is not from outside", "is no motion")

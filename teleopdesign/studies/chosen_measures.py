@@ -67,7 +67,8 @@ def measure(name: str, **options: Any) -> Measure:
         if default is ... and option not in options:
             raise ModelError(f'measure {name}: option "{option}" has no value')
     for option, content in options.items():
-        _check_option(f"measure {name}: {option}", content, kind.options[option])
+        is_text = option in _NAMES or isinstance(kind.options[option], str)
+        _check_option(f"measure {name}: {option}", content, is_text=is_text)
     values = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
     signal = values.get("signal") if kind.options.get("signal", "") is ... else None
     label = f"{name}_{signal}" if signal else name
@@ -79,11 +80,11 @@ def measure(name: str, **options: Any) -> Measure:
 _NAMES = ("signal", "parameter")
 
 
-def _check_option(where: str, content: Any, default: Any) -> None:
-    """Raise ModelError for an option of another type than its default."""
-    if isinstance(default, str) or where.rpartition(" ")[2] in _NAMES:
+def _check_option(where: str, content: Any, *, is_text: bool) -> None:
+    """Raise ModelError for an option that is no text, or neither a number nor several."""
+    if is_text:
         instance(content, str, where, expected="a text")
-    elif isinstance(default, int | float) or default is ... and np.ndim(content) == 0:
+    elif np.ndim(content) == 0:
         number(content, where)
     else:
         for value in content:
