@@ -33,7 +33,7 @@ FLOORS = {
     "blocks": "equations",
     "effects": "physics; records",
     "arms": "links of an arm",
-    "quantity": "words that all share",
+    "base": "words that all share",
 }
 COLOURS = {"effects": "#0072B2", "measurement": "#D55E00"}
 

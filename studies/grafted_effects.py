@@ -36,8 +36,8 @@ from recordings import experiment_of, names_in
 from scipy.signal import butter, sosfiltfilt
 
 import teleopdesign as td
+from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
-from teleopdesign.errors import TeleopDesignError
 from teleopdesign.plot import save_figure
 
 NAME = "grafted_effects"

@@ -28,9 +28,9 @@ import xarray
 from _study import values_over, write_study
 
 import teleopdesign as td
+from teleopdesign.base.errors import GrowsWithoutBound
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
-from teleopdesign.errors import GrowsWithoutBound
 from teleopdesign.passivity import Claim, delayed_spring, region, sampled_coupling
 from teleopdesign.plot.onset import plot_delay_and_stiffness
 from teleopdesign.simulate import Sampling, simulate

@@ -27,9 +27,9 @@ from typing import Any
 from _one_case import processor_seconds
 
 import teleopdesign as td
+from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.diagnose.arms import find_missing_in_arm
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
-from teleopdesign.errors import TeleopDesignError
 from teleopdesign.measurement import Experiment
 from teleopdesign.measurement.recordings import RECORDINGS
 from teleopdesign.plot import save_figure

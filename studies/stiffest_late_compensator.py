@@ -31,9 +31,9 @@ import xarray
 from _study import values_over, write_study
 
 import teleopdesign as td
+from teleopdesign.base.errors import GrowsWithoutBound
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, haptic_interface
-from teleopdesign.errors import GrowsWithoutBound
 from teleopdesign.passivity import Claim, region, required_damping, sampled_passivity
 from teleopdesign.passivity.theorems.sampled_data import Z
 from teleopdesign.plot.onset import plot_period_and_stiffness

@@ -39,11 +39,7 @@ verb can be called: `td.diagnose` does what `td.find_missing` does, and so do `t
 
 The folders, each importing only from those before it:
 
-    folder_calls  a folder named by a verb can be called
-    arguments     arguments of a call, checked against the types declared (`expectations` beside it)
-    frozen        read-only mappings (by_value, recipes, users_files, notebook: see there)
-    quantity      force, velocity ... -> unit on a prismatic or a revolute axis
-    finding       a sentence, its numbers, and a graph that shows it
+    base          errors, units, TOML, numbers in words, frozen values, whole files: no physics
     arms          links of an arm, of a URDF or as written, and the forces that they need
     effects       the catalogue of physical effects: one effect = one file
     blocks        equations of bodies and hand
@@ -76,7 +72,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from .folder_calls import let_folders_be_called
+from .base.folder_calls import let_folders_be_called
 
 if TYPE_CHECKING:
     from . import app as app
@@ -101,6 +97,8 @@ if TYPE_CHECKING:
     from . import studies as studies
     from . import tuning as tuning
     from . import unexplained as unexplained
+    from .base.errors import ExperimentError, ModelError
+    from .base.errors import TeleopDesignError as TeleopDesignError
     from .blocks import Body, hand
     from .blocks import Value as Value
     from .check import check_experiment
@@ -124,8 +122,6 @@ if TYPE_CHECKING:
     from .effects import FitSearch as FitSearch
     from .effects import Parameter as Parameter
     from .effects import State as State
-    from .errors import ExperimentError, ModelError
-    from .errors import TeleopDesignError as TeleopDesignError
     from .examples import example
     from .frequency import bode
     from .frequency import measured_impedance as measured_impedance
@@ -262,8 +258,8 @@ GROUPS: dict[str, dict[str, str]] = {
         "positive_real": "passivity",
     },
     "errors": {
-        "ExperimentError": "errors",
-        "ModelError": "errors",
+        "ExperimentError": "base.errors",
+        "ModelError": "base.errors",
     },
 }
 #: the same for names that `dir` does not list: classes of results, and the parts of definitions,
@@ -290,7 +286,7 @@ FURTHER: dict[str, dict[str, str]] = {
         "Controller": "controllers",
         "load_controller": "controllers",
         "Assumptions": "design",
-        "TeleopDesignError": "errors",
+        "TeleopDesignError": "base.errors",
     },
     "parts of studies": {
         "read_study": "studies",
@@ -353,7 +349,7 @@ def __getattr__(name: str) -> Any:
         return import_module(f"{__name__}.{name}")
     hint = ""
     if not name.startswith("_"):
-        from .errors import did_you_mean
+        from .base.errors import did_you_mean
 
         hint = did_you_mean(name, (*_HOMES, *_FOLDERS))
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")

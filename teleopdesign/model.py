@@ -9,16 +9,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from .arguments import check_types, describe_value, instance
+from .base.arguments import check_types, describe_value, instance
+from .base.errors import ExperimentError, ModelError, did_you_mean
+from .base.frozen import Frozen
+from .base.notebook import html_table
+from .base.quantity import unit_after_number
+from .base.standard_error import with_standard_error
 from .blocks import CONTACT, Body, Value
 from .blocks.described import free_body_of, joint_with_links, with_environment
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
-from .errors import ExperimentError, ModelError, did_you_mean
-from .frozen import Frozen
 from .measurement.experiment import Experiment
-from .notebook import html_table
-from .quantity import unit_after_number
-from .standard_error import with_standard_error
 
 
 @dataclass(frozen=True)

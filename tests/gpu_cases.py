@@ -14,8 +14,8 @@ import side_by_side_cases
 from devices import DAHL, LINK, body
 from side_by_side_cases import RUBBING, plain_loop, push, with_a_computer, with_late_signals
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import teleoperator
-from teleopdesign.errors import ModelError
 from teleopdesign.realise import side_by_side
 from teleopdesign.realise.side_by_side import KINDS, GridRun, Reduction
 from teleopdesign.simulate import prepare, simulate_many

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 from measurement.rod_example import write_rod
 
 from teleopdesign import load_experiment
+from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.quantity import QUANTITIES, to_si
+from teleopdesign.base.toml_table import Table
 from teleopdesign.blocks import BLOCK_EFFECTS, Body, Value, with_block_effects
 from teleopdesign.blocks.described import body_of
 from teleopdesign.diagnose.answers.bodies import body_data, model_from
 from teleopdesign.diagrams import read_diagram
 from teleopdesign.diagrams.toml_writing import body_lines
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.description import body_from
-from teleopdesign.measurement.toml_table import Table
 from teleopdesign.model import Model
-from teleopdesign.quantity import QUANTITIES, to_si
 
 AXES = ("prismatic", "revolute")
 ALL = with_block_effects(EFFECTS)

@@ -25,10 +25,10 @@ from sphinx.application import Sphinx
 from sphinx.pycode import ModuleAnalyzer
 from sympy.printing.latex import LatexPrinter, latex_escape
 
+from teleopdesign.base.quantity import QUANTITIES, unit_of
 from teleopdesign.controllers import CONTROLLERS
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
 from teleopdesign.measurement.recordings import RECORDINGS
-from teleopdesign.quantity import QUANTITIES, unit_of
 
 _SYMBOLS = {
     "time": "t",

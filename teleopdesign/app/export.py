@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from ..base.errors import TeleopDesignError
+from ..base.plain_data import write_beside, write_text
 from ..diagnose.answer import write_answer
-from ..errors import TeleopDesignError
-from ..plain_data import write_beside, write_text
 from .pages import propose_design
 from .workbench import Workbench
 

@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
+from ..base.plain_data import write_beside
 from ..measurement.tables import DOORS, is_log
-from ..plain_data import write_beside
 
 #: folder for what is dropped
 DROPPED = "dropped"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
 from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log

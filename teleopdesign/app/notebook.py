@@ -12,7 +12,7 @@ def _():
     from teleopdesign.app import export, files, logs, pages, settings, views
     from teleopdesign.app.task import BackgroundTask, stop_running
     from teleopdesign.app.workbench import Workbench
-    from teleopdesign.errors import TeleopDesignError
+    from teleopdesign.base.errors import TeleopDesignError
 
     folder = settings.folder(mo.cli_args().to_dict())
     among = settings.effects(mo.cli_args().to_dict())

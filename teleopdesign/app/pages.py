@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from ..base.errors import TeleopDesignError
+from ..base.quantity import unit_after_number, unit_of
 from ..diagnose.comparison import residual_data
-from ..errors import TeleopDesignError
-from ..quantity import unit_after_number, unit_of
 from ..report.words import number, unit_text, with_error
 from .workbench import Workbench
 

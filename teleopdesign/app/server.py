@@ -12,7 +12,7 @@ from typing import NoReturn
 import marimo
 import uvicorn
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 
 #: s that open pages have to close when the server stops
 LEAVING = 2.0

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from ..errors import TeleopDesignError
+from ..base.errors import TeleopDesignError
 
 T = TypeVar("T")
 

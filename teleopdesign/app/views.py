@@ -12,7 +12,7 @@ from typing import Any
 
 import marimo as mo
 
-from ..errors import TeleopDesignError
+from ..base.errors import TeleopDesignError
 from . import charts, export, logs, pages
 from .workbench import Workbench
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..base.errors import ModelError, did_you_mean
 from ..diagnose.conclusion import conclude
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.error import force_error
@@ -17,7 +18,6 @@ from ..diagnose.ladder_state import LadderSearch, LadderState, begin, look, sear
 from ..diagnose.ranking import Ranked
 from ..diagnose.rung import Rung
 from ..effects import EFFECTS, Effect
-from ..errors import ModelError, did_you_mean
 from ..measurement.experiment import Experiment, load_experiment
 from ..model import Model
 

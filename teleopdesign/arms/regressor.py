@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .chain import Array, Chain, Link, tensor
 
 #: for each axis x, y, z the indices of the two other axes, in cyclic order

@@ -1,6 +1,6 @@
 """Blocks of a diagram, as equations only: bodies, environments, hands, impedances."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from ..effects import BLOCK_EFFECTS, with_block_effects
 from .body import Body
 from .body_equation import BodyEquation

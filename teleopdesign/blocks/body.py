@@ -14,12 +14,12 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ..arguments import check_types, instance, number
+from ..base.arguments import check_types, instance, number
+from ..base.errors import ModelError, did_you_mean, quote
+from ..base.frozen import Frozen
+from ..base.notebook import html_table
+from ..base.quantity import AXES, unit_after_number, unit_of
 from ..effects import EFFECTS, Effect, Parameter, sort_by_action
-from ..errors import ModelError, did_you_mean, quote
-from ..frozen import Frozen
-from ..notebook import html_table
-from ..quantity import AXES, unit_after_number, unit_of
 from .body_equation import (
     BodyEquation,
     actuation_of,

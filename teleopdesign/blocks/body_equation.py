@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import sympy as sp
 
+from ..base.frozen import Frozen
 from ..effects import INERTIA, SIGNALS, Effect, sort_by_action
-from ..frozen import Frozen
 from .environment import contact_force
 
 

@@ -22,9 +22,9 @@ from functools import lru_cache
 
 import sympy as sp
 
+from ..base.errors import ModelError
+from ..base.frozen import Frozen
 from ..effects import SIGNALS, Effect, sort_by_action
-from ..errors import ModelError
-from ..frozen import Frozen
 from .body_equation import BodyEquation, body_symbols
 from .environment import contact_force
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.quantity import unit_after_number, unit_of
 from ..effects import CONTACT_ROLES, Effect, Parameter, find_effect
-from ..errors import ExperimentError, ModelError, did_you_mean
 from ..measurement.description import BodyDescription, Effects, EnvironmentDescription, ModelValue
-from ..quantity import unit_after_number, unit_of
 from .body import INERTIA, Body
 from .environment import CONTACT
 from .value import Value

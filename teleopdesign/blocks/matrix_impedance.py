@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..arguments import check_types, describe_value
-from ..errors import ModelError, did_you_mean
+from ..base.arguments import check_types, describe_value
+from ..base.errors import ModelError, did_you_mean
 
 MatrixRows = tuple[tuple[float, ...], ...]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..arguments import instance, number
-from ..by_value import ByValue
-from ..notebook import html_table
+from ..base.arguments import instance, number
+from ..base.by_value import ByValue
+from ..base.notebook import html_table
 
 #: half width of a 95 % interval in standard errors, for a normal distribution
 NINETY_FIVE = 1.96

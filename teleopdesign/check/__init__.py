@@ -1,6 +1,6 @@
 """Checks before a diagnosis: is a recording sound, do its columns agree, what can it show?"""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .soundness_check import check_experiment
 
 __all__ = ["check_experiment"]

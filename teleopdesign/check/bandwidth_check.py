@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..base.finding import Finding
 from ..diagnose.adequacy import is_adequate
 from ..diagnose.fit import estimate
 from ..diagnose.narrower_band import narrower_band
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
-from ..finding import Finding
 from ..measurement.bandwidth import motion_beyond
 from ..measurement.experiment import Experiment
 from ..measurement.hidden_motion import find_hidden_motion

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.finding import Finding
 from ..blocks import Body
 from ..diagnose.prepare import Stretch
-from ..finding import Finding
 from ..measurement.filtering import Array
 from .force_balance import Estimate, ForceBalance, force_balance
 

@@ -9,6 +9,10 @@ from itertools import combinations, zip_longest
 
 import numpy as np
 
+from ..base.finding import Finding
+from ..base.quantity import unit_after_number, unit_of
+from ..base.rounding import round_near
+from ..base.standard_error import with_standard_error
 from ..diagnose.candidates import Candidate, bodies_with_measured_force, candidates
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.effort import EFFORTS
@@ -17,11 +21,7 @@ from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
 from ..diagnose.repeats import Repeatability, repeatability, repeats_data
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
-from ..finding import Finding
 from ..model import Model
-from ..quantity import unit_after_number, unit_of
-from ..rounding import round_near
-from ..standard_error import with_standard_error
 from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities
 

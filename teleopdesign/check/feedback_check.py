@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..base.finding import Finding
 from ..diagnose.feedback_law import describe_computed, is_computed
-from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..measurement.soundness.signal import channel_label
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
+from ..base.finding import Finding
 from ..diagnose.prepare import Prepared
 from ..diagnose.record_shift import CLOCK
-from ..finding import Finding
 from ..measurement.soundness.signal import channel_label
 from ..model import Model
 from .clock_drift import find_drift, report_drift

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..finding import Finding
+from ..base.finding import Finding
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import explain_force
 from ..measurement.soundness.signal import channel_label

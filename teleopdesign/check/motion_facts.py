@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ..base.finding import Finding
+from ..base.quantity import unit_of
 from ..diagnose.candidates import tells_place_from_time
-from ..finding import Finding
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
-from ..quantity import unit_of
 
 #: part (of the motion in one direction, of the time, of a force) below which it counts as absent
 RARE = 0.02

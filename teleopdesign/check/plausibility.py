@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from ..base.finding import Finding
+from ..base.quantity import unit_of
+from ..base.standard_error import with_standard_error
 from ..diagnose.feedback_law import describe_computed
 from ..diagnose.prepare import Prepared
-from ..finding import Finding
 from ..model import Model
-from ..quantity import unit_of
-from ..standard_error import with_standard_error
 from .force_balance import ForceBalance, force_balances
 from .late_channels import check_lateness, is_without_hand, label_of
 from .swapped_columns import check_swapped

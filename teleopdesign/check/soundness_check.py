@@ -6,13 +6,13 @@ from typing import Literal
 
 import numpy as np
 
+from ..base.errors import ExperimentError
+from ..base.finding import Finding, Findings
 from ..diagnose.constant_force import lacks_scale
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
 from ..diagnose.silent_records import why_silent
 from ..diagnose.unknown_drive import describe_work
-from ..errors import ExperimentError
-from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import VARIES
 from ..measurement.soundness import check_signals

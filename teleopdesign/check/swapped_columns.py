@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
+from ..base.finding import Finding
 from ..diagnose.prepare import Prepared, prepare
-from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .force_balance import ForceBalance, force_balances

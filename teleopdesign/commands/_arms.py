@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError, did_you_mean, quote
 from ._values import value_from
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from ..errors import ExperimentError, ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, did_you_mean
 from ._arms import inertia_line, joint_of, place_at_pose
 from ._progress import Reporter
 from ._terminal import print_styled

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import teleopdesign
 
-from ..errors import TeleopDesignError, printable
+from ..base.errors import TeleopDesignError, printable
 from ._paths import inputs, python_files
 
 #: exit status of bad input, and of a mistake of the package (EX_SOFTWARE of sysexits.h)

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from io import StringIO
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError
-from ..plain_data import harmless_cell, write_text
+from ..base.errors import ExperimentError
+from ..base.plain_data import harmless_cell, write_text
 from . import STOPPED
 from ._diagnosis import candidate_effects, effects_by_name
 from ._failures import BAD_INPUT

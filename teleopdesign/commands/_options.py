@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..errors import ExperimentError
-from ..plain_data import check_writable
+from ..base.errors import ExperimentError
+from ..base.plain_data import check_writable
 from ._terminal import replace_line
 
 

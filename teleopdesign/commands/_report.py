@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ._options import say
 
 if TYPE_CHECKING:
+    from ..base.finding import Finding
     from ..diagnose import ArmDiagnosis, Diagnosis
-    from ..finding import Finding
 
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from ..errors import printable
+from ..base.errors import printable
 
 #: what of control characters lays out a text
 _LAYOUT = "\n\t"

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from . import STOPPED
 from ._diagnosis import candidate_effects
 from ._options import add_candidate_options

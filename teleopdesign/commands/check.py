@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ExperimentError
-from ..plain_data import write_json
+from ..base.errors import ExperimentError
+from ..base.plain_data import write_json
 from ._diagnosis import experiment_of, folder_of, stated_model
 from ._options import add_experiment, check_output, say_written
 from ._paths import shell_word
 
 if TYPE_CHECKING:
-    from ..finding import Finding
+    from ..base.finding import Finding
     from ..measurement import Experiment
     from ..model import Model
 
@@ -77,10 +77,10 @@ def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
 
     Empty if the description agrees with the logs, or if the logs cannot be read.
     """
-    from ..finding import Finding
+    from ..base.finding import Finding
+    from ..base.toml_table import read_toml
     from ..measurement.survey import Choices, survey_log
     from ..measurement.tables import open_log
-    from ..measurement.toml_table import read_toml
 
     place = folder if folder.is_dir() else folder.parent
     try:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..errors import ModelError, did_you_mean
+from ..base.errors import ModelError, did_you_mean
 
 EXAMPLES = """
   eval "$(teleopdesign completion bash)"           # in ~/.bashrc

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ModelError, did_you_mean
-from ..plain_data import write_json
+from ..base.errors import ModelError, did_you_mean
+from ..base.plain_data import write_json
 from ._arms import add_body
 from ._diagnosis import body_of_source
 from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
@@ -127,8 +127,8 @@ def _draw(diagram: Diagram, path: Path) -> None:
 
 
 def _page(transfers: Transfers, speed: float) -> str:
+    from ..base.quantity import unit_of
     from ..diagrams.units import first_axis
-    from ..quantity import unit_of
 
     lines = [repr(transfers.diagram), "", transfers.text()]
     if transfers.has_values:

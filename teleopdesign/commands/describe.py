@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ModelError
-from ..plain_data import write_beside, write_json
+from ..base.errors import ModelError
+from ..base.plain_data import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import diagnosis_of, experiment_and_answer, stated_model
 from ._options import add_experiment, check_output

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ModelError
-from ..plain_data import write_beside
+from ..base.errors import ModelError
+from ..base.plain_data import write_beside
 from ._diagnosis import (
     diagnose_experiment,
     experiment_of,

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from ._paths import shell_word
 
 if TYPE_CHECKING:

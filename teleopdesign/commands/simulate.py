@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from ._options import check_output, say_written
 from ._values import value_in
 from .derive import add_diagram, diagram_from

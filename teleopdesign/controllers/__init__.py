@@ -10,10 +10,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Literal
 
-from ..arguments import check_arguments
-from ..errors import ModelError, did_you_mean
-from ..frozen import Catalogue
-from ..recipes import remember
+from ..base.arguments import check_arguments
+from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import Catalogue
+from ..base.recipes import remember
 from ._controller import (
     SIGNALS,
     Ability,

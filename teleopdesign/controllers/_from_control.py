@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ModelError
-from ..names import check_name
-from ..recipes import remember
+from ..base.errors import ModelError
+from ..base.names import check_name
+from ..base.recipes import remember
 from . import _state_space
 from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sampled_rate
 from ._measured import wrap_response

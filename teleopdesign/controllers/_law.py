@@ -17,11 +17,11 @@ from typing import Any, Literal, get_args
 
 import sympy as sp
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import Frozen
+from ..base.recipes import recipe
 from ..effects import Parameter
-from ..errors import ModelError, did_you_mean
-from ..frozen import Frozen
-from ..recipes import recipe
 
 #: a property that a law may declare, by its field of `ControlLaw`
 Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth", "dead_time"]

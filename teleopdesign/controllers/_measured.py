@@ -10,8 +10,8 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.utilities.lambdify import implemented_function
 
+from ..base.errors import ModelError
 from ..effects import Parameter
-from ..errors import ModelError
 from ._controller import ControlLaw, Controller, Stage
 
 if TYPE_CHECKING:

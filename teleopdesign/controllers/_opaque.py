@@ -14,9 +14,9 @@ import numpy as np
 import sympy as sp
 from sympy.utilities.lambdify import implemented_function
 
+from ..base.errors import ModelError
 from ..effects import SIGNALS as EFFECT_SIGNALS
 from ..effects import Parameter
-from ..errors import ModelError
 from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sampled_rate
 from ._state_space import check_period
 

@@ -15,9 +15,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from ..base.errors import ModelError
+from ..base.recipes import remember
 from ..effects import Parameter
-from ..errors import ModelError
-from ..recipes import remember
 from ._controller import ControlLaw, ControllerState, Stage, mark_sampled_rate
 from ._exact import exact_decimal, resolvent
 

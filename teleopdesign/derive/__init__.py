@@ -1,6 +1,6 @@
 """Symbolic transfer functions and impedances from the wiring of a diagram."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .all_transfers import Transfer, Transfers, all_transfers
 from .conventions import convert_convention, hybrid_from_impedance, impedance_from_hybrid
 from .elimination import has_actuation, transfer

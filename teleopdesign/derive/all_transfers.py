@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ..by_name import ByName
+from ..base.by_name import ByName
+from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import Frozen
 from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
 from ..diagrams.short_form import kind_of
-from ..errors import ModelError, did_you_mean
-from ..frozen import Frozen
 from ..realise.tips import linear_tips
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
 from .transfer_functions import Case, named_cases

@@ -20,7 +20,7 @@ from typing import Literal, get_args
 
 import sympy as sp
 
-from ..errors import ModelError, did_you_mean
+from ..base.errors import ModelError, did_you_mean
 from ..realise.lti import S
 
 Convention = Literal["position", "velocity"]

@@ -11,10 +11,10 @@ from time import monotonic
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..controllers import exact_decimal
 from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, position_symbol
 from ..diagrams.second_input import acts_along_another
-from ..errors import ModelError
 from .loops import loop_of
 from .noncommutative import counterexample
 from .printing import block_symbol, delay_symbol, motion_controller_symbol

@@ -20,7 +20,7 @@ from random import Random
 
 import sympy as sp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..realise.lti import S
 
 Word = tuple[str, ...]

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..by_name import ByName
+from ..base.by_name import ByName
+from ..base.errors import ModelError
+from ..base.frozen import Frozen
 from ..diagrams import Control, Diagram
-from ..errors import ModelError
-from ..frozen import Frozen
 from ..realise.parted import linear_parted
 from ..realise.tips import linear_tips
 from .elimination import round_trip, transfer

@@ -11,10 +11,10 @@ the place of velocities and the force on the slave in the place of its reaction.
 
 from __future__ import annotations
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError
+from ..base.frozen import Frozen
 from ..diagrams import Diagram
-from ..errors import ModelError
-from ..frozen import Frozen
 from .conventions import VELOCITY_TEXTS, Convention, check_convention, convert_convention
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions

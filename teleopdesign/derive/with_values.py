@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..diagrams import Diagram
-from ..errors import ModelError
 from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
 from ..realise.parted import linear_parted
 from .elimination import transfer

@@ -5,7 +5,7 @@ from teleopdesign.design import design
 design(find_missing(experiment))     # C, H, what they do, whether that is passive
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
 from .force_feedback import FeedbackLoop

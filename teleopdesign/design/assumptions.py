@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError
 from ..blocks import NINETY_FIVE
-from ..errors import ModelError
 
 
 @check_types

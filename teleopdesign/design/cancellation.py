@@ -10,14 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from ..base.errors import ModelError
+from ..base.quantity import unit_of
+from ..base.rounding import round_down, round_up
 from ..blocks import Body
 from ..controllers import controller, laws_that_declare
-from ..errors import ModelError
-from ..quantity import unit_of
 from ..realise.acting_bound import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
-from ..rounding import round_down, round_up
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
 

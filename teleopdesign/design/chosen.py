@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..base.quantity import unit_after_number
 from ..controllers import Controller
-from ..quantity import unit_after_number
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from ..base.plain_data import make_plain
+from ..base.quantity import unit_of
 from ..passivity import Claim
-from ..plain_data import make_plain
-from ..quantity import unit_of
 from .chosen import ProposedController
 from .felt_impedance import FeltImpedance
 from .force_feedback import FeedbackLoop

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.errors import ModelError
+from ..base.quantity import unit_of
 from ..diagrams import Diagram
-from ..errors import ModelError
 from ..passivity import Claim, Evidence
-from ..quantity import unit_of
 from ..realise.reach import Reach
 from ..realise.tips import led_motion
 from ..simulate import Sampling

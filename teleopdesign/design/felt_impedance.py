@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.errors import ModelError
 from ..diagrams import Diagram, four_cases
-from ..errors import ModelError
 from ..frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
 from ..realise.tips import led_motion
 from ..simulate import Sampling

@@ -15,12 +15,12 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..base.quantity import unit_of
+from ..base.rounding import round_down, round_up
 from ..blocks import Body
 from ..controllers import scheduled_force_feedback
-from ..quantity import unit_of
 from ..realise.lti import S
 from ..realise.reach import Reach
-from ..rounding import round_down, round_up
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
 

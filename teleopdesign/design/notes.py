@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from ..base.quantity import unit_of
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import say_floors
-from ..quantity import unit_of
 from ..realise.friction_interval import FrictionInterval
 from .from_answer import DiagnosedModel
 from .outcome import Design

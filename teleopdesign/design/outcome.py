@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.plain_data import write_json
+from ..base.toml_text import comment_text
 from ..blocks import Body
-from ..by_value import ByValue
 from ..diagrams import ANY, Attached, Block, Diagram, Moving, haptic_interface
 from ..diagrams.toml_writing import diagram_text
-from ..errors import ModelError
 from ..frequency import FrequencyResponse
-from ..measurement.toml_text import comment_text
 from ..passivity import Claim
-from ..plain_data import write_json
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from ..simulate import Sampling

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
 from ..blocks import Body
-from ..by_value import ByValue
 from ..diagrams import Diagram, four_cases
-from ..errors import ModelError
 from ..realise.tips import led_motion
 from ..simulate import ForceVelocity, Sampling, Simulation, force_velocity, simulate
 from .linear import linear_error

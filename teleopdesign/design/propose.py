@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from ..base.errors import ModelError
 from ..blocks import Body, free_space
 from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
-from ..errors import ModelError
 from ..model import Model
 from ..passivity import Claim
 from ..realise.damping_interval import small_motion_damping

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.errors import ExperimentError
 from ..check.motion_facts import RARE
 from ..diagnose.prepare import prepare
-from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.motion import TRAVEL
 from ..realise.reach import Reach

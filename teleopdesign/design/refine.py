@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
 from ..controllers import Controller
-from ..errors import ModelError
 from .cancellation import smoothing_name
 from .outcome import Design
 from .prediction import simulated_error

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
+from ..base.by_value import ByValue
 from ..blocks import Body
-from ..by_value import ByValue
 from ..controllers import Controller
 from ..diagrams import four_cases, haptic_interface
 from ..effects import SIGNALS

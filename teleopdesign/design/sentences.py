@@ -6,8 +6,8 @@ import math
 import textwrap
 from typing import TYPE_CHECKING
 
-from ..quantity import unit_of
-from ..standard_error import with_standard_error
+from ..base.quantity import unit_of
+from ..base.standard_error import with_standard_error
 
 if TYPE_CHECKING:
     from .outcome import Design  # a design prints itself through this module

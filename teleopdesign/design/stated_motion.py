@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
+from ..base.quantity import unit_of
+from ..base.rounding import round_down
 from ..measurement.filtering import Array
-from ..quantity import unit_of
 from ..realise.reach import Reach
-from ..rounding import round_down
 from ..simulate import Trajectory, sine
 from .assumptions import Assumptions
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+from ..base.rounding import round_down, round_near, round_up
 from ..blocks import Body, Value
 from ..controllers import Controller
 from ..diagrams import haptic_interface
@@ -25,7 +26,6 @@ from ..passivity.theorems.lugre import add_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.reach import Reach
-from ..rounding import round_down, round_near, round_up
 from .chosen import ProposedController
 from .linear import without_friction
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .arms import ArmDiagnosis, find_missing_in_arm

@@ -13,10 +13,10 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from ..base.plain_data import harmless_cell, make_plain, write_beside, write_json
 from ..measurement.experiment import Experiment
 from ..measurement.reading import reading_data
 from ..model import Model
-from ..plain_data import harmless_cell, make_plain, write_beside, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data

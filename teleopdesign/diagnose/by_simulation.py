@@ -19,16 +19,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
-from ..errors import ModelError
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.notebook import html_table
+from ..base.plain_data import make_plain
+from ..base.quantity import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
-from ..notebook import html_table
-from ..plain_data import make_plain
-from ..quantity import unit_of
 from .cores import map_in_threads
 from .error import force_error
 from .prepare import Prepared, prepare

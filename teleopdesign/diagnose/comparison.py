@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from ..by_value import ByValue
-from ..errors import ModelError
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.notebook import html_table
+from ..base.plain_data import write_netcdf
+from ..base.quantity import unit_of
 from ..measurement.experiment import Experiment
 from ..model import Model
-from ..notebook import html_table
-from ..plain_data import write_netcdf
-from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .arms.by_simulation import compare_arm_by_simulation
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation

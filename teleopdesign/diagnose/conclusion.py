@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..measurement.motion import Motion
 from ..model import Model
 from .adequacy import moment_above_noise, records_differ

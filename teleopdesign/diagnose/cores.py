@@ -29,8 +29,8 @@ from typing import Any, TypeVar
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ..core_count import count_workers
-from ..process_copies import Copy, can_copy, shield_from_ctrl_c
+from ..base.core_count import count_workers
+from ..base.process_copies import Copy, can_copy, shield_from_ctrl_c
 
 T = TypeVar("T")
 #: most copies, and most threads, at a time

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from ..base.quantity import unit_of
 from ..effects import SIGNALS, Effect
 from ..measurement.experiment import Experiment
 from ..measurement.law_of_readings import LawOfReadings, law_of_readings
 from ..measurement.record import Record
 from ..measurement.survey.copies import is_copy
-from ..quantity import unit_of
 
 
 @lru_cache(maxsize=256)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.by_value import ByValue
 from ..blocks import Value
-from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
 from .bodies_apart import select_bodies

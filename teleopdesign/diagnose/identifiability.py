@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.quantity import unit_after_number
+from ..base.standard_error import with_standard_error
 from ..model import Model
-from ..quantity import unit_after_number
-from ..standard_error import with_standard_error
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .evidence import check_squares

@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from ..base.notebook import html_table
+from ..base.quantity import unit_after_number, unit_of
+from ..base.standard_error import with_standard_error
 from ..blocks import Value
 from ..measurement.bandwidth import slower_sensors
-from ..notebook import html_table
-from ..quantity import unit_after_number, unit_of
-from ..standard_error import with_standard_error
 from .adequacy import records_differ
 from .constant_force import constant_force_line
 from .criteria import CRITERIA

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from ..base.quantity import unit_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..measurement.reversals import mark_reversals
 from ..model import Model
-from ..quantity import unit_of
 from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate

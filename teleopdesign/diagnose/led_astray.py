@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .fit import estimate, fit_squares
 from .ladder_state import LadderSearch, LadderState
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from ..measurement.bandwidth import LOWEST
 from ..model import Model
 from .criteria import CRITERIA, Criteria

@@ -21,9 +21,9 @@ import numpy as np
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
+from ..base.quantity import MAINS
 from ..measurement.filtering import Array
 from ..model import Model
-from ..quantity import MAINS
 from .criteria import CRITERIA
 from .evidence import check_squares, gain_score
 from .fit import Fit, estimate

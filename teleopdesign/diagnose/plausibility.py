@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
-from ..errors import ModelError
 from ..measurement.motion import Motion
 from ..measurement.repeated_rows import runs_of
 from ..measurement.reversals import count_reversals

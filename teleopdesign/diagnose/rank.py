@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..model import Model
 from .candidate_fits import fit_each
 from .candidates import Candidate, bodies_with_measured_force, candidates

@@ -20,7 +20,7 @@ from itertools import product
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.simulated import UNDAMPED

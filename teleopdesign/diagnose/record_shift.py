@@ -35,12 +35,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.plain_data import make_plain
+from ..base.standard_error import with_standard_error
 from ..blocks import Value
 from ..measurement.filtering import Array
 from ..model import Model
-from ..plain_data import make_plain
 from ..realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
-from ..standard_error import with_standard_error
 from .prepare import Stretch
 from .simulated_course import dead_times
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..base.by_value import ByValue
 from ..blocks import Value
-from ..by_value import ByValue
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit

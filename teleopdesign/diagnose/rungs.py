@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit, estimate

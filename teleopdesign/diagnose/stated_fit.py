@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit, estimate, fit_squares

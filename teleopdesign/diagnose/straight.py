@@ -14,8 +14,8 @@ from itertools import combinations
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..effects import SIGNALS, Effect, period
-from ..errors import ModelError
 from ..model import Model
 from .candidates import Candidate
 from .decision import is_better

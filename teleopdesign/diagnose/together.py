@@ -14,8 +14,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..base.errors import ModelError
 from ..effects import period
-from ..errors import ModelError
 from .adequacy import is_adequate
 from .candidates import Candidate
 from .decision import explained_share, is_better

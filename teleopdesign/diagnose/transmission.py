@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .adequacy import is_adequate
 from .candidates import Candidate, comes_too_early
 from .cores import map_on_cores

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
 from .diagnosis import Undetermined

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from ..quantity import unit_after_number
+from ..base.quantity import unit_after_number
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .effort import EFFORTS

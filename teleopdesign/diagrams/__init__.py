@@ -1,6 +1,6 @@
 """Block diagrams: blocks that are wired by the names of their signals."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .admittance_device import admittance_device
 from .arms import Arm, joint, teleoperator_of_arms, tip_coordinates
 from .control_parts import controller_parts, plant_parts

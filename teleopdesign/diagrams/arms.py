@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..arguments import check_types, matrix_of
+from ..base.arguments import check_types, matrix_of
+from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
-from ..errors import ModelError
 from .junctions import Junction, Kinematics, Weight, as_expression, position_symbol
 from .parts import Block, Control, Linked, Moving
 from .wiring import Diagram

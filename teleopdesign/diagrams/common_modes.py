@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..controllers import exact_decimal
-from ..errors import ModelError
 
 if TYPE_CHECKING:
     import control

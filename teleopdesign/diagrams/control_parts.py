@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body, Value
 from ..controllers import Controller, from_control, measured_plant, opaque_laws
 from ..effects import EFFECTS
-from ..errors import ModelError
 from .common_modes import with_common_modes
 from .junctions import Junction
 from .parts import Control, Entry, Moving

@@ -15,9 +15,9 @@ import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
+from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance, Value
 from ..controllers import from_control
-from ..errors import ModelError
 from .control_parts import code_parts, entry_of
 from .junctions import Junction
 from .parts import Control, Linked, Moving

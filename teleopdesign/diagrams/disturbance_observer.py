@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..base.errors import ModelError
 from ..controllers import controller
-from ..errors import ModelError
 from .junctions import Junction
 from .parts import Control, Moving
 from .wiring import Diagram

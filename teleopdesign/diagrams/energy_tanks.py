@@ -21,8 +21,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..base.errors import ModelError
 from ..controllers import Controller, controller
-from ..errors import ModelError
 from .junctions import Junction
 from .parts import Block, Control, Moving
 from .wiring import Diagram

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 
 
 class _Function(NamedTuple):

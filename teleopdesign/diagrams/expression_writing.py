@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
-from ..errors import ExperimentError, ModelError, quote
+from ..base.errors import ExperimentError, ModelError, quote
 from .expressions import read_expression
 
 

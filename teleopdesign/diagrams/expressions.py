@@ -19,8 +19,8 @@ from types import MappingProxyType
 import sympy as sp
 from sympy.core.cache import clear_cache
 
-from ..errors import ExperimentError, ModelError, did_you_mean, quote
-from ..names import check_name
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.names import check_name
 from .expression_bounds import (
     DEEPEST,
     FUNCTIONS,

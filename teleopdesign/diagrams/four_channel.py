@@ -17,9 +17,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller, controller
-from ..errors import ModelError
 from .parts import ANY, AnyBlock, Block, Control
 from .teleoperator import TEXTS, teleoperator
 from .wiring import Diagram

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller
-from ..errors import ModelError
 from .junctions import Junction
 from .parts import ANY, AnyBlock, Attached, Block, Control, Moving
 from .wiring import Diagram

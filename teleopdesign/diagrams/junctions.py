@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from ..arguments import check_types
-from ..errors import ModelError, quote
-from ..frozen import Frozen
-from ..names import check_name
+from ..base.arguments import check_types
+from ..base.errors import ModelError, quote
+from ..base.frozen import Frozen
+from ..base.names import check_name
 
 #: a sign, a factor, or an expression of positions (on `position_symbol`), such as a lever arm
 Weight: TypeAlias = float | sp.Expr

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..base.errors import ModelError
 from ..blocks import Body
-from ..errors import ModelError
 from .junctions import Junction, Kinematics
 from .parts import Attached, Block, Moving
 

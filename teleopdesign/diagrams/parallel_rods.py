@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import matrix_of
+from ..base.arguments import matrix_of
+from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError
 from .junctions import Junction
 from .parts import Block, Control, Linked, Moving
 from .wiring import Diagram

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError
+from ..base.frozen import Frozen
+from ..base.names import check_name
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError
-from ..frozen import Frozen
-from ..names import check_name
 from .junctions import Junction, Kinematics, as_expression, check_names
 
 

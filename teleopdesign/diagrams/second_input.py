@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..controllers import Controller
-from ..errors import ModelError
 from .parts import Control
 from .wiring import Diagram
 

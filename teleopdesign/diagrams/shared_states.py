@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.errors import ModelError
 from ..controllers import matrices_of, unit_state
-from ..errors import ModelError
 from .junctions import Junction
 from .parts import Block, Control, Moving
 from .wiring import Diagram

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError
 from .haptic_interface import haptic_interface
 from .parts import AnyBlock, Control
 from .teleoperator import teleoperator

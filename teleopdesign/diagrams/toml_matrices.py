@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from ..base.errors import ExperimentError
+from ..base.toml_table import Table, describe_toml_value
 from ..blocks import MatrixImpedance, matrix_impedance
-from ..errors import ExperimentError
-from ..measurement.toml_table import Table, describe_toml_value
 
 #: keys of the matrices, each a list of rows (SI)
 MATRICES = ("mass", "damping", "stiffness")

@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.quantity import AXES, QUANTITIES
+from ..base.toml_table import Table, describe_toml_value, read_toml
 from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
 from ..controllers import CONTROLLERS, ControlLaw, Controller, Stage
 from ..effects import EFFECTS, Effect
-from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..measurement.description import BODY, body_from
-from ..measurement.toml_table import Table, describe_toml_value, read_toml
-from ..quantity import AXES, QUANTITIES
 from .expressions import read_expression
 from .junctions import Junction, Kinematics, Weight
 from .parts import ANY, AnyBlock, Attached, Block, Control, Linked, Moving

@@ -9,12 +9,12 @@ from typing import Any
 
 import sympy as sp
 
+from ..base.errors import ModelError
+from ..base.plain_data import write_text
+from ..base.toml_text import inline_text, key_text, string_text
 from ..blocks import Body, Value, with_block_effects
 from ..controllers import CONTROLLERS, ControlLaw, Controller
 from ..effects import EFFECTS, Effect
-from ..errors import ModelError
-from ..measurement.toml_text import inline_text, key_text, string_text
-from ..plain_data import write_text
 from .expression_writing import expression_text
 from .junctions import Junction, Kinematics
 from .parts import AnyBlock, Attached, Block, Control, Linked, Moving

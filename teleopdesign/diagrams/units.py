@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..base.quantity import unit_of
 from ..blocks import Body
-from ..quantity import unit_of
 from .parts import AnyBlock, Control
 from .wiring import Diagram
 

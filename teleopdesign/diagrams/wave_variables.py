@@ -18,9 +18,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from ..base.errors import ModelError, did_you_mean
 from ..blocks import Body
 from ..controllers import Controller, controller
-from ..errors import ModelError, did_you_mean
 from .junctions import Junction
 from .parts import ANY, AnyBlock, Block, Control
 from .teleoperator import TEXTS, teleoperator

@@ -12,14 +12,14 @@ from typing import TypeGuard
 
 import sympy as sp
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import Frozen
+from ..base.names import check_name
+from ..base.notebook import html_table
+from ..base.quantity import QUANTITIES
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError, did_you_mean
-from ..frozen import Frozen
-from ..names import check_name
-from ..notebook import html_table
-from ..quantity import QUANTITIES
 from .junctions import Junction, Kinematics, Weight, position_symbol
 from .one_axis import require_one_axis
 from .part_text import list_laws, write_equation

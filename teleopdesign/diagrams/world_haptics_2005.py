@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
+from ..base.frozen import Catalogue
 from ..blocks import Body, Value
 from ..controllers import controller, scheduled_force_feedback
 from ..effects import EFFECTS
-from ..frozen import Catalogue
 from .haptic_interface import haptic_interface
 from .wiring import Diagram
 

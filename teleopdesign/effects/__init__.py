@@ -16,12 +16,12 @@ from pathlib import Path
 from types import ModuleType
 from weakref import WeakValueDictionary
 
-from ..arguments import check_arguments
-from ..errors import ModelError, did_you_mean
-from ..frozen import Catalogue
-from ..names import check_name
-from ..recipes import remember
-from ..users_files import checked_path, laws_of, load_once, run
+from ..base.arguments import check_arguments
+from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import Catalogue
+from ..base.names import check_name
+from ..base.recipes import remember
+from ..base.users_files import checked_path, laws_of, load_once, run
 from ._effect import (
     CONTACT_ROLES,
     FURTHER,

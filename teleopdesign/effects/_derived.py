@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ..recipes import remember
+from ..base.recipes import remember
 from ._signals import FURTHER, SIGNALS, delayed
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..arguments import check_types
-from ..errors import ModelError, did_you_mean
-from ..quantity import QUANTITIES
+from ..base.arguments import check_types
+from ..base.errors import ModelError, did_you_mean
+from ..base.quantity import QUANTITIES
 
 
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:

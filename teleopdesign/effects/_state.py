@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from ..arguments import check_types
+from ..base.arguments import check_types
 
 #: factor on the position of a stop up to which the stop holds a state at rest: without a margin the
 #: state would chatter between two rates

@@ -21,10 +21,10 @@ from typing import Any
 
 import sympy as sp
 
-from ..arguments import check_types
-from ..errors import ModelError
-from ..quantity import MAINS
-from ..recipes import remember
+from ..base.arguments import check_types
+from ..base.errors import ModelError
+from ..base.quantity import MAINS
+from ..base.recipes import remember
 from ._effect import SIGNALS, Effect, Energy, Parameter, State
 from ._facts import RecordFacts
 

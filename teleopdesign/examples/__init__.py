@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..arguments import check_types
-from ..errors import ExperimentError, did_you_mean
+from ..base.arguments import check_types
+from ..base.errors import ExperimentError, did_you_mean
 
 
 @check_types

@@ -1,6 +1,6 @@
 """Frequency responses of a diagram."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from ..derive import transfer_function
 from .describing_function import describing_function
 from .grid import falling_profile

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..base.errors import ModelError
 from ..diagrams import Diagram
-from ..errors import ModelError
 
 
 def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:

@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body, solve_carried_force
 from ..controllers import SIGNALS as CONTROL_SIGNALS
 from ..controllers import Controller, parameter_symbol
 from ..effects import SIGNALS, delayed
-from ..errors import ModelError
 from ..realise.simulated import without_absent
 from .one_cycle import LawExpressions, first_harmonic, middles
 

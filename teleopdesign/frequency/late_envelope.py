@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .late_loop import LateRatio, Terms
 
 #: longest step of a phase (rad) or of the logarithm of a size; a longer step is halved. A shorter

@@ -16,7 +16,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..realise.lti import S
 
 Terms = Mapping[float, np.ndarray]

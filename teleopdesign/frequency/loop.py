@@ -9,11 +9,11 @@ import numpy as np
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from ..base.errors import ModelError, UnstableLoop
 from ..controllers import Controller
 from ..derive import symbol_values
 from ..derive.elimination import round_trip
 from ..diagrams import Control, Diagram
-from ..errors import ModelError, UnstableLoop
 from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins

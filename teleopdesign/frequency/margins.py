@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from sympy.core.function import AppliedUndef
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..realise.lti import numerical
 from . import sampled_margins
 from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, least_between

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
 from ..derive.elimination import rows
 from ..derive.with_values import symbol_values
 from ..diagrams import Diagram, Moving
-from ..errors import ModelError
 from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted
 

@@ -12,9 +12,9 @@ from typing import Literal
 
 import numpy as np
 
+from ..base.quantity import unit_of
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis
-from ..quantity import unit_of
 from ..realise.parted import simulated_parted
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED

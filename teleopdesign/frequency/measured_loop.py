@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError, UnstableLoop
 from ..controllers import measured_frequencies
-from ..errors import ModelError, UnstableLoop
 from ..realise.lti import numerical
 
 #: frequencies between two neighbouring measured ones. Between these the measured response is

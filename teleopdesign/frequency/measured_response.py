@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..base.errors import ModelError
 from ..diagrams import Diagram
-from ..errors import ModelError
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .cases import cases_of

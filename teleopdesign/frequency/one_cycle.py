@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .lock_in import phasors
 
 #: steps of a cycle. Forces are taken in the middle of each: no step lies on a reversal

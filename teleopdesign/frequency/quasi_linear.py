@@ -13,14 +13,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
+from ..base.quantity import unit_of
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer
 from ..derive.printing import dead_time_symbol, motion_controller_symbol
 from ..diagrams import Control, Diagram
 from ..diagrams.units import first_axis
-from ..errors import ModelError
-from ..quantity import unit_of
 from ..realise.lti import S, linear_blocks
 from .cases import cases_of
 from .describing_function import describing_function, driven_gain

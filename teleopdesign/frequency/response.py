@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.errors import ModelError, did_you_mean
+from ..base.plain_data import write_netcdf
 from ..derive import with_values
 from ..diagrams import Diagram
-from ..errors import ModelError, did_you_mean
-from ..plain_data import write_netcdf
 from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 from .cases import cases_of

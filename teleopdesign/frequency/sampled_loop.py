@@ -23,11 +23,11 @@ import mpmath
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..controllers import Controller, exact_decimal
 from ..derive import symbol_values
 from ..derive.elimination import transfer
 from ..diagrams import Control, Diagram
-from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S
 from .held_plant import HeldPlant, add, as_mpf, multiply
 from .late_loop import LateRatio

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
+from ..base.errors import ModelError, did_you_mean
 from ..diagrams import Diagram, Junction, Moving
-from ..errors import ModelError, did_you_mean
 from ..simulate import Sampling, Setup, prepare, sine
 from ..simulate.sampling import SAMPLED
 from .lock_in import Harmonic, lock_in

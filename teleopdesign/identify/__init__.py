@@ -6,7 +6,7 @@ The diagnosis estimates all parameters at once from any motion; these are the cl
 second opinion on the same data.
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .coulomb_level import CoulombLevel, LevelAtSpeed, Line, coulomb_level
 from .largest_stiffness import LargestStiffness, largest_stiffness_without_oscillation
 from .mean_error import mean_error

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..by_value import ByValue
-from ..errors import ExperimentError
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError
+from ..base.plain_data import make_plain, write_json
+from ..base.quantity import unit_of
+from ..base.standard_error import with_standard_error
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from ..plain_data import make_plain, write_json
-from ..quantity import unit_of
-from ..standard_error import with_standard_error
 from .mean_error import mean_error
 from .steady_runs import SteadyRun, steady_runs
 

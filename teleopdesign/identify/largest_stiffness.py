@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.quantity import unit_of
 from ..blocks import Body
-from ..by_value import ByValue
 from ..diagrams import Diagram
-from ..errors import ModelError
-from ..quantity import unit_of
 from ..simulate import Sampling, Simulation, simulate
 
 

@@ -9,7 +9,7 @@
 form.
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .channel import Channel
 from .description import BodyDescription, EnvironmentDescription, ModelValue
 from .experiment import Experiment, load_experiment

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, Array, tensor
-from ..by_value import ByValue
-from ..errors import ExperimentError, did_you_mean, quote
-from ..whole_files import follow_links
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.toml_table import Table, describe_toml_value
+from ..base.whole_files import follow_links
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
-from .toml_table import Table, describe_toml_value
 
 #: treatment of inertial parameters: estimated, or taken from the description
 ESTIMATES = ("base parameters", "as given")

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import ExperimentError, did_you_mean, quote
-from ..quantity import si_factor, to_si
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.quantity import si_factor, to_si
+from ..base.toml_table import Table
 from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
-from .toml_table import Table
 
 # name of a body's channel -> its quantity in the table of units
 BODY_QUANTITIES = {

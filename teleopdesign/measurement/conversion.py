@@ -19,10 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, quote
-from ..quantity import converting_factor, is_unit, measures, si_factor, to_si
+from ..base.errors import ExperimentError, quote
+from ..base.quantity import converting_factor, is_unit, measures, si_factor, to_si
+from ..base.toml_table import Table, describe_toml_value
 from .signed_numbers import SIGN_BIT, TWOS_COMPLEMENT, SignCode, sign_code_from
-from .toml_table import Table, describe_toml_value
 
 Array = NDArray[np.float64]
 

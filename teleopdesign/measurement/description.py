@@ -8,9 +8,9 @@ unit in which they were written. Only the effect knows the physical quantity of 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..errors import ExperimentError, did_you_mean, quote
-from ..quantity import AXES, to_si
-from .toml_table import Table
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.quantity import AXES, to_si
+from ..base.toml_table import Table
 
 ONE_BODY = ("device",)
 TWO_BODIES = ("master", "slave")

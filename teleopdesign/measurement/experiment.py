@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import final
 
-from ..by_value import ByValue
-from ..errors import ExperimentError, did_you_mean, quote
-from ..notebook import html_table
-from ..quantity import unit_of
-from ..whole_files import follow_links
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.notebook import html_table
+from ..base.quantity import unit_of
+from ..base.toml_table import Table, describe_toml_value, read_toml
+from ..base.whole_files import follow_links
 from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
@@ -18,7 +19,6 @@ from .doors.bag import is_bag
 from .reading import ReadingStep, reading_table
 from .record import SEPARATE, Record, read_record
 from .tables import is_log, tables_in
-from .toml_table import Table, describe_toml_value, read_toml
 
 _FILE = "experiment.toml"
 

@@ -6,8 +6,8 @@ import hashlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..errors import ExperimentError
-from .toml_table import read_toml
+from ..base.errors import ExperimentError
+from ..base.toml_table import read_toml
 
 #: bytes that are read at once
 _BLOCK = 1 << 20

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import check_types
-from ..errors import ExperimentError, did_you_mean, quote
-from ..quantity import AXES, unit_of
+from ..base.arguments import check_types
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.quantity import AXES, unit_of
+from ..base.toml_table import Table
 from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
 from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, ModelValue, bodies_from
@@ -21,7 +22,6 @@ from .numbers_in_cells import holds_dates
 from .record import Record, record_of, wanted_columns
 from .spans import cut_to
 from .tables import columns_of
-from .toml_table import Table
 
 #: a channel in a call: the name of a column, or a table as in [channels]
 ChannelEntry = str | Mapping[str, Any]

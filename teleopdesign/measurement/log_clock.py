@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, quote
+from ..base.errors import ExperimentError, quote
 from .channel import Channel
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock, counted_time, segments_of

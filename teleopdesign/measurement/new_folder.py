@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ExperimentError
-from ..plain_data import write_beside, write_text
+from ..base.errors import ExperimentError
+from ..base.plain_data import write_beside, write_text
+from ..base.toml_table import Table
+from ..base.toml_text import comment_text, inline_text, string_text
 from .channel import channels_from, sample_rate_from
 from .description import bodies_from
 from .encoder import reading_step, rests
@@ -22,8 +24,6 @@ from .reversals import runs_one_way
 from .survey import Survey, spans_of
 from .survey.content import sample_time_of
 from .survey.derivative import unwrap_column, wrap_of
-from .toml_table import Table
-from .toml_text import comment_text, inline_text, string_text
 
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, quote
+from ..base.errors import ExperimentError, quote
 from .doors._cells import number_of, stamps_in_texts
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 
 Array = NDArray[np.float64]
 RowNumbers = NDArray[np.intp]

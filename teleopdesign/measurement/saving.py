@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ExperimentError
-from ..plain_data import write_beside, write_text
-from ..quantity import unit_of
+from ..base.errors import ExperimentError
+from ..base.plain_data import write_beside, write_text
+from ..base.quantity import unit_of
+from ..base.toml_text import comment_text, inline_text, string_text
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, ModelValue
 from .reading import reading_table
-from .toml_text import comment_text, inline_text, string_text
 
 if TYPE_CHECKING:
     from .experiment import Experiment

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError
-from .toml_table import Table
+from ..base.errors import ExperimentError
+from ..base.toml_table import Table
 
 Array = NDArray[np.float64]
 

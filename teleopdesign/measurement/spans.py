@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from .channel import Channel, factor_of
 from .description import BodyDescription
 from .tables import LogColumns

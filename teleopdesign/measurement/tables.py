@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError, did_you_mean, quote
 from .doors._in_turn import machines_apart
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
 from .doors._two_part_time import with_whole_time

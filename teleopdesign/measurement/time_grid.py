@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from .even_clock import even_clock
 from .record_clock import Array, RecordClock, check_size
 from .uneven_stamps import rows_in_order, sparse_clock

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from ..errors import ExperimentError
-from ..quantity import AXES, is_unit, measures
+from ..base.errors import ExperimentError
+from ..base.quantity import AXES, is_unit, measures
 from .column_names import unit_of_text
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)")

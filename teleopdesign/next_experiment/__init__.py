@@ -6,7 +6,7 @@ write_reference(proposal.reference, experiment, "next.csv")
 show_in_simulation(proposal)                # each rival is made the truth, and diagnosed
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .arm_paths import ArmPaths, propose_paths
 from .in_simulation import SimulatedDiagnosis, show_in_simulation
 from .limits import Limits, shown_limits

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arms.base_parameters import BaseParameters, base_parameters, columns_with_motors
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError
 from ..diagnose import ArmDiagnosis
-from ..errors import ExperimentError
 from ..measurement.filtering import Array
 from .limits import Limits, shown_limits
 from .proposal import Reference

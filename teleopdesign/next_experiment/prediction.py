@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.quantity import unit_of
 from ..diagnose.error import error_of
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import Fit, estimate
@@ -21,7 +22,6 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.record import Record
 from ..model import Model
-from ..quantity import unit_of
 from .rivals import Rival, pairs
 from .separation import rms_measured
 from .synthesis import Bench, PlannedMotion, record_under

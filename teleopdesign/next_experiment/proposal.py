@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.finding import Finding
 from ..diagnose.diagnosis import Diagnosis
-from ..finding import Finding
 from ..measurement.filtering import Array
 from .limits import Limits
 from .prediction import DECIDES, SAME, Curves, DeterminedParameter, Separation

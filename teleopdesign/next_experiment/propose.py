@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.errors import ModelError, did_you_mean
+from ..base.quantity import si_factor
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.sensors import sensors_of
-from ..errors import ModelError, did_you_mean
 from ..measurement.experiment import Experiment
-from ..quantity import si_factor
 from .family import PathPart, Setting, Show, family
 from .following import servo_of
 from .limits import Limits, course_of, shown_limits

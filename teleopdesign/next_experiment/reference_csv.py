@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.plain_data import harmless_cell, write_beside
+from ..base.quantity import si_factor
 from ..measurement.experiment import Experiment
-from ..plain_data import harmless_cell, write_beside
-from ..quantity import si_factor
 from .proposal import Reference
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.quantity import unit_of
 from ..blocks.body import INERTIA
 from ..diagnose.fit import fit_squares
 from ..diagnose.least_squares import solve_normal
@@ -18,7 +19,6 @@ from ..diagnose.prepare import Prepared
 from ..diagnose.scales import scales
 from ..diagnose.sensors import Sensor
 from ..measurement.filtering import Array
-from ..quantity import unit_of
 from .family import Setting, family
 from .limits import Limits, course_of
 from .rivals import Rival

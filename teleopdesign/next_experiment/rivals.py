@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..base.errors import ModelError
 from ..diagnose.candidates import Candidate
 from ..diagnose.diagnosis import Diagnosis, OpenQuestion
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.open_questions import open_questions
 from ..effects import SIGNALS
-from ..errors import ModelError
 from ..model import Model
 
 

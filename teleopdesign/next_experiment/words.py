@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.finding import Finding, Graph, Series
+from ..base.plain_data import make_plain
+from ..base.quantity import si_factor
 from ..diagnose.noise_floor import say_floors
 from ..diagnose.open_questions import open_questions
-from ..finding import Finding, Graph, Series
-from ..plain_data import make_plain
-from ..quantity import si_factor
 from .prediction import DECIDES, SAME
 from .rivals import pairs
 

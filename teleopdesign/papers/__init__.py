@@ -11,7 +11,7 @@ import pkgutil
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ..errors import ModelError, did_you_mean
+from ..base.errors import ModelError, did_you_mean
 from ._proof import Correction, NotProved, ProofSteps
 from ._statement import HOW, Figure, Numbers, Paper, Result, Statement, check
 

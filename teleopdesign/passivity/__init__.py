@@ -9,7 +9,7 @@
 A refuted claim contains a motion that releases energy: `claim.record.replay()`.
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .available_storage import AvailableStorage, available_storage
 from .claims.certificate import Certificate, read_certificate
 from .claims.claim import Claim, Evidence, Proof, Refutation, Unknown

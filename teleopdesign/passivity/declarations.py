@@ -13,6 +13,7 @@ import math
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import (
     CONTROLLERS,
@@ -27,7 +28,6 @@ from ..controllers import (
 from ..diagrams import Control, Diagram
 from ..effects import BLOCK_EFFECTS, EFFECTS, Effect, acts_linearly
 from ..effects import SIGNALS as BODY_SIGNALS
-from ..errors import ModelError
 from ..realise.damping_interval import least_damping
 from ..realise.extremes import least_value
 from ..realise.reach import Reach

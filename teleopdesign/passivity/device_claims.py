@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.errors import ModelError
+from ..base.rounding import round_down, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
-from ..errors import ModelError
-from ..rounding import round_down, round_up
 from ..simulate import Sampling
 from .claims.claim import Claim, Refutation, Unknown
 from .identified import DIGITS, IdentifiedDevice

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.notebook import html_table
 from ..diagrams import Diagram
-from ..errors import ModelError
-from ..notebook import html_table
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from ..base.errors import ModelError
 from ..blocks import Body, Value
 from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
-from ..errors import ModelError
 from .claims.claim import Claim, Unknown
 from .declarations import keeps_its_bound
 from .identified import IdentifiedDevice, identify_device, restate_for_device

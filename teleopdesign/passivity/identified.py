@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from ..base.errors import ModelError
+from ..base.quantity import unit_of
 from ..blocks import NINETY_FIVE, Body
 from ..effects import EFFECTS, Effect
-from ..errors import ModelError
-from ..quantity import unit_of
 from ..realise.acting_bound import largest_acting_force
 from ..realise.damping_interval import damping_interval
 from ..realise.friction_interval import (

@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..diagrams import Diagram
-from ..errors import ModelError
 from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
 from .linear.hidden_modes import controllers_grow, growth_within

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
 from ..derive import symbol_values, two_port_functions
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
-from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from .two_port.two_port import passive_margin, stable_margin

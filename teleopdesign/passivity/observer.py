@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError, ModelError
+from ..base.plain_data import write_netcdf
+from ..base.standard_error import with_standard_error
 from ..blocks import NINETY_FIVE
-from ..by_value import ByValue
-from ..errors import ExperimentError, ModelError
 from ..measurement import Experiment, Record
-from ..plain_data import write_netcdf
 from ..simulate import Simulation
-from ..standard_error import with_standard_error
 
 if TYPE_CHECKING:
     import matplotlib.figure

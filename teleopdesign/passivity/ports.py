@@ -16,6 +16,7 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller, make_exact
 from ..derive import symbol_values, transfer
@@ -23,7 +24,6 @@ from ..derive.elimination import rows
 from ..derive.printing import dead_time_symbol
 from ..diagrams import Control, Diagram, Kinematics, Moving, position_symbol
 from ..effects import is_linear
-from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S, linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..arguments import check_types
-from ..errors import ModelError
+from ..base.arguments import check_types
+from ..base.errors import ModelError
 
 #: energy that springs still lend to a round, as a share of the energy of this round, that is
 #: neglected

@@ -9,8 +9,8 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
+from ..base.errors import ModelError
 from ..diagrams import Diagram, Moving, Part
-from ..errors import ModelError
 from .linear.impedance import exact
 
 Shares = Mapping[str, sp.Expr]

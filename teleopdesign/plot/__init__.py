@@ -1,6 +1,6 @@
 """Draw result objects; compute nothing."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .block_diagram import Drawing, draw_diagram
 from .design import plot_force_velocity, plot_simulation, save_figure
 from .frequency import plot_bode, plot_nyquist

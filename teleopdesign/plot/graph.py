@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..finding import Array, Graph, Series
+from ..base.finding import Array, Graph, Series
 from .diagnosis import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED
 
 if TYPE_CHECKING:

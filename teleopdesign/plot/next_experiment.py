@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..finding import Graph, Series
+from ..base.finding import Graph, Series
 from .letters import house_style
 
 if TYPE_CHECKING:

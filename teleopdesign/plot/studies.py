@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ..studies.points import SAMPLE
 from .design import ONE_COLUMN, TWO_COLUMNS
 from .letters import house_style

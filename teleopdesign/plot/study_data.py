@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import number as number_of
-from ..errors import ModelError, did_you_mean
-from ..expectations import describe_value
+from ..base.arguments import number as number_of
+from ..base.errors import ModelError, did_you_mean
+from ..base.expectations import describe_value
 from .design import symbol, unit_text
 
 if TYPE_CHECKING:

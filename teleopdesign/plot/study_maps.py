@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .design import ONE_COLUMN, TWO_COLUMNS
 from .letters import house_style
 from .onset import hatch_region

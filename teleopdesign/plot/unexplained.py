@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..finding import Graph, Series
+    from ..base.finding import Graph, Series
 
 #: panels side by side; height of a row of them (in)
 COLUMNS, HEIGHT = 3, 1.75

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 
 #: symbol -> expression, in an order in which each can be computed from those before
 Steps = dict[sp.Symbol, sp.Expr]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import SIGNALS, delayed, sort_by_action
-from ..errors import ModelError
 from .friction_interval import lowest_of, parameter_box, stays_within
 from .reach import Reach, signal_ranges
 from .simulated import without_absent

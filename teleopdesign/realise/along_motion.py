@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import (
     INERTIA,
@@ -28,7 +29,6 @@ from ..effects import (
     make_rubbing_structure,
     make_touching_structure,
 )
-from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along

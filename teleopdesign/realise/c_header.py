@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
 
+from ..base.errors import ModelError
 from ..controllers import SIGNALS, Controller, parameter_symbol
-from ..errors import ModelError
 from .delays import delay_in_samples
 from .late_signals import LateSignals, without_delays
 from .simulated import without_no_delay

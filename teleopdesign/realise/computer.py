@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
-from ..errors import ModelError
 from ._linear import solve_linear
 from .late_signals import LateSignals
 from .signal_symbols import PERIOD, estimate, rate_of, reading_symbol, signal, travel_rate

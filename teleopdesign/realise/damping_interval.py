@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import SIGNALS, Effect
-from ..errors import ModelError
 from .friction_interval import DIRECTION, SPEED, Interval, lowest_of
 from .reach import Reach
 from .simulated import without_absent

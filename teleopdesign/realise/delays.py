@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 
 #: distance of a delay from a whole number of steps or samples that is rounding of the division
 _WHOLE = 1e-9

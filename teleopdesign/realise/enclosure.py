@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 from mpmath import libmp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from . import interval_arithmetic as arithmetic
 from .interval_arithmetic import (
     WHOLE,

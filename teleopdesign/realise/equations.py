@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..base.errors import ModelError, UnknownSignal, did_you_mean
 from ..blocks import Body, solve_carried_force
 from ..controllers import parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..effects import SIGNALS
-from ..errors import ModelError, UnknownSignal, did_you_mean
 from ._linear import Steps, solve_linear
 from .computer import (
     ComputerEquations,

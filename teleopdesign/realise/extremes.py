@@ -14,7 +14,7 @@ from itertools import count
 
 import sympy as sp
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from .enclosure import Singular, enclosure_of
 from .interval_arithmetic import Enclosure
 

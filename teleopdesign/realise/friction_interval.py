@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..base.errors import ModelError
+from ..base.quantity import unit_after_number, unit_of
+from ..base.rounding import round_down, round_near, round_up
 from ..blocks import Body, Value
 from ..effects import SIGNALS, Effect, sort_by_action
-from ..errors import ModelError
-from ..quantity import unit_after_number, unit_of
-from ..rounding import round_down, round_near, round_up
 from .extremes import Least, Ranges, least_value
 from .reach import ANY_MOTION, Reach, largest_speed, signal_ranges, words_of
 from .simulated import without_absent

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError
 from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
-from ..errors import ModelError
 from ._law_source import needed_steps
 from .equations import Equations, build_equations
 from .private_names import PrivateNames, private_names

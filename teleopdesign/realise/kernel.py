@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..controllers import SIGNALS, laws_that_declare
-from ..errors import ModelError
 from .program import CompiledLoop, Program
 
 #: largest product of the step h and the fastest rate of the equations at rest: 0.3 is 20 steps in a

@@ -13,8 +13,8 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.pycode import PythonCodePrinter
 
+from ..base.errors import ModelError, quote
 from ..controllers import is_call
-from ..errors import ModelError, quote
 
 #: symbol -> its private name in the source
 Names = Mapping[sp.Symbol, str]

@@ -15,11 +15,11 @@ import numpy as np
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller, Stage, exact_decimal, make_exact, parameter_symbol
 from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.second_input import acts_along_another, without_motion
-from ..errors import ModelError
 
 if TYPE_CHECKING:
     import control

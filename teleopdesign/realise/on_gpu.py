@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ModelError
+from ..base.errors import ModelError
 from ._gpu_source import KERNEL, gpu_source
 from .compiled import compiled_module
 from .kernel import LoopGrid, first_memory, grid

@@ -16,6 +16,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..diagrams import (
     Attached,
     Block,
@@ -28,7 +29,6 @@ from ..diagrams import (
     position_symbol,
 )
 from ..diagrams.junctions import Weight
-from ..errors import ModelError
 
 #: beginning of every private name; ends with "_", so that no such name begins another one
 _BEGIN = re.compile(r"\b[sbd]\d{3,}_")

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..base.quantity import unit_of
 from ..effects import SIGNALS
-from ..quantity import unit_of
 
 #: friction bounds are for speeds up to FASTER times the recorded speed, and for times up to LONGER
 #: records: a controller moves a device faster and longer than the experiment that identified it

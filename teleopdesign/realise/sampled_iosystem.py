@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.errors import GrowsWithoutBound, ModelError
 from ..diagrams import Diagram
-from ..errors import GrowsWithoutBound, ModelError
 from .delays import delay_in_samples
 from .kernel import FASTEST, RELOAD, fastest_rate, first_memory, long_step_error, refine_factor
 from .program import Program, program

@@ -12,8 +12,8 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..effects import SIGNALS, Effect
-from ..errors import ModelError
 from ..measurement.filtering import Array
 from .compiled import compile_source
 from .exponentials import PHI, head

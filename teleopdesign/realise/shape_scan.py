@@ -15,8 +15,8 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..effects import SIGNALS, Effect
-from ..errors import ModelError
 from ..measurement.motion import Motion
 from .compiled import compile_source
 from .laws import Names, assignments, indent

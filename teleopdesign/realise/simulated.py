@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
 from ..effects import EFFECTS, SIGNALS, Effect
-from ..errors import ModelError
 from .tips import with_tips
 from .traced import for_numpy
 

@@ -11,10 +11,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
+from ..base.errors import ModelError, did_you_mean
+from ..base.quantity import unit_after_number
 from ..blocks import Body
-from ..errors import ModelError, did_you_mean
 from ..model import Model
-from ..quantity import unit_after_number
 
 #: kg and kg m^2: least mass and inertia of a link, because simulators refuse less. They do not move
 #: with an identified joint

@@ -20,11 +20,11 @@ from typing import Any
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body, Value
 from ..controllers import ControlLaw, Controller, Stage
 from ..diagrams import Attached, Block, Control, Diagram, Junction, Linked, Moving
 from ..effects import CONTACT_ROLES, Effect
-from ..errors import ModelError
 
 
 def tip(motion: str) -> str:

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller, ControllerEquation
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Moving
 from ..diagrams.junctions import Weight
 from ..diagrams.second_input import without_motion
 from ..effects import SIGNALS, Effect
-from ..errors import ModelError
 from .late_signals import LateSignals, without_delays
 
 #: signal's name -> symbol that stands for it

@@ -1,6 +1,6 @@
 """The report of a diagnosis: one self-contained HTML page; this folder computes no physics."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .arm import ArmPage, arm_page_of, write_arm_report
 from .page import Page, page_of
 from .write import write_report

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..base.finding import Finding
+from ..base.plain_data import make_plain, write_text
 from ..diagnose import ArmDiagnosis
 from ..diagnose.arms.answer import arm_answer
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.ladder_text import sentence
-from ..finding import Finding
 from ..measurement.reading import ReadingStep
-from ..plain_data import make_plain, write_text
 from .candidate_table import LadderRow
 from .figures import ladder_figure
 from .page import DIGITS, Page, limit_size, page_of, version

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ..base.finding import Finding
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.evidence import whole_score
@@ -14,7 +15,6 @@ from ..diagnose.ranking import Ranked
 from ..diagnose.record_shift import shifts_of
 from ..diagnose.rung import Rung
 from ..effects import CONTACT_ROLES
-from ..finding import Finding
 from .words import join_names, number, percent, unit_text, with_error
 
 #: correlation of two estimates from which they are called known only together: the standard error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from markupsafe import Markup
 
-from ..finding import Graph
+from ..base.finding import Graph
 from ..plot.diagnosis import AFTER, BEFORE
 from ..plot.graph import draw_graph
 from .before_and_after import YOURS

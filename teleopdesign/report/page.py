@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
+from ..base.finding import Finding, Graph
+from ..base.plain_data import make_plain
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
-from ..finding import Finding, Graph
 from ..measurement.reading import ReadingStep
-from ..plain_data import make_plain
 from ..plot.graph import thin_series
 from .candidate_table import (
     CandidateRow,

@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..base.errors import ExperimentError
+from ..base.plain_data import make_plain
 from ..blocks import CONTACT, NINETY_FIVE, Value
 from ..diagnose import Diagnosis
 from ..effects import EFFECTS
-from ..errors import ExperimentError
 from ..model import Model
-from ..plain_data import make_plain
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 
+from ..base.quantity import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.reading import log_name
-from ..quantity import unit_of
 
 #: bytes that are read at once: a log may be larger than the memory
 _BLOCK = 1 << 20

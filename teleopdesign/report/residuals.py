@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from ..base.finding import Array, Graph
+from ..base.quantity import unit_of
 from ..diagnose import Diagnosis
 from ..diagnose.comparison import residual_data
 from ..diagnose.evidence import SAME
-from ..finding import Array, Graph
-from ..quantity import unit_of
 from .before_and_after import BodySamples, excerpt, plot_over_velocity
 from .scaled import Scaled, choose_prefix, size_of
 

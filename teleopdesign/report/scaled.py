@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..finding import Array
+from ..base.finding import Array
 from .words import unit_text
 
 #: SI unit -> (unit that is shown, factor), from small to large; other units are not changed

@@ -1,6 +1,6 @@
 """Simulate a diagram, with a prescribed motion or in closed loop, sampled or continuous."""
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of
 from .force_velocity import ForceVelocity, force_velocity
 from .many import simulate_many

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.errors import ModelError, did_you_mean
 from ..diagrams import Diagram
-from ..errors import ModelError, did_you_mean
 from .setup import MOST_NUMBERS
 from .units import signal_units
 

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.errors import ModelError, did_you_mean
 from ..blocks import Body
 from ..controllers import Controller
 from ..diagrams import Control, Diagram
-from ..errors import ModelError, did_you_mean
 from ..realise.simulated import check_levels, least_levels, may_be_negative
 
 if TYPE_CHECKING:

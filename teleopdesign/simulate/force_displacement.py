@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..by_value import ByValue
-from ..errors import ModelError
-from ..plain_data import write_json, write_netcdf
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.plain_data import write_json, write_netcdf
 from .simulation import Simulation
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.errors import ModelError, did_you_mean
 from ..diagrams import Diagram
-from ..errors import ModelError, did_you_mean
 from ..realise.simulated import refuse_massless
 from .case_results import CaseResults, Mistake, read_reduction
 from .cases import (

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import ModelError
-from ..expectations import describe_value
+from ..base.errors import ModelError
+from ..base.expectations import describe_value
 from ..realise.delays import is_whole
 
 if TYPE_CHECKING:

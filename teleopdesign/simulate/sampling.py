@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from ..arguments import check_types
-from ..errors import ModelError, did_you_mean
+from ..base.arguments import check_types
+from ..base.errors import ModelError, did_you_mean
 
 
 @check_types

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ..base.errors import ModelError, UnknownSignal, did_you_mean
 from ..diagrams import Diagram, Moving, with_shared_states
-from ..errors import ModelError, UnknownSignal, did_you_mean
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
 from . import on_grid

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..by_name import ByName
-from ..by_value import ByValue
+from ..base.by_name import ByName
+from ..base.by_value import ByValue
+from ..base.errors import ModelError, did_you_mean
+from ..base.notebook import html_table
+from ..base.plain_data import write_beside, write_netcdf
 from ..diagrams import Diagram
-from ..errors import ModelError, did_you_mean
-from ..notebook import html_table
-from ..plain_data import write_beside, write_netcdf
 from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..errors import GrowsWithoutBound, ModelError
+from ..base.errors import GrowsWithoutBound, ModelError
 
 if TYPE_CHECKING:
     from ..realise.kernel import Timing

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
-from ..errors import ModelError
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
 
 _FEWEST = 6  # samples that a quintic spline needs
 

@@ -13,7 +13,7 @@ result["force_error"]                       # a labelled array over both axes
 result.plot.map("force_error")
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .case import SimulatedCase
 from .chosen_measures import Measure, measure
 from .diagnosed import diagnose_recording

@@ -16,12 +16,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError, did_you_mean
+from ..base.quantity import unit_of
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis, unit_of_value
-from ..errors import ModelError, did_you_mean
-from ..quantity import unit_of
 from ..simulate import Sampling, Setup, Simulation, Trajectory, prepare, simulate, sine
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units

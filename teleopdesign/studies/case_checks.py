@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..errors import ModelError, UnknownSignal, did_you_mean
-from ..expectations import describe_value, number_check
+from ..base.errors import ModelError, UnknownSignal, did_you_mean
+from ..base.expectations import describe_value, number_check
 from ..simulate import Setup
 from .case import SimulatedCase
 from .chosen_measures import Measure

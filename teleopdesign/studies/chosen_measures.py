@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import instance, number
-from ..by_value import ByValue
-from ..errors import ModelError, did_you_mean
-from ..expectations import describe_value
+from ..base.arguments import instance, number
+from ..base.by_value import ByValue
+from ..base.errors import ModelError, did_you_mean
+from ..base.expectations import describe_value
 from .measures import MEASURES
 from .point import Amount, Point, PointFunction
 from .points import check_name

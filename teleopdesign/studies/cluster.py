@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from ..errors import ExperimentError, ModelError
+from ..base.errors import ExperimentError, ModelError
 from .evaluate import StudyTask
 from .one_thread import one_thread
 from .outcomes import PointOutcome

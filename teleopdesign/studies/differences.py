@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import ModelError, TeleopDesignError, did_you_mean
+from ..base.errors import ModelError, TeleopDesignError, did_you_mean
 from ..simulate.cases import bounds_of_value
 from .case import SimulatedCase
 from .side_by_side import group_alike, simulate_rows

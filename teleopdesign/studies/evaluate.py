@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..base.errors import ModelError, TeleopDesignError, did_you_mean
 from ..diagrams import Diagram
-from ..errors import ModelError, TeleopDesignError, did_you_mean
 from .case import SimulatedCase
 from .chosen_measures import Measure
 from .outcomes import PointOutcome

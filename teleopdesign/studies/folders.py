@@ -13,11 +13,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError, ModelError
+from ..base.whole_files import follow_links
 from ..effects import EFFECTS, Effect
-from ..errors import ExperimentError, ModelError
 from ..measurement.files import content_digest
-from ..whole_files import follow_links
 from .chosen_measures import measures_of
 from .evaluate import StudyTask
 from .fingerprint import fingerprint

@@ -22,11 +22,11 @@ from typing import Any
 
 import numpy as np
 
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.toml_table import Table, describe_toml_value, read_toml
 from ..controllers import CONTROLLERS, ControlLaw
 from ..diagrams import Diagram, read_diagram
 from ..effects import EFFECTS, Effect
-from ..errors import ExperimentError, ModelError, did_you_mean, quote
-from ..measurement.toml_table import Table, describe_toml_value, read_toml
 from ..simulate import Sampling, sine
 from .axes_from_toml import read_axes, read_whole
 from .chosen_measures import Measure, measure

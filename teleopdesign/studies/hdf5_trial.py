@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 
 #: s: processor time for reading a file in addition to the time that its size explains. A study of
 #: 10 000 points takes 0.1 s. A longer time waits for damaged files; a shorter one refuses large

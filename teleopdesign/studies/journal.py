@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 from weakref import WeakSet
 
-from ..errors import ExperimentError
+from ..base.errors import ExperimentError
 from .outcomes import Outcomes, PointOutcome
 
 try:

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ModelError
-from ..expectations import describe_value
-from ..frozen import Catalogue
+from ..base.errors import ModelError
+from ..base.expectations import describe_value
+from ..base.frozen import Catalogue
 from .point import Amount, Kind, Point
 
 

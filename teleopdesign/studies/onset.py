@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..errors import GrowsWithoutBound
+from ..base.errors import GrowsWithoutBound
 from ..simulate import Simulation
 
 #: a swing has died out if it is below this share of the largest one: smaller swings are creep of

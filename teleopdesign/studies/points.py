@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ModelError, quote
-from ..expectations import describe_value
+from ..base.errors import ModelError, quote
+from ..base.expectations import describe_value
 from .samples import Samples, distribution_text
 
 #: name of the dimension of points that were drawn together

@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from ..errors import ModelError
-from ..process_copies import shield_from_ctrl_c
+from ..base.errors import ModelError
+from ..base.process_copies import shield_from_ctrl_c
 from .evaluate import StudyTask
 from .frames import receive, send
 from .outcomes import PointOutcome

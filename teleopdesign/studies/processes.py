@@ -9,8 +9,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 
-from ..core_count import count_cores
-from ..process_copies import can_copy
+from ..base.core_count import count_cores
+from ..base.process_copies import can_copy
 from .evaluate import StudyTask
 from .one_thread import one_thread
 from .pool import Pool, Sink

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_name import ByName
-from ..by_value import ByValue
-from ..errors import ExperimentError, ModelError, did_you_mean
-from ..notebook import html_table
-from ..plain_data import write_beside
+from ..base.arguments import check_types
+from ..base.by_name import ByName
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.notebook import html_table
+from ..base.plain_data import write_beside
 from .hdf5_trial import read_on_trial
 from .outcomes import PointOutcome
 from .points import SAMPLE, Points

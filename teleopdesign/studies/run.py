@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path, PurePath
 from typing import Any, Literal
 
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
 from ..diagrams import Diagram
-from ..errors import ExperimentError, ModelError, did_you_mean, quote
 from ..measurement.files import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED

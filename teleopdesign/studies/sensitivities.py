@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..arguments import check_types
+from ..base.arguments import check_types
+from ..base.errors import ModelError, did_you_mean
 from ..diagrams import Diagram
-from ..errors import ModelError, did_you_mean
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units

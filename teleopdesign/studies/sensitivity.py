@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ExperimentError, ModelError
+from ..base.errors import ExperimentError, ModelError
 from .points import SAMPLE
 
 if TYPE_CHECKING:

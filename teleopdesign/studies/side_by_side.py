@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import GrowsWithoutBound, ModelError, TeleopDesignError
+from ..base.errors import GrowsWithoutBound, ModelError, TeleopDesignError
 from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .evaluate import StudyTask, evaluate, outcome_of

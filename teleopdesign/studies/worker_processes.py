@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import BinaryIO, cast
 
-from ..errors import ModelError, TeleopDesignError
-from ..process_copies import Copy, can_copy, has_hidden_threads
+from ..base.errors import ModelError, TeleopDesignError
+from ..base.process_copies import Copy, can_copy, has_hidden_threads
 from .evaluate import StudyTask
 from .one_thread import ONE_THREAD, one_thread
 

@@ -8,7 +8,7 @@ front = td.trade_off(diagram, free, ("force_error", "tracking_error"), duration=
 fitted = td.fit_simulation(diagram, record, {"Z_M.coulomb.level": (0.05, 2.0)})
 """
 
-from ..arguments import check_arguments
+from ..base.arguments import check_arguments
 from .limits import TuningLimit, limit
 from .recheck import CheckedLimit
 from .simulation_fit import SimulationFit, fit_simulation

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.errors import ModelError
 from ..diagnose.fit import standard_errors
 from ..diagnose.solve import BLOCK
-from ..errors import ModelError
 from ..passivity.intervals.box import ValueBox
 from ..studies.case import SimulatedCase
 from ..studies.differences import SignalSlopes, simulated_signals, slopes_of

@@ -14,17 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError, UnstableLoop, did_you_mean
+from ..base.quantity import unit_after_number
 from ..diagrams import Diagram
-from ..errors import ModelError, UnstableLoop, did_you_mean
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.family import family_of
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holding
-from ..quantity import unit_after_number
 from ..studies.chosen_measures import Measure, measures_of
 from ..studies.measures import MEASURES
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..by_value import ByValue
-from ..errors import ModelError, did_you_mean
+from ..base.by_value import ByValue
+from ..base.errors import ModelError, did_you_mean
 from ..measurement import Record
 from ..measurement.from_arrays import log_of
 from ..simulate import Simulation, Trajectory, sampled_motion

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import ModelError
-from ..expectations import describe_value
+from ..base.errors import ModelError
+from ..base.expectations import describe_value
 from ..passivity.intervals.box import ValueBox
 from ..studies.case import SimulatedCase
 from ..studies.chosen_measures import Measure

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..by_value import ByValue
+from ..base.by_value import ByValue
+from ..base.quantity import unit_after_number
 from ..passivity.intervals.linear import CLAIMS
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.intervals.worst import search_worst
-from ..quantity import unit_after_number
 from .limits import LOOP_MARGINS, TuningLimit, loop_margin
 from .problem import Problem, TrialPoint, box_over
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..errors import ModelError
-from ..expectations import describe_value
+from ..base.errors import ModelError
+from ..base.expectations import describe_value
 from ..passivity.intervals.box import ValueBox
 
 #: intervals whose ends differ by more than this factor are searched in logarithms

@@ -21,17 +21,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.notebook import html_table
+from ..base.quantity import unit_after_number
+from ..base.standard_error import with_standard_error
 from ..diagrams import Diagram
-from ..errors import ModelError
-from ..notebook import html_table
 from ..passivity.intervals.box import ValueBox
-from ..quantity import unit_after_number
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
-from ..standard_error import with_standard_error
 from ..studies.case import SimulatedCase, case_of
 from ..studies.differences import check_slopes_exist
 from ..studies.sensitivities import labelled_slopes

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.quantity import unit_after_number
 from ..diagrams import Diagram
-from ..errors import ModelError
-from ..quantity import unit_after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of

@@ -23,12 +23,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..arguments import check_types
-from ..by_value import ByValue
+from ..base.arguments import check_types
+from ..base.by_value import ByValue
+from ..base.errors import ModelError
+from ..base.notebook import html_table
+from ..base.quantity import unit_after_number
 from ..diagrams import Diagram
-from ..errors import ModelError
-from ..notebook import html_table
-from ..quantity import unit_after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of

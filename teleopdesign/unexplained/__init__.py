@@ -11,13 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..arguments import check_arguments
-from ..by_value import ByValue
+from ..base.arguments import check_arguments
+from ..base.by_value import ByValue
+from ..base.finding import Finding
 from ..diagnose.fit import Fit
 from ..diagnose.noise_floor import NoiseFloor
 from ..diagnose.prepare import Prepared, prepare
 from ..diagnose.stated_fit import estimate_stated
-from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .description import BodyResidual, DescribedDependence, describe_body, findings_of

@@ -9,10 +9,10 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
+from ..base.errors import ModelError
+from ..base.plain_data import write_text
 from ..diagnose.prepare import Prepared
 from ..diagnose.scales import scales
-from ..errors import ModelError
-from ..plain_data import write_text
 from .amounts import describe_span
 from .description import BodyResidual, DescribedDependence
 from .effect_law import law_of_formula, law_of_points

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.quantity import unit_of
 from ..measurement.filtering import Array
-from ..quantity import unit_of
 from .dependence import Dependence
 from .formula import Formula
 from .library import FormulaTerm

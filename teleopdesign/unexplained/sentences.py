@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ..base.quantity import unit_of
 from ..measurement.filtering import Array
-from ..quantity import unit_of
 from .amounts import amount, describe_span, number
 from .curve import Curve
 from .formula import Formula

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..finding import Graph, Series
+from ..base.finding import Graph, Series
+from ..base.quantity import unit_of
 from ..measurement.filtering import Array
-from ..quantity import unit_of
 from .amounts import unit_for
 from .curve import BAND, BINS, Curve
 from .rows import Rows

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.app import files
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.tables import DOORS
 
 

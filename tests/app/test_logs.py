@@ -10,7 +10,7 @@ import pytest
 
 from teleopdesign import example, load_experiment
 from teleopdesign.app import logs
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 
 @pytest.fixture

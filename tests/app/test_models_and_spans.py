@@ -7,8 +7,8 @@ import pytest
 import teleopdesign as td
 from teleopdesign.app import charts, logs, pages, settings
 from teleopdesign.app.workbench import Workbench
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError
 
 FEW = ("coulomb", "viscous", "stribeck")
 

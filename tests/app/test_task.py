@@ -3,7 +3,7 @@
 import threading
 
 from teleopdesign.app.task import BackgroundTask, stop_running
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 
 
 def test_the_result_is_there_once_the_work_is_done():

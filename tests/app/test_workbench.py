@@ -7,9 +7,9 @@ import pytest
 
 from teleopdesign import example, load_experiment
 from teleopdesign.app import Workbench, charts, export, pages, views
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import read_diagram
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 
 FEW = {name: EFFECTS[name] for name in ("coulomb", "viscous", "stribeck", "quadratic_drag")}
 

@@ -10,6 +10,7 @@ import pytest
 from arms.arm_simulator import forces, random_arm, urdf, write_experiment
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.diagnose import RecordedLoop
 from teleopdesign.diagnose.arms.by_simulation import (
@@ -20,7 +21,6 @@ from teleopdesign.diagnose.arms.course import ArmLinks
 from teleopdesign.diagnose.arms.prepared import prepare_arm
 from teleopdesign.diagnose.by_simulation import compare_by_simulation, simulation_data
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 
 SECONDS = 6.0
 LOOP = RecordedLoop(200.0, 20.0)

@@ -17,6 +17,7 @@ from arms.arm_simulator import random_arm, write_experiment
 from arms.stated_models import stated_models
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answers import load_answer
 from teleopdesign.diagnose.arms.answer import arm_answer, write_arm_answer
@@ -27,7 +28,6 @@ from teleopdesign.diagnose.learnable import learnable
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ExperimentError
 
 pytestmark = pytest.mark.slow  # diagnoses of arms
 

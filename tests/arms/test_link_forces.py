@@ -20,7 +20,7 @@ from teleopdesign.arms import (
     read_urdf,
     rotation_of,
 )
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 
 #: of a force: double precision over some hundred products
 ROUNDING = 1e-9

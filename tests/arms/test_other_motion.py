@@ -10,6 +10,7 @@ from arms.arm_simulator import random_arm, write_experiment
 from arms.stated_models import stated_models
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.answers import load_answer
 from teleopdesign.diagnose.arms.answer import write_arm_answer
 from teleopdesign.diagnose.arms.fit import estimate_arm
@@ -17,7 +18,6 @@ from teleopdesign.diagnose.arms.other_motion import most_coupled, with_other_mot
 from teleopdesign.diagnose.arms.prepared import prepare_arm
 from teleopdesign.diagnose.arms.restored import restore_arm_diagnosis
 from teleopdesign.diagnose.search_plan import QUICK
-from teleopdesign.errors import ExperimentError
 
 pytestmark = pytest.mark.slow  # a diagnosis of an arm
 

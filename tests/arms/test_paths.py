@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.arms.answer import write_arm_answer
 from teleopdesign.diagnose.search_plan import QUICK
-from teleopdesign.errors import ExperimentError
 from teleopdesign.next_experiment import propose_paths, shown_limits
 
 

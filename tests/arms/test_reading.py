@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.arms import force_columns, read_urdf
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError
 
 JOINTS = ["axis1", "axis2", "axis3"]
 

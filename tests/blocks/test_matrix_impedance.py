@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import matrix_impedance
-from teleopdesign.errors import ModelError
 
 MASS = [[0.2, 0.05], [0.05, 0.3]]
 STIFFNESS = [[300.0, -40.0], [-40.0, 200.0]]

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.check.mixed_columns import check_clock_unit, check_mixed_columns
 from teleopdesign.check.plausibility import check_plausibility
 from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import EFFECTS, find_effect
-from teleopdesign.errors import ModelError
 from teleopdesign.measurement.soundness.held_samples import stuck_stretches
 from teleopdesign.model import Model
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.files import content_digest, experiment_files
 from teleopdesign.studies.folders import answer_files
 

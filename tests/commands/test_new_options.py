@@ -55,8 +55,8 @@ def test_every_command_that_is_proposed_quotes_its_paths():
 
 @pytest.mark.parametrize(("columns", "widest"), [("60", 60), ("200", 100), ("10", 40)])
 def test_findings_keep_within_the_terminal(monkeypatch, columns, widest):
+    from teleopdesign.base.finding import Finding
     from teleopdesign.commands.check import text_of
-    from teleopdesign.finding import Finding
 
     monkeypatch.setenv("COLUMNS", columns)
     lines = text_of([Finding("topic", "note", "a word and another " * 20)]).split("\n")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.commands._values import value_from, value_in
-from teleopdesign.errors import ExperimentError
 
 
 def read(text, quantity="position", axis="revolute"):

@@ -11,6 +11,7 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import (
     CONTROLLERS,
     ControlLaw,
@@ -21,7 +22,6 @@ from teleopdesign.controllers import (
 )
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S, as_transfer_function
 from teleopdesign.simulate import Sampling, Trajectory, simulate, sine

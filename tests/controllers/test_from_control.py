@@ -7,9 +7,9 @@ import sympy as sp
 from devices import body
 from scipy.signal import butter
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control, invert_plant, parameter_symbol
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S

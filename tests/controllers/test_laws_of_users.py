@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.cli import main
 from teleopdesign.controllers import ControlLaw, catalogue, controller, load_controller
 from teleopdesign.diagrams import four_cases
 from teleopdesign.effects import Parameter
-from teleopdesign.errors import ExperimentError, ModelError
 
 FILE = '''"""A sign function with a round edge."""
 

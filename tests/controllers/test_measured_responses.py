@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import controller_parts, haptic_interface, plant_parts
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, delay_margin, loop_gain, matrix_response
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem

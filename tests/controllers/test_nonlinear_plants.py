@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from devices import two_rods
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import (
@@ -15,7 +16,6 @@ from teleopdesign.diagrams import (
     coupled_plant_parts,
     plant_parts,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, loop_gain
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import delay_margin, describing_function, loop_gain
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem

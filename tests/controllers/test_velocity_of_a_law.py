@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import (
     CONTROLLERS,
     ControlLaw,
@@ -23,7 +24,6 @@ from teleopdesign.derive import as_text, transfer, transfer_function
 from teleopdesign.derive.with_values import with_values
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.effects import Parameter
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import delay_margin, loop_gain, matrix_response
 from teleopdesign.frequency.quasi_linear import quasi_linear_impedance
 from teleopdesign.passivity import diagram_claims

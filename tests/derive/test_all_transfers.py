@@ -12,6 +12,7 @@ from diagrams.random_diagrams import diagrams
 from diagrams.test_wiring import pair
 from hypothesis import HealthCheck, Phase, assume, given, settings
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.derive import (
     all_transfers,
@@ -35,7 +36,6 @@ from teleopdesign.diagrams import (
     haptic_interface,
     load_shipped,
 )
-from teleopdesign.errors import ModelError
 
 
 def looped(*junctions, blocks=(), outside=("a",)):

@@ -6,6 +6,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.derive import (
     all_transfers,
@@ -22,7 +23,6 @@ from teleopdesign.diagrams import (
     read_diagram,
     write_diagram,
 )
-from teleopdesign.errors import ModelError
 
 S = sp.Symbol("s")
 NAMES = "Z_m Z_s C_m C_s C_1 C_2 C_3 C_4 K_1 K_2 K_3 K_4".split()

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions, design, read_answer
 from teleopdesign.design.propose import cancellations
 from teleopdesign.design.quasi_static import quasi_static_error
 from teleopdesign.design.stated_motion import StatedMotion
 from teleopdesign.diagrams import haptic_interface, read_diagram, world_haptics_2005
-from teleopdesign.errors import ExperimentError, ModelError
 from teleopdesign.realise.friction_interval import friction_interval
 
 pytestmark = pytest.mark.slow  # a diagnosis of a whole case

@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.rounding import round_down, round_up
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design.cancellation import acting_gain
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
-from teleopdesign.rounding import round_down, round_up
 
 REACH = Reach(
     low=-0.05, high=0.05, peak_speed=0.3, rms_speed=0.1, command=3.0, duration=10.0,

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 from diagnose.stand_ins import fit, floor
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
@@ -15,7 +16,6 @@ from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranked, Ranking
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 
 
 @dataclass(frozen=True)

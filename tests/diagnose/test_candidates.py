@@ -9,6 +9,7 @@ from diagnose.made_records import write_made
 from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, load_experiment
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.candidates import (
     Candidate,
     bodies_with_measured_force,
@@ -22,7 +23,6 @@ from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.diagnose.scales import scales
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.saving import write_experiment
 
 

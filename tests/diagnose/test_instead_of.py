@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign import Body, Model, find_missing, load_experiment
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.diagnose.candidates import Candidate, candidates
@@ -28,7 +29,6 @@ from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.stated import reset_to_stated
 from teleopdesign.diagnose.width import OpenWidths
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment.rivals import rival_instead
 from teleopdesign.report.parameter_table import parameter_rows
 

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign import Model, find_missing
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.decision import is_supported
 from teleopdesign.diagnose.fit import estimate
@@ -18,7 +19,6 @@ from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS, RecordFacts, load_effect
-from teleopdesign.errors import ModelError
 
 TIME = np.linspace(0.0, 3.0, 3000)
 FACTS = RecordFacts(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagnose.corrected_fit import correct_fit
 from teleopdesign.diagnose.effort import EFFORTS
@@ -28,7 +29,6 @@ from teleopdesign.diagnose.simulated_course import (
     simulated_course,
 )
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import residual_along
 
 

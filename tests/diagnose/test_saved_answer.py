@@ -14,6 +14,8 @@ from measurement.rod_example import PAIR, rows
 
 import teleopdesign as td
 from teleopdesign import EFFECTS, ExperimentError, Model, Value
+from teleopdesign.base.errors import TeleopDesignError
+from teleopdesign.base.plain_data import write_json
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import answer, write_answer
@@ -23,8 +25,6 @@ from teleopdesign.diagnose.answers.fingerprint import digest
 from teleopdesign.diagnose.answers.restored import steps_of
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.effects import catalogue
-from teleopdesign.errors import TeleopDesignError
-from teleopdesign.plain_data import write_json
 from teleopdesign.unexplained import describe_residual
 
 #: what came later than the rest of the format

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.short_segments import short_segments_line, why_too_short
-from teleopdesign.errors import ExperimentError
 
 H = 0.005
 

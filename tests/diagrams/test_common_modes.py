@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from devices import two_rods
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import with_shared_states
 from teleopdesign.diagrams.common_modes import with_common_modes
-from teleopdesign.errors import ModelError
 
 GROWS = [1.0, -0.5]
 

@@ -7,6 +7,7 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import (
@@ -19,7 +20,6 @@ from teleopdesign.diagrams import (
     teleoperator,
     write_diagram,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import delay_margin, loop_gain
 from teleopdesign.passivity import diagram_claims, ports
 from teleopdesign.passivity.ports import impedance_matrix

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import felt_friction
-from teleopdesign.errors import ModelError
 
 
 def random_friction(seed, n):

@@ -4,10 +4,10 @@ import pytest
 import sympy as sp
 
 import teleopdesign as td
+from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.diagrams import Diagram, Junction, Kinematics, Moving, write_diagram
 from teleopdesign.diagrams.junctions import position_symbol
 from teleopdesign.diagrams.parts import Attached
-from teleopdesign.errors import TeleopDesignError
 
 SLIDE = td.Body("prismatic", {"inertia": 0.2})
 PADDLE = td.Body("revolute", {"inertia": 1e-3})

@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value, matrix_impedance
 from teleopdesign.controllers import controller
 from teleopdesign.derive import block_symbol, transfer_functions
@@ -18,7 +19,6 @@ from teleopdesign.diagrams import (
     tip_coordinates,
 )
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import matrix_response
 from teleopdesign.simulate import simulate
 

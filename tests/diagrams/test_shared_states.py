@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import (
@@ -17,7 +18,6 @@ from teleopdesign.diagrams import (
     controller_parts,
     with_shared_states,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity.linear.hidden_modes import growth_within
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import Sampling, simulate

@@ -5,11 +5,11 @@ import pytest
 import sympy as sp
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import CONTACT
 from teleopdesign.controllers import controller
 from teleopdesign.derive import block_symbol, counterexample, proved_equal, two_port_functions
 from teleopdesign.diagrams import ANY, haptic_interface, teleoperator
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S, linear_blocks
 from teleopdesign.simulate import simulate, sine

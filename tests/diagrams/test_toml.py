@@ -9,6 +9,7 @@ from diagrams.random_diagrams import diagrams
 from diagrams.several_axes import two_armed_teleoperator, two_rods
 from hypothesis import assume, given, settings
 
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.blocks import CONTACT
 from teleopdesign.cli import main
 from teleopdesign.controllers import from_control
@@ -27,7 +28,6 @@ from teleopdesign.diagrams import (
 from teleopdesign.diagrams.expressions import read_expression
 from teleopdesign.diagrams.toml_writing import diagram_text
 from teleopdesign.effects import EFFECTS, catalogue
-from teleopdesign.errors import ExperimentError, ModelError
 
 FREE = """\
 [diagram]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, LOOP, body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import CONTROLLERS, controller, scheduled_force_feedback
 from teleopdesign.derive import block_symbol, proved_equal, transfer
 from teleopdesign.diagrams import (
@@ -16,7 +17,6 @@ from teleopdesign.diagrams import (
     haptic_interface,
 )
 from teleopdesign.diagrams.world_haptics_2005 import READINGS
-from teleopdesign.errors import ModelError
 from teleopdesign.simulate import simulate
 
 

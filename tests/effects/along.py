@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from teleopdesign.base.quantity import AXES
 from teleopdesign.blocks import CONTACT, Body, Value
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of
-from teleopdesign.quantity import AXES
 
 #: a value of the right order for each quantity, on the device and motions of this folder
 TYPICAL = {

@@ -21,6 +21,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign.effects as folder
+from teleopdesign.base.errors import ModelError
+from teleopdesign.base.quantity import AXES, QUANTITIES, unit_of
 from teleopdesign.effects import (
     BLOCK_EFFECTS,
     EFFECTS,
@@ -32,8 +34,6 @@ from teleopdesign.effects import (
     with_block_effects,
 )
 from teleopdesign.effects._effect import ROLES
-from teleopdesign.errors import ModelError
-from teleopdesign.quantity import AXES, QUANTITIES, unit_of
 
 FILES = sorted(p for p in Path(folder.__file__).parent.glob("*.py") if p.name[0] != "_")
 CLAIMS = ("even in velocity", "non-negative")  # those that a test below checks

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign.effects as folder
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, load_effect
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.extremes import least_value
 

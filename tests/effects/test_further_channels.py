@@ -6,12 +6,12 @@ from effects.along import body_of, encoded, motion_along, signals
 from effects.recorded import write_recorded
 
 from teleopdesign import Body, Model, ModelError, find_missing, fit, load_effect, load_experiment
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, SIGNALS
 from teleopdesign.effects.viscous_temperature import REFERENCE
-from teleopdesign.errors import ExperimentError
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.simulate import simulate
 

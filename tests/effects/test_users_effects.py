@@ -13,6 +13,7 @@ from effects.along import (
 )
 from users_effect import SOURCE
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.effects import (
     EFFECTS,
     SIGNALS,
@@ -20,7 +21,6 @@ from teleopdesign.effects import (
     catalogue,
     load_effect,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import residual_along
 
 

@@ -12,9 +12,9 @@ from exact.simulated import pair
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import SIGNALS
-from teleopdesign.errors import ModelError
 from teleopdesign.simulate import Trajectory, simulate
 
 #: twelve decades about the typical value

@@ -6,10 +6,10 @@ import sympy as sp
 from devices import body
 from effects.along import NAMES, body_of, with_needs
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, scheduled_force_feedback
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import (
     closed_forms,
     describing_function,

@@ -6,10 +6,10 @@ import pytest
 import sympy as sp
 from devices import CANCELLATION, FEEDBACK, body
 
+from teleopdesign.base.errors import ModelError, UnstableLoop
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError, UnstableLoop
 from teleopdesign.frequency import LoopGain, bode, delay_margin, loop_gain
 from teleopdesign.realise.lti import S
 from teleopdesign.simulate import Sampling, simulate

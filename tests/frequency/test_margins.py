@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from teleopdesign.errors import UnstableLoop
+from teleopdesign.base.errors import UnstableLoop
 from teleopdesign.frequency import LoopGain, gain_margin, phase_margin
 from teleopdesign.realise.lti import S
 

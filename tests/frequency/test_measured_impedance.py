@@ -7,10 +7,10 @@ import pytest
 import xarray
 from devices import LUGRE, body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, falling_profile, measured_impedance, simulated_response
 
 LINEAR = body(0.2, viscous__damping=3.0, spring__stiffness=500.0)

@@ -4,9 +4,9 @@ import control
 import numpy as np
 import pytest
 
+from teleopdesign.base.errors import ModelError, UnstableLoop
 from teleopdesign.controllers import from_control
 from teleopdesign.diagrams import Control, Diagram, coupled_plant_parts, plant_parts
-from teleopdesign.errors import ModelError, UnstableLoop
 from teleopdesign.frequency import delay_margin, loop_gain, matrix_response
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.simulate import simulate

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from devices import FEEDBACK, body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, measured_response, quasi_linear_impedance
 from teleopdesign.plot import plot_spread
 

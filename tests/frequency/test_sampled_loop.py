@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import UnstableLoop
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import UnstableLoop
 from teleopdesign.frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from teleopdesign.frequency.sampled_loop import SampledLoop
 from teleopdesign.simulate import Sampling, simulate

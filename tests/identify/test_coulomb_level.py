@@ -9,7 +9,7 @@ from identify.runs import BIAS, DAMPING, LEVEL, noise, write
 from shared_data import shared_folder
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.identify import coulomb_level, mean_error, steady_runs
 
 SPEEDS = (0.02, 0.04, 0.08)

@@ -3,10 +3,10 @@
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.identify import largest_stiffness_without_oscillation
 from teleopdesign.simulate import Sampling
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
 
 ROD = """\

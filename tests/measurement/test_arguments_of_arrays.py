@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 T = np.arange(3000) / 500.0
 Q = 0.5 * np.sin(2 * np.pi * 0.7 * T)

@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.toml_table import Table, read_toml
 from teleopdesign.measurement.arm_description import arm_from, joints_from
-from teleopdesign.measurement.toml_table import Table, read_toml
 
 WRITTEN = """
 [model.arm]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 H = 0.005
 T = H * np.arange(4000)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.bandwidth import LOWEST, default_bandwidth
 from teleopdesign.measurement.doors import _log, json_records, matlab
 from teleopdesign.measurement.doors.bag import _check_field

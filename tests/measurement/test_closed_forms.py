@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.files import content_digest, experiment_files
 from teleopdesign.measurement.filtering import spectrum

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import column, look
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.survey.derivative import has_signs_of_steps
 
 

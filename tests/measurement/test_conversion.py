@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 T = np.arange(400) / 200.0
 

@@ -6,9 +6,9 @@ import re
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.toml_table import Table
 from teleopdesign.measurement.conversion import LONGEST_DELAY, conversion_of
-from teleopdesign.measurement.toml_table import Table
 
 TURN = 2 * math.pi
 KIND = {"position": "position", "velocity": "velocity", "actuator_force": "force",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import look
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.survey import Survey
 from teleopdesign.measurement.survey.copies import is_copy, pulls_back
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.column_names import bare_name, unit_in_name
 from teleopdesign.measurement.doors import text
 from teleopdesign.measurement.doors._cells import is_number, stamps_in_texts, stamps_of

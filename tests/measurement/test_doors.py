@@ -8,7 +8,7 @@ import pytest
 import xarray
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.tables import open_log
 
 COLUMNS = ("time (s)", "Pos (deg)", "torque (N*m)")

@@ -8,7 +8,7 @@ import pytest
 from scipy.io import savemat
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.numbers_in_cells import holds_dates
 from teleopdesign.measurement.survey import Choices, survey_log

@@ -5,7 +5,7 @@ import pytest
 from clock import takes_less_than
 from measurement.rod_example import rod_columns, rows
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
 
 

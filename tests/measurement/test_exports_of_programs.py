@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measurement.made_logs import ROWS, Q, T, U, V, columns_of, rows, survey
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._two_part_time import are_parts_of_time
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.remarks import sample_rate_in

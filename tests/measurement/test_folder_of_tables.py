@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.tables import open_log
 
 T = np.arange(4000) / 500.0

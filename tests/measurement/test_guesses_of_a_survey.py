@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from shared_data import shared_folder
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.commands.new import survey_text
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
 from teleopdesign.measurement.column_names import likeness
 from teleopdesign.measurement.doors._log import Log

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.commands.new import survey_text
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.value_text import lever_arm

@@ -4,13 +4,13 @@ import numpy as np
 import openpyxl
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.quantity import is_unit
+from teleopdesign.base.unit_text import parse_unit
 from teleopdesign.measurement.column_names import ALIASES, bare_name, unit_in_name, unit_of_text
 from teleopdesign.measurement.doors._cells import is_number, number_of
 from teleopdesign.measurement.doors._header import names_and_units
 from teleopdesign.measurement.tables import open_log
-from teleopdesign.quantity import is_unit
-from teleopdesign.unit_text import parse_unit
 
 ROWS = [[k / 100, k % 7, -float(k), 30.5] for k in range(80)]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log, read_columns

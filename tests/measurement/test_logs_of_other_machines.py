@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.stamp_unit import unit_in_place_of
 from teleopdesign.measurement.survey import Choices, survey_log

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.io import savemat
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.column_names import likeness, words_of
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log

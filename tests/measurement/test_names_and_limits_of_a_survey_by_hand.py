@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import Q, T, U, V, column, look
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.first_guess import FirstGuess
 from teleopdesign.measurement.survey import (
     Choices,

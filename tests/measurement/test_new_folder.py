@@ -5,7 +5,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
 from teleopdesign.measurement.first_guess import FirstGuess
 from teleopdesign.measurement.new_folder import experiment_text, make_folder

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors import arrays, json_records, matlab, workbook
 from teleopdesign.measurement.numbers_in_cells import numbers_of
 

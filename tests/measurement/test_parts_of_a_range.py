@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.quantity import measures, si_factor
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.quantity import measures, si_factor
 
 ROWS = 1500
 T = 0.01 * np.arange(ROWS)

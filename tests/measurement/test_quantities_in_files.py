@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.column_names import likeness
 from teleopdesign.measurement.tables import open_log
 

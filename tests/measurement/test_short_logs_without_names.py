@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import look
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 
 def motion(seconds, rate):

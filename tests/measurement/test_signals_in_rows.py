@@ -5,7 +5,7 @@ import gzip
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors import _signals_in_rows
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log

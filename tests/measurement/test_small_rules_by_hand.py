@@ -7,7 +7,7 @@ import pytest
 from measurement.made_channels import H, record_of
 
 from teleopdesign import example, load_experiment
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.doors.hdf5 import _unit
 from teleopdesign.measurement.numbers_in_cells import numbers_of

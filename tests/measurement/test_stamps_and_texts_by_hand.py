@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.toml_table import Table, parse_toml
 from teleopdesign.measurement import slower_signals
 from teleopdesign.measurement.channel import Channel
 from teleopdesign.measurement.description import value_from
@@ -21,7 +22,6 @@ from teleopdesign.measurement.soundness.encoder_steps import true_step
 from teleopdesign.measurement.stamp_unit import unit_of_steps
 from teleopdesign.measurement.tables import LogColumns, open_log
 from teleopdesign.measurement.time_grid import _mostly_back
-from teleopdesign.measurement.toml_table import Table, parse_toml
 from teleopdesign.measurement.uneven_stamps import _counted_clock, _usual_step
 from teleopdesign.measurement.wrapped_stamps import seconds_since_first, unwrap_stamps
 

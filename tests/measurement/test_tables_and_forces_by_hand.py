@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measurement.made_channels import H, channel, record_of
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.channel import Channel
 from teleopdesign.measurement.doors import bag
 from teleopdesign.measurement.doors._log import Log

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.column_names import is_wanted, likeness, unit_in_name
 from teleopdesign.measurement.doors._cells import NO_READING
 from teleopdesign.measurement.numbers_in_cells import numbers_of

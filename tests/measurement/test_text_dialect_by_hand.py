@@ -5,7 +5,7 @@ import gzip
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors import text
 from teleopdesign.measurement.doors._dialect import Dialect, cells_of, dialect_of, first_lines
 from teleopdesign.measurement.doors._header import (

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._encoding import encoding_of
 from teleopdesign.measurement.doors._header import is_row_of_units, names_and_units
 from teleopdesign.measurement.doors._pairs import names_in_lines, pairs_of

@@ -4,7 +4,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from measurement.rod_example import rod_columns, rows
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
 from teleopdesign.measurement.log_clock import _effect_of_even_stamps
 from teleopdesign.measurement.record_clock import RecordClock

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.soundness.segments import check_segments
 from teleopdesign.measurement.survey import Choices, spans_of, survey_log

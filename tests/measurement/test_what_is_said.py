@@ -9,7 +9,7 @@ import pytest
 from measurement.test_guesses_of_a_survey import Q, T, U, look
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors import workbook
 from teleopdesign.measurement.log_clock import _left_out, _order
 from teleopdesign.measurement.new_folder import check_spans

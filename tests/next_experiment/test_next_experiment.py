@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from next_experiment.next_cases import KNOWN, POOR, RATE, Rod
 
 from teleopdesign import Model, find_missing
+from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import write_answer
 from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.diagnosis import OpenQuestion
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment import (
     Limits,
     proposal_data,

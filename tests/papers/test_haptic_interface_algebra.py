@@ -7,6 +7,7 @@ X X^-1 = I, with denominators multiplied out. Exact rational matrices guard the 
 import pytest
 import sympy as sp
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.derive import (
     as_latex,
     block_symbol,
@@ -18,7 +19,6 @@ from teleopdesign.derive import (
     transfer_functions,
 )
 from teleopdesign.diagrams import ANY, Attached, haptic_interface
-from teleopdesign.errors import ModelError
 
 Z_M, Z_H, C, H, K, G = map(block_symbol, ("Z_M", "Z_H", "C", "H", "K", "Gamma"))
 GAMMA = 1 + H

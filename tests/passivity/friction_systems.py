@@ -11,9 +11,9 @@ import numpy as np
 import sympy as sp
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     Coulomb,
     SteadyStrokes,

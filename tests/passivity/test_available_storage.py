@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import Coulomb, Dahl, DahlBehindSpring, Spring, available_storage
 from teleopdesign.passivity.rate_independent import Cycle, symmetric_cycle
 

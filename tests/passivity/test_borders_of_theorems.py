@@ -10,7 +10,7 @@ import control as ct
 import pytest
 import sympy as sp
 
-from teleopdesign.errors import TeleopDesignError
+from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.passivity import (
     absolutely_stable,
     any_environment,

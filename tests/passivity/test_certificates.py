@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     Certificate,
     absolutely_stable,

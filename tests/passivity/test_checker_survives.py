@@ -15,7 +15,7 @@ from clock import takes_less_than
 from passivity.certificate_attack import falsified
 from passivity.small_certificates import impedance, paths_of, sealed, storage
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import positive_real, read_record
 from teleopdesign.passivity.checker import Refused, check
 from teleopdesign.passivity.claims.certificate import Certificate

@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     absolutely_stable,
     claim_over_intervals,

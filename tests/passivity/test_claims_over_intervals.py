@@ -10,6 +10,7 @@ from devices import body
 from passivity.interval_boxes import DIAGRAMS, HAND, failure, random_case
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import (
     Control,
@@ -19,7 +20,6 @@ from teleopdesign.diagrams import (
     four_channel,
     haptic_interface,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.intervals.bernstein import (
     ProofEffort,

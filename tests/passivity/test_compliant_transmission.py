@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     any_environment,
     free_motion,

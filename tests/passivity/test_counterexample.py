@@ -5,9 +5,9 @@ import pytest
 from devices import body
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Strokes, released_energy, search_counterexample
 from teleopdesign.simulate import Sampling
 

@@ -6,6 +6,7 @@ import pytest
 from devices import body
 
 from teleopdesign import EFFECTS
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import (
     CONTROLLERS,
     ControlLaw,
@@ -16,7 +17,6 @@ from teleopdesign.controllers import (
 )
 from teleopdesign.diagrams import haptic_interface, wave_variables
 from teleopdesign.effects import BLOCK_EFFECTS, Parameter, load_effect
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.declarations import (
     falsely_linear,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     cancelled_inertia,
     damping_given_out,

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import hand
 from teleopdesign.cli import main
 from teleopdesign.controllers import controller, from_control, scheduled_force_feedback
@@ -26,7 +27,6 @@ from teleopdesign.diagrams import (
     teleoperator,
     write_diagram,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Search, diagram_claims, hand_port, passive, two_port
 from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.passivity.ports import impedance_matrix, ports

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from teleopdesign import EFFECTS, Body
+from teleopdesign.base.rounding import round_down, round_near, round_up
 from teleopdesign.cli import main
 from teleopdesign.passivity.identified import DIGITS, identify_device
 from teleopdesign.realise.friction_interval import Interval
-from teleopdesign.rounding import round_down, round_near, round_up
 
 #: a number as texts print it
 NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?")

@@ -6,9 +6,9 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import energy_tanks, four_channel, teleoperator
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import energy_tank
 from teleopdesign.simulate import Sampling, simulate, sine
 

@@ -6,7 +6,7 @@ import random
 import pytest
 from passivity.small_certificates import impedance, storage
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity.checker import Refused, check
 from teleopdesign.passivity.claims.certificate import Certificate
 from teleopdesign.passivity.claims.second_opinion import second_opinion

@@ -5,9 +5,9 @@ import pytest
 import sympy as sp
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, scheduled_force_feedback
 from teleopdesign.diagrams import ANY, haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode
 from teleopdesign.passivity import damping_excess, hand_port, positive_real
 

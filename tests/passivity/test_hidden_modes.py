@@ -7,10 +7,10 @@ import sympy as sp
 from devices import body
 
 from teleopdesign import EFFECTS
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import ControlLaw, Controller, ControllerState, Stage, from_control
 from teleopdesign.derive import transfer
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Claim, Evidence, linear_diagrams, ports, positive_real
 from teleopdesign.passivity.intervals.box import ValueBox
 from teleopdesign.passivity.intervals.linear import judge_linear

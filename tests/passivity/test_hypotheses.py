@@ -10,11 +10,11 @@ import pytest
 from devices import body
 from passivity.test_theorems import GIVING, IDEAL, QUESTIONS, SMOOTHED
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body
 from teleopdesign.controllers import CONTROLLERS, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Search, diagram_claims
 from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.theorems import THEOREMS, Question, Wall, settle

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, Effect, Parameter
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity.device_claims import (
     Compensator,
     device_claims,

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 from passivity.random_impedances import KINDS, random_impedance
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import damping_excess, impedance, kyp, positive_real, storage_function
 from teleopdesign.passivity.linear.polynomials import fraction
 from teleopdesign.passivity.linear.squares import sum_of_squares

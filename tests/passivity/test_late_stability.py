@@ -8,8 +8,8 @@ from devices import body
 from passivity.attacks.test_late_boxes import late_diagram
 from realise.test_delay_blocks import held
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.intervals import late_cells
 from teleopdesign.passivity.intervals.late_cells import is_zero_free

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import four_channel, haptic_interface, teleoperator
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import diagram_claims, margin_map, sweep_margins, two_port
 from teleopdesign.passivity.ports import impedance_matrix, ports
 

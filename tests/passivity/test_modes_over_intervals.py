@@ -6,10 +6,10 @@ import pytest
 import sympy as sp
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import ControlLaw, Controller, ControllerState, Stage, controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.effects import Effect, Parameter, State
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals, ports
 from teleopdesign.passivity.intervals.conditions import Conditions, one_port_is_passive
 from teleopdesign.passivity.linear_diagrams import linear_claims

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ExperimentError, ModelError
 from teleopdesign.passivity import (
     Strokes,
     confirmed_motion,

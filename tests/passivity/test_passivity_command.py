@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity.device_claims import Compensator, compensation_claims
 from teleopdesign.passivity.identified import identify_device
 

@@ -5,7 +5,7 @@ import json
 import pytest
 import sympy as sp
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import dahl_compensation, positive_real, read_record, write_record
 
 s = sp.Symbol("s")

@@ -5,9 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     Dahl,
     Trembling,

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import required_damping, sampled_passivity
 
 z = sp.Symbol("z")

@@ -9,9 +9,9 @@ from devices import body
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Attached, Control, Diagram, Junction, Moving, position_symbol
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.diagram_claims import composed_claim
 from teleopdesign.passivity.friction_pairs import friction_pairs

@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import sampled_coupling, wave_channel
 from teleopdesign.passivity.checker import absolute_stability
 from teleopdesign.passivity.linear.positive_real import damping_excess, mobility_excess

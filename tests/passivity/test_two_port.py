@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     absolutely_stable,
     delayed_spring,

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Strokes, confirmed_motion, released_energy, velocity_compensation
 from teleopdesign.passivity.rate_independent import dahl_loss
 from teleopdesign.simulate import Sampling

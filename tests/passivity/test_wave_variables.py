@@ -11,11 +11,11 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.derive import two_port_functions
 from teleopdesign.diagrams import ANY, Junction, four_channel, load_shipped, wave_variables
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     diagram_claims,
     observe_simulation,

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.simulated import with_bristle
 from teleopdesign.simulate import simulate
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.c_header import as_c_header
 from teleopdesign.simulate import Sampling, Trajectory, simulate
 

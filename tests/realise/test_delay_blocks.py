@@ -9,10 +9,10 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.derive import all_transfers, transfer, transfer_function
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, read_diagram, write_diagram
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, delay_margin, loop_gain, matrix_response
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem

@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.realise import enclosure as enclosure_module
 from teleopdesign.realise.enclosure import Singular, enclosure_of
 from teleopdesign.realise.extremes import TIGHTNESS, least_value

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter, State
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity.identified import identify_device
 from teleopdesign.realise.acting_bound import largest_acting_force
 from teleopdesign.realise.damping_interval import damping_interval, small_motion_damping

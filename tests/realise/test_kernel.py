@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface, world_haptics_2005
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.compiled import cache_folder
 from teleopdesign.realise.kernel import (
     FINER,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Junction, haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.simulate import Sampling, simulate, sine
 
 LIMIT = controller("karnopp", {"level": 0.3, "band": 10.0})

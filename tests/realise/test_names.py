@@ -14,6 +14,8 @@ from diagrams.several_axes import two_rods
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
+from teleopdesign.base.names import check_name
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import (
     Attached,
@@ -26,8 +28,6 @@ from teleopdesign.diagrams import (
     haptic_interface,
     position_symbol,
 )
-from teleopdesign.errors import ModelError
-from teleopdesign.names import check_name
 from teleopdesign.realise._codegen import ANALOG, DIGITAL, Generator
 from teleopdesign.realise.equations import build_equations
 from teleopdesign.realise.iosystem import to_iosystem

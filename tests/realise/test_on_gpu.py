@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from gpu_cases import NO_SIMULATOR, SETUPS, cases_of, reductions_of, start_of, with_bristles
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.realise import on_gpu
 from teleopdesign.realise.kernel import execute
 from teleopdesign.realise.side_by_side import execute_many

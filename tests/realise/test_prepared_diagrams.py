@@ -5,11 +5,11 @@ import pytest
 import sympy as sp
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value, matrix_impedance
 from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import Linked, parallel_rods
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.simulated import check_levels, least_levels, without_no_delay
 from teleopdesign.realise.tips import with_tips
 

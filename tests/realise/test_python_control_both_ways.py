@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from devices import body, two_rods
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import (
@@ -20,7 +21,6 @@ from teleopdesign.diagrams import (
     haptic_interface,
     plant_parts,
 )
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.linear_diagrams import linear_claims

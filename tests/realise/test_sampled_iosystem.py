@@ -6,9 +6,9 @@ import pytest
 from devices import body
 from scipy.linalg import expm
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import Sampling, simulate
 

@@ -8,10 +8,10 @@ import sympy as sp
 from effects.along import body_of, motion_along, signals, unled
 from scipy.integrate import solve_ivp
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
 from teleopdesign.effects._effect import State
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import measured_along, residual_along
 from teleopdesign.realise.ode_scan import ode_scan
 from teleopdesign.realise.shape_scan import shape_bounds

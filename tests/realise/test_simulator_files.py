@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import pytest
 
 from teleopdesign import EFFECTS, Body, Model
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.realise.simulator_files import ENDINGS, FORMS, as_simulator_file
 
 

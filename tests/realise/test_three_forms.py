@@ -6,10 +6,10 @@ import pytest
 from devices import CANCELLATION, FEEDBACK, body
 from effects.along import KNOWN, axis_of
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagrams import Diagram, Junction, Moving, four_cases, haptic_interface
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.simulated import without_absent

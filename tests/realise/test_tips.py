@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, spring_damper
 from teleopdesign.design.quasi_static import slow_body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
-from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, measured_impedance, transfer_function
 from teleopdesign.frequency.matrix_response import matrix_response
 from teleopdesign.passivity import hand_port

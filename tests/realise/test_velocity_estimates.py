@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.simulate import Sampling, Trajectory, simulate, sine
 
 PERIOD = 1e-3

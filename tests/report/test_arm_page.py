@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from teleopdesign.base.finding import Finding
 from teleopdesign.diagnose import ArmDiagnosis
-from teleopdesign.finding import Finding
 from teleopdesign.report import arm
 from teleopdesign.report.page import page_of
 

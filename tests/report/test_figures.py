@@ -8,7 +8,7 @@ from markupsafe import Markup
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from teleopdesign.finding import Graph, Series
+from teleopdesign.base.finding import Graph, Series
 from teleopdesign.plot.diagnosis import AFTER, BEFORE
 from teleopdesign.report import figures
 from teleopdesign.report.candidate_table import LadderRow

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from report.html_page import HtmlPage
 
-from teleopdesign.finding import Graph, Series
+from teleopdesign.base.finding import Graph, Series
 from teleopdesign.plot.graph import draw_graph, extremes, thin_series
 from teleopdesign.report.picture import picture
 from teleopdesign.report.scaled import choose_prefix

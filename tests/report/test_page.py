@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from markupsafe import Markup
 from report.html_page import HtmlPage
 
+from teleopdesign.base.finding import Finding, Graph, Series
+from teleopdesign.base.plain_data import make_plain
 from teleopdesign.diagnose.answer import answer
-from teleopdesign.finding import Finding, Graph, Series
-from teleopdesign.plain_data import make_plain
 from teleopdesign.report import write_report
 from teleopdesign.report.figures import graph_figure
 from teleopdesign.report.page import page_of

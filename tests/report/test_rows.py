@@ -326,7 +326,7 @@ def test_names_stand_out_as_whole_words_and_break_at_their_parts():
 
 
 def test_every_finding_with_a_graph_and_each_body_have_a_figure(page, figures):
-    from teleopdesign.finding import Finding, Graph, Series
+    from teleopdesign.base.finding import Finding, Graph, Series
 
     x = np.arange(4.0)
     graph = Graph("x", "y", (Series("a", x, x),))

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.finding import Finding, Graph, Series
-from teleopdesign.quantity import si_factor
+from teleopdesign.base.finding import Finding, Graph, Series
+from teleopdesign.base.quantity import si_factor
 from teleopdesign.report import before_and_after as graphs
 from teleopdesign.report import residuals
 from teleopdesign.report.before_and_after import BodySamples, excerpt, plot_over_velocity

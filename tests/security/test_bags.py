@@ -2,7 +2,7 @@
 
 import pytest
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors.bag import open_bag
 
 rosbag2 = pytest.importorskip("rosbags.rosbag2", reason="needs the extra ros")

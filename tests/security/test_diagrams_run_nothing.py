@@ -8,6 +8,7 @@ from clock import in_time
 from security.diagram_file import NAMES, diagram_file, one_line
 from security.hostile import CODE, pairs, quoted
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.controllers import from_control
 from teleopdesign.diagrams import (
@@ -22,7 +23,6 @@ from teleopdesign.diagrams import (
     read_diagram,
 )
 from teleopdesign.diagrams.toml_writing import diagram_text
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.laws import assignments
 
 

@@ -6,8 +6,8 @@ from clock import in_time
 from security.diagram_file import one_line
 from security.hostile import CODE, MARK
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagrams.expressions import read_expression
-from teleopdesign.errors import ExperimentError
 
 EXPRESSIONS = (
     *CODE,

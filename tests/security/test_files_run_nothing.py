@@ -14,9 +14,9 @@ from measurement.rod_example import ROD, rod_columns, rows, write_rod
 from security.diagram_file import one_line
 from security.hostile import CODE, MARK, pairs, quoted
 
+from teleopdesign.base.errors import ExperimentError, TeleopDesignError
 from teleopdesign.cli import main
 from teleopdesign.effects import load_effect
-from teleopdesign.errors import ExperimentError, TeleopDesignError
 from teleopdesign.measurement import load_experiment
 
 pytest.importorskip("h5py")  # asks the machine what it is when it is first loaded

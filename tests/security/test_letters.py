@@ -10,9 +10,9 @@ from clock import in_time
 from passivity.small_certificates import impedance, sealed, storage
 from security.diagram_file import diagram_file, one_line
 
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.diagrams.expressions import read_expression
-from teleopdesign.errors import ExperimentError
 
 NAMES = ["ｆ", "f\u200b", "f\u202e", "\u0131", "x\u0301", "ſ", "ª", "𝐟"]
 #: that Python's own reader takes for something else, or that only look like it

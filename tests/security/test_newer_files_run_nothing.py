@@ -14,9 +14,9 @@ from security.diagram_file import one_line
 from security.hostile import CODE, MARK, pairs, quoted
 
 from teleopdesign.arms import read_urdf
+from teleopdesign.base.errors import ExperimentError, TeleopDesignError
 from teleopdesign.cli import main
 from teleopdesign.commands.completion import say_what_follows
-from teleopdesign.errors import ExperimentError, TeleopDesignError
 from teleopdesign.model import Model
 from teleopdesign.studies import read_study, read_study_file
 

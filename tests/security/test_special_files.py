@@ -13,9 +13,9 @@ from clock import in_time
 from measurement.rod_example import ROD, write_rod
 from security.diagram_file import diagram_file
 
+from teleopdesign.base.whole_files import read_whole
 from teleopdesign.cli import main
 from teleopdesign.passivity.checker import check as checker
-from teleopdesign.whole_files import read_whole
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices of Unix")
 
@@ -109,7 +109,7 @@ def test_what_a_shell_hands_over_as_a_pipe_is_read_as_a_file(tmp_path):
 
 
 def test_a_pipe_from_which_nothing_comes_is_given_up(tmp_path, monkeypatch):
-    from teleopdesign import whole_files
+    from teleopdesign.base import whole_files
 
     monkeypatch.setattr(whole_files, "_PATIENCE", 0.05)
     read, write = os.pipe()

@@ -6,9 +6,9 @@ from devices import body
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import teleoperator
-from teleopdesign.errors import ModelError
 from teleopdesign.simulate import force_displacement, loop_of, simulate, sine
 
 TIME = np.linspace(0.0, 1.0, 2001)

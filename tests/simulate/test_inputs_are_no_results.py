@@ -4,7 +4,7 @@ import pytest
 from devices import body
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import observe_simulation
 
 DEVICE = td.haptic_interface(body(0.1, viscous__damping=1.0))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 
 BODY = td.Body("prismatic", {"inertia": 0.2}).with_effect(td.EFFECTS["viscous"], {"damping": 3.0})
 LOOP = td.haptic_interface(BODY, hand=td.hand(mass=0.1, damping=2.0, stiffness=50.0))

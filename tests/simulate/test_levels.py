@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from devices import body
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.errors import ModelError
 from teleopdesign.simulate import simulate, simulate_many, sine
 
 MOTION = {"L": sine(amplitude=0.01, frequency=5.0)}

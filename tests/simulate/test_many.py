@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import haptic_interface, teleoperator
-from teleopdesign.errors import ModelError
 from teleopdesign.realise.kernel import FINER
 from teleopdesign.simulate import Sampling, prepare, simulate, simulate_many
 from teleopdesign.simulate.step_ladder import StepLadder

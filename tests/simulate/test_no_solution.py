@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import GrowsWithoutBound, ModelError
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
-from teleopdesign.errors import GrowsWithoutBound, ModelError
 from teleopdesign.frequency import bode, transfer_function
 
 BODY = td.Body("prismatic", {"inertia": 0.2}).with_effect(td.EFFECTS["viscous"], {"damping": 3.0})

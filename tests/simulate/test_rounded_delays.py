@@ -4,7 +4,7 @@ import pytest
 from devices import body
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 
 LATE = body(0.1, viscous__damping=1.0, actuation_delay__delay=0.0)
 

@@ -5,8 +5,8 @@ import pytest
 from devices import body
 
 import teleopdesign as td
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
-from teleopdesign.errors import ModelError
 
 #: s; half a step of the default
 HALF, DURATION = 5e-5, 0.02

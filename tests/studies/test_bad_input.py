@@ -8,8 +8,8 @@ import study_models as models
 import xarray
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.cli import main
-from teleopdesign.errors import ExperimentError, ModelError
 
 AXIS = "C.dahl.level"
 

@@ -9,7 +9,7 @@ import xarray
 from study_processes import AXES
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError, ModelError
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.studies import cluster as cluster_module
 
 

@@ -13,7 +13,7 @@ import xarray
 from study_processes import AXES, EXPECTED, anew, in_a_process, study_code, wait_for_points
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError, ModelError
+from teleopdesign.base.errors import ExperimentError, ModelError
 
 
 @pytest.mark.slow
@@ -223,7 +223,7 @@ def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
         "sys.dont_write_bytecode = True"  # Python 3.11 would leave it half, for all who follow
     )
     code = (
-        "from teleopdesign.errors import TeleopDesignError\n"
+        "from teleopdesign.base.errors import TeleopDesignError\n"
         "try:\n    " + "\n    ".join(study_code(out, "product", 500).splitlines()) + "\n"
         "except TeleopDesignError as error:\n    print(error)\n"
     )

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.studies.fingerprint import fingerprint
 
 #: a model or measure f, and the same one with another result: `old` -> `new`

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 
 def samples(experiment):

@@ -3,7 +3,7 @@
 import pytest
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 
 
 def doubled(a):

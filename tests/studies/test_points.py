@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import loguniform
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.studies import latin_hypercube, random_samples, sensitivity_samples, sobol
 from teleopdesign.studies.points import points_of
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 
 SPRUNG = td.haptic_interface(body(0.15, viscous__damping=2.0, spring__stiffness=300.0))
 NAMES = ("Z_M.inertia", "Z_M.viscous.damping", "Z_M.spring.stiffness", "initial.L")

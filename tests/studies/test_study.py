@@ -9,7 +9,7 @@ import study_models as models
 import xarray
 
 import teleopdesign as td
-from teleopdesign.errors import ExperimentError, ModelError
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.passivity import dahl_compensation, observe_simulation
 from teleopdesign.studies import SimulatedCase, read_study
 from teleopdesign.studies.journal import Journal

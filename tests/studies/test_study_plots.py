@@ -6,7 +6,7 @@ import pytest
 from matplotlib.text import Text
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.plot.study_data import words
 
 COLUMNS = {"x": (-np.pi, np.pi), "y": (-np.pi, np.pi), "z": (-np.pi, np.pi)}

@@ -7,7 +7,7 @@ from runpy import run_path
 import pytest
 import recordings
 
-from teleopdesign.errors import ExperimentError
+from teleopdesign.base.errors import ExperimentError
 
 ROOT = Path(__file__).parents[2]
 ROW = {

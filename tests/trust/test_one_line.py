@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 import teleopdesign
+from teleopdesign.base.plain_data import harmless_cell
 from teleopdesign.cli import _parser, main
 from teleopdesign.commands import _paths, effects
 from teleopdesign.commands._failures import TRACEBACK
 from teleopdesign.commands._terminal import PrintableStream, replace_line
-from teleopdesign.plain_data import harmless_cell
 
 ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
 DEEP = 100_000

@@ -6,7 +6,7 @@ import pytest
 from devices import body
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.tuning.measured_signals import measured_signals
 
 T = np.linspace(0.0, 0.5, 51)

@@ -9,7 +9,7 @@ import xarray
 from devices import body
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.simulate import sampled_motion
 
 VALUES = {"Z_M.inertia": 0.15, "Z_M.viscous.damping": 2.0, "Z_M.spring.stiffness": 300.0}

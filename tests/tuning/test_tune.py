@@ -5,7 +5,7 @@ import pytest
 from devices import body
 
 import teleopdesign as td
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.tuning.trade_off import select_unbeaten
 

@@ -6,11 +6,11 @@ import pytest
 from unexplained.planting import written
 
 from teleopdesign import example, load_effect
+from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.errors import ModelError
 from teleopdesign.unexplained.effect_file import effect_text, write_effect
 from teleopdesign.unexplained.shapes import (
     SHAPES,

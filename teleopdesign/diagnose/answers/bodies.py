@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from ...base.errors import ExperimentError, did_you_mean, quote
+from ...base.toml_table import Table
 from ...blocks import Body, Value, with_block_effects
 from ...blocks.described import body_of
 from ...effects import Effect
-from ...errors import ExperimentError, did_you_mean, quote
 from ...measurement.arm_description import joints_from
 from ...measurement.description import ONE_BODY, TWO_BODIES, bodies_from
-from ...measurement.toml_table import Table
 from ...model import Model
 from ...realise.stages_along import RECORD_SHIFT
 

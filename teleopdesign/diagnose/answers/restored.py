@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ...base.errors import ExperimentError, ModelError
 from ...blocks import with_block_effects
 from ...effects import EFFECTS, Effect, are_alike
-from ...errors import ExperimentError, ModelError
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..candidates import Candidate

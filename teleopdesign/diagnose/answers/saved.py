@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ...base.errors import ExperimentError, did_you_mean, quote
+from ...base.quantity import AXES, unit_of
 from ...blocks import CONTACT
 from ...effects import EFFECTS, Effect
-from ...errors import ExperimentError, did_you_mean, quote
 from ...measurement.bandwidth import bandwidth_of
 from ...measurement.experiment import Experiment
 from ...model import Model
-from ...quantity import AXES, unit_of
 from .bodies import model_from
 from .fingerprint import bodies_text, difference
 from .schema import read_content

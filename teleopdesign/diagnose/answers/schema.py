@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ...errors import ExperimentError, quote
-from ...measurement.toml_table import describe_toml_value
-from ...whole_files import read_whole
+from ...base.errors import ExperimentError, quote
+from ...base.toml_table import describe_toml_value
+from ...base.whole_files import read_whole
 
 #: a check of a value; the text says where the value stands, for the message
 Check = Callable[[object, str], None]

@@ -13,9 +13,9 @@ import numpy as np
 import sympy as sp
 
 from ...arms import base_parameters
+from ...base.errors import ModelError, did_you_mean, quote
 from ...blocks import Body
 from ...effects import SIGNALS
-from ...errors import ModelError, did_you_mean, quote
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array
 from ...measurement.motion import Motion

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...by_value import ByValue
+from ...base.by_value import ByValue
 from ...measurement.filtering import Array
 from ...model import Model
 from ...realise.along_motion import residual_along

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...arms import BaseParameters, Chain, base_parameters
 from ...arms.base_parameters import columns_with_motors
-from ...by_value import ByValue
+from ...base.by_value import ByValue
+from ...base.errors import ExperimentError
 from ...effects import EFFECTS
-from ...errors import ExperimentError
 from ...measurement.bandwidth import bandwidth_of
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array

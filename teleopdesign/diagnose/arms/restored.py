@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from ...base.errors import ExperimentError, did_you_mean, quote
 from ...effects import EFFECTS, Effect
-from ...errors import ExperimentError, did_you_mean, quote
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..answers import SavedAnswer

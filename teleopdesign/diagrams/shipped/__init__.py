@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from pkgutil import iter_modules
 
-from ...frozen import Catalogue
+from ...base.frozen import Catalogue
 from ..wiring import Diagram
 
 

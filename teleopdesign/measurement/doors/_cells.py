@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ._dates import stamps_of
 from ._log import Array
 

@@ -12,7 +12,7 @@ from typing import IO, cast
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
 from ._header import (

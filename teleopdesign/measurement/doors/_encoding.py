@@ -10,7 +10,7 @@ from __future__ import annotations
 import codecs
 import unicodedata
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 
 _LATIN = "ÄÖÜäöüßéèêëàâçîïôûùœñáíóúãõåøæÅØÆÉ°µ²³±·×–"
 _JAPANESE = (

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 
 _BYTES = r"(?:[ \t]++[0-9A-Fa-f]{2}\b)"
 _FRAME = re.compile(

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import ExperimentError
-from ...quantity import measures, si_factor
+from ...base.errors import ExperimentError
+from ...base.quantity import measures, si_factor
 from ._cells import is_number, number_of, seconds_of
 from ._log import Array, Log, join_names
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 
 _NUMBER = re.compile(r" #\d+$")
 Array = NDArray[np.float64]

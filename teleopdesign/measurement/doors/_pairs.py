@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 from ._cells import number_of
 from ._header import bare_unit, is_unit_cell
 from ._log import Array, Log, refuse_size

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ._cells import is_number, number_of
 from ._clock_before_signal import with_clocks_before
 from ._lines_of_file import open_lines

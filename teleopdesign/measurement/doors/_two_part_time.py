@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
-from ...quantity import si_factor
+from ...base.errors import ExperimentError
+from ...base.quantity import si_factor
 from ._log import Array, Log
 
 #: last words of the names of whole seconds, and of their part with its unit

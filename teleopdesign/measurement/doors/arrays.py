@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ._log import MOST_BYTES, Log, part, parts_of, refuse_damage, refuse_size
 
 _KIND = ".npz file"

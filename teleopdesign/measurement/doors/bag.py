@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
-from ...names import LONGEST
+from ...base.errors import ExperimentError, quote
+from ...base.names import LONGEST
 from ._log import Array, Log, join_names, optional, refuse_damage, refuse_size
 
 #: most numbers of one message that become columns: images and point clouds are no log

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 from ._log import Array, Log, join_names
 from ._seconds import seconds_of
 

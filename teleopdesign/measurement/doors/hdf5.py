@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ..column_names import unit_of_text
 from ._log import Log, how_to_save, optional, part, parts_of, refuse_damage, refuse_size
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ._dialect import open_bytes
 from ._log import MOST_BYTES, Log, refuse_size
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 from ._log import Log, how_to_save, part, parts_of, refuse_damage, refuse_size
 from ._mat_elements import check_elements
 from .hdf5 import MOST_STRUCTS, open_hdf5

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import ExperimentError, quote
+from ...base.errors import ExperimentError, quote
 from ._cells import CellColumns, is_empty
 from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._dialect import (

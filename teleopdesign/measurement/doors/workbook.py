@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._header import names_and_units
 from ._log import MOST_BYTES, Log, number_names, optional, refuse_damage, refuse_size

@@ -15,8 +15,8 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...arguments import check_types
-from ...errors import ExperimentError, did_you_mean, quote
+from ...base.arguments import check_types
+from ...base.errors import ExperimentError, did_you_mean, quote
 from . import emps, hsm150, mtm_wrist, psm_insertion
 from ._recording import RawFile, Recording
 

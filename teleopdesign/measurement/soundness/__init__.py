@@ -11,7 +11,7 @@ No model is needed. `teleopdesign.diagnose` compares forces with the motion. Err
 
 from __future__ import annotations
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..experiment import Experiment
 from .clipping import check_clipped
 from .clock import check_clock, clock_in_order

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..encoder import reading_noise
 from ..filtering import Array
 from ..repeated_rows import STEPS, runs_of

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...errors import ExperimentError
-from ...finding import Finding, Graph, Series
+from ...base.errors import ExperimentError
+from ...base.finding import Finding, Graph, Series
 from ..channel import factor_of
 from ..encoder import sampling_jitter
 from ..experiment import Experiment

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...finding import Finding
+from ...base.finding import Finding
 from .encoder_steps import ON_GRID, measure_griddedness
 from .signal import Signal
 

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..encoder import CHANGES, CHANGES_OF_FORCE, update_period
 from ..repeated_rows import repeats, stuck_stretches
 from .force_steps import LEVELS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..record import Record
 
 #: a warning is given if the reading of a log may add more than this part of the force to the force

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..hum import STRONG, hum_of
 from .signal import Signal
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..encoder import reading_noise
 from .signal import Signal
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..filtering import Array
 from .signal import Signal, largest_by_chance, local_scale
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..motion import SHORTEST
 from ..record import Record
 

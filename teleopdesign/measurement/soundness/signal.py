@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 from scipy.special import ndtri
 
-from ...finding import Graph, Series
-from ...quantity import unit_of
+from ...base.finding import Graph, Series
+from ...base.quantity import unit_of
 from ..channel import BODY_QUANTITIES, Channel
 from ..description import ONE_BODY
 from ..encoder import reading_step

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from ...finding import Finding
+from ...base.finding import Finding
 from ..filtering import Array, spectrum
 from .signal import Signal
 

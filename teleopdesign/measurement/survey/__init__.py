@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePath
 
-from ...errors import ExperimentError, did_you_mean
-from ...quantity import is_several_times, is_unit
+from ...base.errors import ExperimentError, did_you_mean
+from ...base.quantity import is_several_times, is_unit
 from ..column_names import as_unit, unit_in_name
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ...quantity import is_unit, measures, unit_of
+from ...base.quantity import is_unit, measures, unit_of
+from ...base.toml_table import Table
 from ..column_names import unit_in_name, why_no_unit, words_of
 from ..conversion import conversion_of
 from ..signed_numbers import SIGN_BIT
-from ..toml_table import Table
 from .acting import names_current, names_torque, names_voltage
 from .axis_kind import TORQUES
 from .content import Array, Choices, Survey

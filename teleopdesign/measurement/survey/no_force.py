@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 from ..doors._log import join_names
 from ..first_guess import band_of_fit, inner_rows
 from .content import Survey, columns_in_use, moves, names_at_rest, reasons, rises, sample_time_of

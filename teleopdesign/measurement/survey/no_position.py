@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ...errors import ExperimentError
+from ...base.errors import ExperimentError
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from .content import (

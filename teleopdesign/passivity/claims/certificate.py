@@ -15,9 +15,9 @@ from typing import Any
 
 import sympy as sp
 
-from ...arguments import check_types
-from ...errors import ModelError
-from ...plain_data import write_text
+from ...base.arguments import check_types
+from ...base.errors import ModelError
+from ...base.plain_data import write_text
 from ..checker import Refused, check, load
 
 #: one term of an identity, (weight, factor -> power, e): weight * product of factor^power * e^2

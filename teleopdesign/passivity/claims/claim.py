@@ -12,9 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from ...by_value import ByValue
-from ...errors import ModelError
-from ...notebook import html_table
+from ...base.by_value import ByValue
+from ...base.errors import ModelError
+from ...base.notebook import html_table
 from .certificate import Certificate
 
 _EXACT = "decided in exact arithmetic; a certificate would ask for more work than its checker does"

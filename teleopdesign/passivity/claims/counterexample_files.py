@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ...base.errors import ExperimentError, ModelError
+from ...base.plain_data import write_json
+from ...base.whole_files import read_whole
 from ...diagrams.expressions import read_expression
 from ...diagrams.junctions import position_symbol
-from ...errors import ExperimentError, ModelError
-from ...plain_data import write_json
 from ...realise.lti import S
-from ...whole_files import read_whole
 from ..rate_independent import Coulomb, Cycle, Dahl, Spring
 from ..search.growing_wave import GrowingWave
 from ..theorems.lugre import Jumps

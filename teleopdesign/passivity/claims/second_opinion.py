@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ..checker import Refused, read
 from ..checker.algebra import Poly
 from .certificate import Certificate

@@ -10,10 +10,10 @@ from itertools import product
 
 import numpy as np
 
+from ...base.errors import ModelError, did_you_mean
+from ...base.expectations import describe_value
 from ...controllers import exact_decimal
 from ...diagrams import Diagram
-from ...errors import ModelError, did_you_mean
-from ...expectations import describe_value
 from ..ports import drop_absent_effects, nonlinear_parts
 
 #: most vertices that are evaluated: all vertices of eight intervals, 2^8

@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...by_value import ByValue
-from ...notebook import html_table
-from ...quantity import unit_after_number
+from ...base.by_value import ByValue
+from ...base.notebook import html_table
+from ...base.quantity import unit_after_number
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
 from .box import ValueBox

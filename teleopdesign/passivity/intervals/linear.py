@@ -10,9 +10,9 @@ from functools import reduce
 import numpy as np
 import sympy as sp
 
+from ...base.errors import ModelError
 from ...controllers import exact_decimal
 from ...diagrams import Diagram
-from ...errors import ModelError
 from ...realise.lti import S
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, Unknown

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ...arguments import check_types
+from ...base.arguments import check_types
+from ...base.errors import ModelError
+from ...base.expectations import describe_value
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
-from ...errors import ModelError
-from ...expectations import describe_value
 from ..claims.axis_units import use_rotary_units
 from ..ports import drop_absent_effects, ports, without_holding
 from .at_points import judge_at_points

@@ -14,9 +14,9 @@ from typing import Any, Literal
 import numpy as np
 import sympy as sp
 
-from ...arguments import describe_value
+from ...base.arguments import describe_value
+from ...base.errors import ModelError
 from ...controllers import resolvent
-from ...errors import ModelError
 from ...realise.lti import S
 from .polynomials import fraction
 

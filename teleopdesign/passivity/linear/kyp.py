@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...by_value import ByValue
-from ...errors import ModelError
+from ...base.by_value import ByValue
+from ...base.errors import ModelError
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from .hidden_modes import HIDDEN_GROWTH, has_hidden_growth

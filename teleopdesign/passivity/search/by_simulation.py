@@ -13,10 +13,10 @@ from typing import Literal
 
 import numpy as np
 
+from ...base.errors import ModelError
+from ...base.quantity import unit_of
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis
-from ...errors import ModelError
-from ...quantity import unit_of
 from ...simulate import Sampling, simulate
 from ..claims.claim import Claim, Evidence, Refutation, Unknown
 from .stroke_motion import Strokes, families

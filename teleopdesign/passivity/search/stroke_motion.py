@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arguments import check_types
+from ...base.arguments import check_types
 from ...simulate import Trajectory
 
 Array = NDArray[np.float64]

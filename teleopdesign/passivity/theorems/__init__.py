@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from ...frozen import Catalogue
+from ...base.frozen import Catalogue
 from ..claims.claim import Refutation
 from ..identified import restate_for_device
 from ._theorem import Question, Theorem, TopicClaim, Wall

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from ...base.errors import ModelError
 from ...blocks import Body, Value
 from ...controllers import controller, laws_that_declare
 from ...diagrams import haptic_interface
 from ...effects import EFFECTS
-from ...errors import ModelError
 from ..claims.claim import Counterexample
 from ..rate_independent import Coulomb, Cycle, Dahl
 from ..search.by_simulation import SimulatedMotion, confirmed_motion

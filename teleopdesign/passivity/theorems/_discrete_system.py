@@ -6,8 +6,8 @@ from typing import Any
 
 import sympy as sp
 
+from ...base.errors import ModelError
 from ...controllers import from_control
-from ...errors import ModelError
 
 #: relative difference of two periods that counts as rounding of decimals
 _ROUNDING = 1e-9

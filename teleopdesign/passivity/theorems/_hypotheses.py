@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 
 import sympy as sp
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ..linear.impedance import exact
 
 Function = TypeVar("Function", bound=Callable[..., Any])

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact

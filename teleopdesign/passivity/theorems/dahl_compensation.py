@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal

@@ -20,7 +20,7 @@ from typing import Any, Literal
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ...realise.lti import S
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown

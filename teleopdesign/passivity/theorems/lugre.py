@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ...base.errors import ModelError
+from ...base.rounding import round_near
 from ...effects import EFFECTS, SIGNALS
-from ...errors import ModelError
-from ...rounding import round_near
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..identified import DIGITS

@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...arguments import describe_value
-from ...by_value import ByValue
-from ...errors import ModelError
+from ...base.arguments import describe_value
+from ...base.by_value import ByValue
+from ...base.errors import ModelError
 from ...realise.lti import S
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate

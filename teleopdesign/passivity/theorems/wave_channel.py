@@ -22,8 +22,8 @@ from typing import Any
 
 import sympy as sp
 
+from ...base.errors import ModelError
 from ...diagrams import Diagram, Moving, wave_variables
-from ...errors import ModelError
 from ...realise.lti import S, linear_blocks
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ...realise.lti import S
 from ..checker.absolute_stability import conditions
 from ..claims.certificate import absolute_stability_certificate, positive_real_certificate

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from ...realise.lti import S
 from ..checker.absolute_stability import Ratio, coprime
 from ..checker.positive_real import SIZES

@@ -22,10 +22,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...arguments import describe_value
-from ...by_value import ByValue
-from ...errors import ModelError
-from ...finding import Graph, Series
+from ...base.arguments import describe_value
+from ...base.by_value import ByValue
+from ...base.errors import ModelError
+from ...base.finding import Graph, Series
 from ...realise.lti import S
 from ..linear.impedance import Impedance, exact, impedance
 

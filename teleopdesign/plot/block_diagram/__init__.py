@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
+from ...base.errors import ModelError
 from ...diagrams import Diagram
-from ...errors import ModelError
 from .cells import place
 from .drawing import Drawing
 from .from_diagram import network

@@ -11,7 +11,7 @@ import heapq
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from ...errors import ModelError
+from ...base.errors import ModelError
 from .cells import LEFT, RIGHT, Cells
 from .network import Net, Network
 

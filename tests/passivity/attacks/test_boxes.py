@@ -11,7 +11,7 @@ import pytest
 from passivity.attacks.budget import attacked
 from passivity.attacks.test_wirings import Wiring, growth, least_power, pick, sign
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 
 NAME = "CL.law_with_a_state"

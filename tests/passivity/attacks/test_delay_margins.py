@@ -11,7 +11,7 @@ import sympy as sp
 from passivity.attacks.budget import attacked
 from passivity.attacks.late_modes import NEAR, count_growing, rightmost_of_two
 
-from teleopdesign.errors import ModelError, UnstableLoop
+from teleopdesign.base.errors import ModelError, UnstableLoop
 from teleopdesign.frequency import LoopGain, delay_margin, gain_margin, phase_margin
 from teleopdesign.realise.lti import S
 

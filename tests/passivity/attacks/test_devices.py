@@ -14,7 +14,7 @@ from passivity.attacks.friction import bristle
 from passivity.attacks.test_friction import ROUNDING, coulomb, dahl, gain, velocity_law
 
 from teleopdesign import EFFECTS, Body, Value
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity.device_claims import Compensator, friction_claims
 from teleopdesign.passivity.identified import identify_device
 

@@ -13,9 +13,9 @@ from devices import body
 from passivity.attacks.budget import attacked, climbed, near
 from passivity.attacks.friction import bristle, drawn
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.diagram_claims import composed_claim
 from teleopdesign.passivity.friction_pairs import friction_pairs

@@ -11,7 +11,7 @@ import pytest
 from passivity.attacks.budget import attacked, climbed, near
 from passivity.attacks.friction import bristle
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     Coulomb,
     Dahl,

@@ -15,7 +15,7 @@ from passivity.attacks.budget import attacked
 from passivity.attacks.rational import KINDS, random_ratio
 from passivity.test_hypotheses import inside
 
-from teleopdesign.errors import ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import absolutely_stable, passive, positive_real, two_port
 from teleopdesign.passivity.theorems import THEOREMS
 from teleopdesign.passivity.theorems._hypotheses import hypotheses_of

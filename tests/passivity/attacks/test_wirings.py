@@ -17,6 +17,7 @@ import scipy.linalg
 from devices import body
 from passivity.attacks.budget import attacked
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import (
     ControlLaw,
     Controller,
@@ -27,7 +28,6 @@ from teleopdesign.controllers import (
 )
 from teleopdesign.diagrams import Attached, Control, Diagram, Junction, Moving, controller_parts
 from teleopdesign.effects import Parameter
-from teleopdesign.errors import ModelError
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.linear_diagrams import linear_claims
 

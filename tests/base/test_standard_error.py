@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.standard_error import with_standard_error
+from teleopdesign.base.standard_error import with_standard_error
 
 
 @pytest.mark.parametrize(

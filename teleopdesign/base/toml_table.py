@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
-from ..errors import ExperimentError, did_you_mean, quote
-from ..whole_files import read_whole
+from .errors import ExperimentError, did_you_mean, quote
+from .whole_files import read_whole
 
 
 @final

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.errors import ExperimentError, nearest
-from teleopdesign.quantity import (
+from teleopdesign.base.errors import ExperimentError, nearest
+from teleopdesign.base.quantity import (
     AXES,
     QUANTITIES,
     converting_factor,

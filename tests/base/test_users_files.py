@@ -7,9 +7,9 @@ import sys
 import pytest
 from users_effect import SOURCE
 
+from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import load_controller
 from teleopdesign.effects import load_effect
-from teleopdesign.errors import ModelError
 
 LOADERS = {"effect": load_effect, "control law": load_controller}
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from teleopdesign.machine_code import hash_files, list_files_of_callees
+from teleopdesign.base.machine_code import hash_files, list_files_of_callees
 from teleopdesign.measurement import zero_phase, zero_phase_spans
 from teleopdesign.realise import balance, compiled, lane_exp
 
@@ -40,7 +40,7 @@ def test_a_file_that_is_gone_counts_as_empty(tmp_path):
     assert hash_files([there]) != hash_files([])
 
 
-INNER = """from teleopdesign.machine_code import compile_and_keep
+INNER = """from teleopdesign.base.machine_code import compile_and_keep
 
 
 @compile_and_keep
@@ -48,7 +48,7 @@ def inner(x):
     return {factor} * x
 """
 OUTER = """from inner import inner
-from teleopdesign.machine_code import compile_and_keep
+from teleopdesign.base.machine_code import compile_and_keep
 
 
 @compile_and_keep

@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Mapping
 
-from ..errors import printable
+from .errors import printable
 
 
 def string_text(text: str) -> str:

@@ -15,8 +15,9 @@ import pytest
 import sympy as sp
 
 import teleopdesign as td
-from teleopdesign import arguments, passivity
-from teleopdesign.errors import TeleopDesignError
+from teleopdesign import passivity
+from teleopdesign.base import arguments
+from teleopdesign.base.errors import TeleopDesignError
 
 
 class Stranger:

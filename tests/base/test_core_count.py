@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from teleopdesign.core_count import count_cores, count_workers
+from teleopdesign.base.core_count import count_cores, count_workers
 
 
 def test_cores_are_counted_where_the_system_tells_none_for_the_process(monkeypatch):

@@ -41,6 +41,7 @@ __all__ = [
 
 Target = TypeVar("Target", bound=Callable[..., Any])
 
+_PACKAGE = __name__.partition(".")[0]
 #: folders whose functions raise ExperimentError for a wrong argument
 _OF_EXPERIMENTS = ("measurement", "examples")
 
@@ -135,7 +136,7 @@ def matrix_of(value: Any, where: str) -> Any:
 
 
 def _error(module: str, function: str, argument: str, wrong: WrongValue) -> Exception:
-    of_experiment = any(module.startswith(f"{__package__}.{f}") for f in _OF_EXPERIMENTS)
+    of_experiment = any(module.startswith(f"{_PACKAGE}.{f}") for f in _OF_EXPERIMENTS)
     kind = ExperimentError if of_experiment else ModelError
     where = f"{function}: {argument}" if function else argument
     return kind(

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.rounding import round_down, round_near, round_up
+from teleopdesign.base.rounding import round_down, round_near, round_up
 
 numbers = st.floats(
     allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200

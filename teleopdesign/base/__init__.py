@@ -1,0 +1,1 @@
+"""What every folder uses and what is no physics: errors, units, TOML, words, whole files."""
