@@ -26,8 +26,8 @@ import numpy as np
 
 from teleopdesign import EFFECTS, Body, Value
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.plot import save_figure
-from teleopdesign.plot.normalised_force import plot_normalised_force
+from teleopdesign.show import save_figure
+from teleopdesign.show.figures.normalised_force import plot_normalised_force
 from teleopdesign.simulate import ForceVelocity, force_velocity, simulate, sine
 
 NAME = "force_against_velocity_of_a_slave"

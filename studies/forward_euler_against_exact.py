@@ -24,7 +24,7 @@ from _study import write_study
 
 from teleopdesign.papers import dahl_euler
 from teleopdesign.passivity import Dahl
-from teleopdesign.plot.passivity import plot_forward_euler
+from teleopdesign.show.figures.passivity import plot_forward_euler
 
 LEVEL, STIFFNESS, PERIOD = 1.0, 1e4, 1e-3  # N, N/m, s: bristle length 0.1 mm
 SHOWN = (0.5, 1.0, 1.5, 2.1)

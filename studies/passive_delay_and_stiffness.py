@@ -32,7 +32,7 @@ from teleopdesign.base.errors import GrowsWithoutBound
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
 from teleopdesign.passivity import Claim, delayed_spring, region, sampled_coupling
-from teleopdesign.plot.onset import plot_delay_and_stiffness
+from teleopdesign.show.figures.onset import plot_delay_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
 from teleopdesign.studies import find_onset
 

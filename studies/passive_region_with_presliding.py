@@ -27,7 +27,7 @@ import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, haptic_interface
 from teleopdesign.passivity import Claim, Strokes, confirmed_motion, dahl_compensation, region
-from teleopdesign.plot.passivity import plot_passive_region
+from teleopdesign.show.figures.passivity import plot_passive_region
 
 FRICTION, PRESLIDING = 1.0, 1e4  # N, N/m: bristle length 0.1 mm
 LENGTH = FRICTION / PRESLIDING

@@ -36,7 +36,7 @@ from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, haptic_interface
 from teleopdesign.passivity import Claim, region, required_damping, sampled_passivity
 from teleopdesign.passivity.theorems.sampled_data import Z
-from teleopdesign.plot.onset import plot_period_and_stiffness
+from teleopdesign.show.figures.onset import plot_period_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
 from teleopdesign.studies import find_onset
 

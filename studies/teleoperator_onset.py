@@ -31,7 +31,7 @@ import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, teleoperator
 from teleopdesign.passivity import largest_ratio
-from teleopdesign.plot.onset import plot_teleoperator_onset
+from teleopdesign.show.figures.onset import plot_teleoperator_onset
 from teleopdesign.simulate import Trajectory, simulate
 
 FRICTION, MASTER, SLAVE = 1.0, 0.1, 0.3  # N, kg, kg

@@ -61,8 +61,7 @@ The folders, each importing only from those before it:
     studies       a model at every point of named parameters, on one machine or many
     tuning        values that meet limits, trade measures off, or follow measured signals
     papers        statements of the two papers, each with its proof or check
-    plot          draws result objects, computes nothing
-    report        the diagnosis as one page that needs nothing else
+    show          how results are drawn, worded and reported; computes nothing
     app           the page in the browser: a diagnosis step by step
     commands      what `teleopdesign COMMAND` does: one file each
 """
@@ -90,9 +89,8 @@ if TYPE_CHECKING:
     from . import measurement as measurement
     from . import next_experiment as next_experiment
     from . import passivity as passivity
-    from . import plot as plot
     from . import realise as realise
-    from . import report as report
+    from . import show as show
     from . import simulate as simulate
     from . import studies as studies
     from . import tuning as tuning
@@ -327,9 +325,8 @@ _FOLDERS = (
     "measurement",
     "next_experiment",
     "passivity",
-    "plot",
     "realise",
-    "report",
+    "show",
     "simulate",
     "studies",
     "tuning",

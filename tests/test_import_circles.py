@@ -6,7 +6,7 @@ from graphlib import CycleError, TopologicalSorter
 from syntax_trees import PACKAGE, parsed, syntax_trees
 
 #: what every folder may ask to draw its results, from inside a method named `plot`
-PLOT = f"{PACKAGE.name}.plot"
+PLOT = f"{PACKAGE.name}.show"
 
 
 def module_name(path, root):

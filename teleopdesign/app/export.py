@@ -44,7 +44,7 @@ def write_all(
 
     say: receives the name of each step
     """
-    from ..report import write_report
+    from ..show.report import write_report
     from ..unexplained import where_it_fails
 
     target = folder / RESULTS / bench.experiment.folder.name

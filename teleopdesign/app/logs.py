@@ -88,7 +88,7 @@ class Preview:
         """
         from matplotlib.figure import Figure
 
-        from ..plot.log import shade_spans
+        from ..show.figures.log import shade_spans
 
         shown = [
             (key, entry)

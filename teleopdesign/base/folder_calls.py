@@ -26,9 +26,8 @@ VERBS = {
 #: folder -> what to type instead, if no single function stands for the folder
 INSTEAD = {
     "app": "type `teleopdesign app` in a terminal",
-    "plot": "every result draws itself: diagnosis.plot(), simulation.plot(), study.plot",
     "realise": "write td.to_iosystem(diagram)",
-    "report": "write a page by td.report.write_report",
+    "show": "every result draws itself: diagnosis.plot(), study.plot; td.show.save_figure writes",
     "studies": "write td.study(diagram, axes, measures=...)",
     "tuning": "write td.tune(diagram, parameters, objective)",
     "unexplained": "write td.describe(model, experiment)",
@@ -44,7 +43,15 @@ class _Imported(ModuleType):
 
 
 class _Folder(_Imported):
-    """A folder whose call runs its function; the function is looked up at the time of the call."""
+    """A folder whose call runs its function; the function is looked up at the time of the call.
+
+    A public name of the folder stands for its function, also where a module has the same name.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if type(value) is ModuleType and name in getattr(self, "__all__", ()):
+            return
+        super().__setattr__(name, value)
 
     @property
     def __call__(self) -> Any:
@@ -63,6 +70,9 @@ class _Package(_Imported):
         if type(value) is ModuleType and value.__name__ == f"{self.__name__}.{name}":
             if hasattr(value, "__path__"):
                 value.__class__ = _Folder
+                for public in getattr(value, "__all__", ()):
+                    if type(vars(value).get(public)) is ModuleType:
+                        delattr(value, public)
         super().__setattr__(name, value)
 
 

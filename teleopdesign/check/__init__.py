@@ -1,8 +1,10 @@
 """Checks before a diagnosis: is a recording sound, do its columns agree, what can it show?"""
 
-from ..base.arguments import check_arguments
-from .soundness_check import check_experiment
+from typing import TYPE_CHECKING
 
-__all__ = ["check_experiment"]
+from ..base.faces import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .soundness_check import check_experiment as check_experiment
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

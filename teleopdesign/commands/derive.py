@@ -117,7 +117,7 @@ def diagram_of(name: str, effects: Sequence[Path] = (), laws: Sequence[Path] = (
 
 
 def _draw(diagram: Diagram, path: Path) -> None:
-    from ..plot import draw_diagram, save_figure
+    from ..show import draw_diagram, save_figure
 
     drawing = draw_diagram(diagram)
     if path.suffix == ".svg":

@@ -134,7 +134,7 @@ def _design(diagnosis: DiagnosedModel, place: str, assumptions: Assumptions) -> 
 
 
 def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
-    from ..plot import save_figure
+    from ..show import save_figure
 
     written: list[Path | None] = [options.json, options.figure]
     content = {"bodies": {place: d.as_dict() for place, d in designs.items()}}

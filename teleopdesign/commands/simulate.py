@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
         write = result.to_csv if options.output.suffix == ".csv" else result.to_netcdf
         write(options.output)
     if options.figure is not None:
-        from ..plot import save_figure
+        from ..show import save_figure
 
         figure = result.plot(*options.signal)
         save_figure(figure, options.figure, suffixes=(options.figure.suffix,))

@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     if not result.measures and result.failures:
         return BAD_INPUT
     if options.figure is not None:
-        from ..plot import save_figure
+        from ..show import save_figure
 
         save_figure(result.plot(), options.figure, suffixes=(options.figure.suffix,))
     return 0

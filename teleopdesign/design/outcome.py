@@ -78,7 +78,7 @@ class Design(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot force error over velocity in the four cases, friction left in slow motion, and T."""
-        from ..plot.design_from_measurement import plot_design
+        from ..show.figures.design_from_measurement import plot_design
 
         return plot_design(self)
 

@@ -48,7 +48,7 @@ class Comparison(ByValue):
 
     def plot(self) -> Figure:
         """Residual over time, velocity and position."""
-        from ..plot.diagnosis import plot_comparison
+        from ..show.figures.diagnosis import plot_comparison
 
         return plot_comparison(self)
 

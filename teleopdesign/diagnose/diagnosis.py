@@ -198,7 +198,7 @@ class Diagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
-        from ..plot.diagnosis import plot_diagnosis
+        from ..show.figures.diagnosis import plot_diagnosis
 
         return plot_diagnosis(self)
 

@@ -95,7 +95,7 @@ class ImpedanceMap(ByValue):
         model: drawn as lines; this map is then drawn as points
         columns: of the page, 3.5 in or 7.16 in wide
         """
-        from ..plot.frequency_impedance import plot_impedance
+        from ..show.figures.frequency_impedance import plot_impedance
 
         more = not self.on_profile and self.data.sizes["amplitude"] > self.data.sizes["frequency"]
         chosen: Literal["frequency", "amplitude"] = "amplitude" if more else "frequency"

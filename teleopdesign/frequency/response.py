@@ -80,7 +80,7 @@ class FrequencyResponse(ByValue):
 
         measured: drawn as points in the same plot;  columns: of the page, 3.5 in or 7.16 in wide
         """
-        from ..plot.frequency import plot_bode
+        from ..show.figures.frequency import plot_bode
 
         return plot_bode(self, measured=measured, columns=columns)
 
@@ -88,7 +88,7 @@ class FrequencyResponse(ByValue):
         self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
     ) -> matplotlib.figure.Figure:
         """Plot the imaginary against the real part, one line for each case; see `plot`."""
-        from ..plot.frequency import plot_nyquist
+        from ..show.figures.frequency import plot_nyquist
 
         return plot_nyquist(self, measured=measured, columns=columns)
 

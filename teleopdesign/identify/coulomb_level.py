@@ -87,7 +87,7 @@ class CoulombLevel(ByValue):
 
     def plot(self) -> Figure:
         """Plot force against velocity: every run, and the line with the level at rest."""
-        from ..plot.force_velocity_curve import plot_force_velocity_curve
+        from ..show.figures.force_velocity_curve import plot_force_velocity_curve
 
         return plot_force_velocity_curve(self)
 

@@ -86,6 +86,6 @@ class Proposal(ByValue):
 
     def plot(self) -> Figure:
         """Figure of the motion, the residual of a wrong model along it, and the separations."""
-        from ..plot.next_experiment import plot_proposal
+        from ..show.figures.next_experiment import plot_proposal
 
         return plot_proposal(self)

@@ -49,7 +49,7 @@ class MarginMap(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Llewellyn's margin over both values, and the line where it is zero."""
-        from ..plot.margin_map import plot_margin_map
+        from ..show.figures.margin_map import plot_margin_map
 
         return plot_margin_map(self)
 

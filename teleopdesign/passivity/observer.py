@@ -96,7 +96,7 @@ class PortEnergy(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Figure of the energy over time with its band, and of the intervals of released energy."""
-        from ..plot.port_energy import plot_port_energy
+        from ..show.figures.port_energy import plot_port_energy
 
         return plot_port_energy(self)
 

@@ -49,7 +49,7 @@ class ForceDisplacement(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot displacement and force over time, and force over displacement."""
-        from ..plot.force_displacement import plot_force_displacement
+        from ..show.figures.force_displacement import plot_force_displacement
 
         return plot_force_displacement(self)
 

@@ -33,7 +33,7 @@ class ForceVelocity(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot one panel for each case, from top to bottom."""
-        from ..plot.design import plot_force_velocity
+        from ..show.figures.design import plot_force_velocity
 
         return plot_force_velocity(self)
 

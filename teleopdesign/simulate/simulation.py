@@ -71,7 +71,7 @@ class Simulation(ByName, ByValue):
 
     def plot(self, *names: str) -> matplotlib.figure.Figure:
         """Plot signals over time, one panel each; default: motion, commanded force, interaction."""
-        from ..plot.design import plot_simulation
+        from ..show.figures.design import plot_simulation
 
         return plot_simulation(self, names)
 

@@ -23,7 +23,7 @@ from .points import SAMPLE, Points
 if TYPE_CHECKING:
     import xarray
 
-    from ..plot.studies import StudyPlots
+    from ..show.figures.studies import StudyPlots
 
 #: name of the variable with the reason of a failed point; "" for a point that did not fail
 REASON = "failure"
@@ -90,7 +90,7 @@ class Study(ByName, ByValue):
     @property
     def plot(self) -> StudyPlots:
         """Figures: .curves(), .map(), .panels(), .sensitivity(); .plot() selects a suitable one."""
-        from ..plot.studies import StudyPlots
+        from ..show.figures.studies import StudyPlots
 
         return StudyPlots(self.data)
 

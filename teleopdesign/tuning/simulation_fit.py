@@ -102,7 +102,7 @@ class SimulationFit(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot measured and simulated signals, with the difference below each."""
-        from ..plot.simulation_fit import plot_simulation_fit
+        from ..show.figures.simulation_fit import plot_simulation_fit
 
         return plot_simulation_fit(self)
 

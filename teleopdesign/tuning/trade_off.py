@@ -56,7 +56,7 @@ class ParetoFront(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot both measures: the front as a line, all points within the limits in grey."""
-        from ..plot.pareto import plot_pareto
+        from ..show.figures.pareto import plot_pareto
 
         return plot_pareto(self)
 

@@ -64,7 +64,7 @@ class ResidualDescription(ByValue):
 
     def plot(self) -> Figure:
         """The views of each body, and the curve of each dependence."""
-        from ..plot.unexplained import plot_unexplained
+        from ..show.figures.unexplained import plot_unexplained
 
         return plot_unexplained(self)
 

@@ -10,7 +10,7 @@ from teleopdesign.diagnose import constant_force, ladder_text
 from teleopdesign.diagnose.constant_force import constant_force_line
 from teleopdesign.diagnose.ladder_text import records_line, say_floors
 from teleopdesign.diagnose.left_out import left_out_lines, possible_next
-from teleopdesign.report.words import _floors
+from teleopdesign.show.report.words import _floors
 
 
 @pytest.mark.parametrize(("left", "message"), [(0.94, "0.9"), (45.34, "45.3"), (1000.0, "1000.0")])

@@ -9,7 +9,7 @@ from devices import FEEDBACK, body
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
 from teleopdesign.frequency import bode, measured_response, quasi_linear_impedance
-from teleopdesign.plot import plot_spread
+from teleopdesign.show import plot_spread
 
 HAND = body(0.2, viscous__damping=4.0, spring__stiffness=300.0)
 DIAGRAM = haptic_interface(body(viscous__damping=2.0), hand=HAND, force_feedback=FEEDBACK)

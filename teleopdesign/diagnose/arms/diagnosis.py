@@ -134,7 +134,7 @@ class ArmDiagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of force and residual of each joint, and of the ladder of the arm."""
-        from ...plot.arm_diagnosis import plot_arm_diagnosis
+        from ...show.figures.arm_diagnosis import plot_arm_diagnosis
 
         return plot_arm_diagnosis(self)
 

@@ -1,0 +1,168 @@
+"""Numbers, units and verdicts in words, as a report prints them."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from ...diagnose.criteria import CRITERIA
+from ...diagnose.diagnosis import Diagnosis
+from ...diagnose.ladder_text import floors_apart
+from ...diagnose.rung import Rung
+from ...measurement.experiment import Experiment
+
+_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+MINUS = "\u2212"
+NONE = "–"
+
+
+#: the sign between two units, and an exponent after a unit
+_PRODUCT = re.compile(r"(?<=[A-Za-z])\*(?=[A-Za-z])")
+_POWER = re.compile(r"(?<=[a-z])\^([23])(?!\d)")
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number with some significant digits: 0.1972, −12 300, 1.2·10⁻⁶; a dash for None or NaN."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 < exponent < 5:
+        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
+    else:
+        text = f"{value / 10.0**exponent:.{digits - 1}f}·10{str(exponent).translate(_SUPERSCRIPT)}"
+    return text.replace("-", MINUS)
+
+
+def short(value: float | None, digits: int = 4) -> str:
+    """A number without trailing zeros: 60, 58.9, 7.2·10⁻⁶."""
+    text, times, power = number(value, digits).partition("·")
+    return (text.rstrip("0").rstrip(".") if "." in text else text) + times + power
+
+
+def with_error(value: float, error: float | None) -> tuple[str, str]:
+    """A value and its standard error, both to the second significant digit of the error."""
+    if error is None or not math.isfinite(error) or error <= 0:
+        return number(value), NONE
+    decimals = 1 - math.floor(math.log10(error))
+    if 0 <= decimals <= 6 and abs(value) < 1e5:
+        return f"{value:.{decimals}f}".replace("-", MINUS), f"{error:.{decimals}f}"
+    if value == 0:
+        return "0", number(error, 2)
+    digits = math.floor(math.log10(abs(value))) + decimals + 1
+    return number(value, min(max(digits, 2), 7)), number(error, 2)
+
+
+def percent(value: float | None) -> str:
+    """A relative error as 7.07 %."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    return f"{100 * value:.2f}\u202f%"
+
+
+def sentence_of(entry: object | None) -> str:
+    """The text of an entry of a diagnosis as a sentence; "" without an entry."""
+    text = "" if entry is None else str(entry)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def unit_text(unit: str) -> str:
+    """An SI unit as printed: N*s/m as N·s/m, m^2 as m²; "" for a plain number."""
+    if unit == "1":
+        return ""
+    return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+
+def typeset(sentence: str) -> str:
+    """A sentence of the terminal in the form of a page: capital letter, ± and units with dots."""
+    first = sentence.partition(" ")[0].rstrip(",:;")
+    if first.isalpha() and first.isascii():  # no number, and no key of a file
+        sentence = sentence[0].upper() + sentence[1:]
+    sentence = _PRODUCT.sub("·", sentence.replace(" +- ", " ± "))
+    return _POWER.sub(lambda power: "²" if power[1] == "2" else "³", sentence)
+
+
+def join_names(names: list[str], last: str = "and") -> str:
+    """Names as a list in a sentence: a, b and c."""
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} {last} {names[-1]}"
+
+
+def step_name(rung: Rung) -> str:
+    """The effect that a rung adds, with equally good ones: "stribeck at device"."""
+    if rung.added is None:
+        return "your model, re-estimated"
+    return " or ".join((rung.title, *map(str, rung.alternatives)))
+
+
+def describe_judgement(experiment: Experiment) -> str:
+    """The records on which the errors are reported."""
+    if experiment.check_records:
+        return "records that were not fitted"
+    return "blocks of the records that were held out of the fit"
+
+
+def _floors(left: float) -> str:
+    """An error in noise floors; no number where the floor is next to zero."""
+    return number(left, 2) if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
+
+
+def verdict(diagnosis: Diagnosis) -> str:
+    """The verdict in one or two sentences."""
+    before, after = diagnosis.before.check_error, diagnosis.after.check_error
+    floor, left = percent(diagnosis.floor.value), _floors(diagnosis.left)
+    fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "
+    fell += f"{percent(before)} to {percent(after)}"
+    added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
+    more = diagnosis.more_is_missing
+    rest = (
+        f"The remaining error is {left} times what sensor noise alone would leave: more is missing."
+        if more
+        else f"The remaining error is near what sensor noise alone would leave, {floor}."
+    )
+    if diagnosis.may_be_noise:
+        rest = (
+            f"The remaining error is {left} times the noise floor of {floor}. With this model "
+            f"sensor errors leave {percent(diagnosis.floor.drawn)}: these records do not show "
+            "whether more is missing."
+        )
+    if (moment := diagnosis.moment) is not None:
+        whole, without = floors_apart(diagnosis.left, moment.without)
+        rest = (
+            f"The remaining error is {whole} times what sensor noise alone would leave, "
+            f"{without} times without one moment ({moment})."
+        )
+    if diagnosis.verdict == "model_adequate":
+        return (
+            f"Your model is adequate: it leaves {percent(after)} of the force unexplained, and "
+            f"sensor noise alone would leave {floor}." + (f" {rest}" if moment is not None else "")
+        )
+    if diagnosis.verdict == "effects_missing":
+        named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
+        less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
+        helps = "helps, but is" if len(less) == 1 else "help, but each is"
+        others = f" {join_names(less)} {helps} less likely than not." if less else ""
+        added_words = "this effect" if len(added) == 1 else "all added effects"
+        return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
+    if silent := diagnosis.why_silent:
+        return f"Undecided. {silent}"
+    if not added:
+        return (
+            "Undecided: something is missing, but no candidate effect explains the remaining "
+            f"force. The force error is {percent(after)}, {left} times what sensor noise alone "
+            "would leave."
+        )
+    if diagnosis.unlikely:
+        each = "it is" if len(added) == 1 else "each is"
+        return (
+            f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not. {rest}"
+        )
+    if all(r.alternatives for r in diagnosis.rungs[1:]):
+        names = join_names(added)
+        return f"Undecided, {names}: these records do not decide. Either way {fell}. {rest}"
+    helps = "helps, but explains" if len(added) == 1 else "help, but explain"
+    return (
+        f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"
+    )
