@@ -33,6 +33,8 @@ CANDIDATES = (
 )  # fmt: skip
 #: cases drawn by the simulator of the tests, every second pair with a bad logger
 DRAWN, SEED = 60, 20521129
+#: characters of the hash of the data
+DIGEST = 12
 #: candidates of an answer that are kept, best first
 BEST = 5
 #: processes at a time, each with one thread
@@ -170,19 +172,28 @@ def kept(answer: dict[str, Any]) -> dict[str, Any]:
 
 def _kept(answer: dict[str, Any]) -> dict[str, Any]:
     judged = {name: answer[name] for name in KEPT if name in answer}
-    judged["model_parameters"] = _parameters(answer.get("model_parameters") or {})
+    for name in ("model_parameters", "record_shift"):
+        judged[name] = _parameters(answer.get(name) or {})
+    judged["cannot_tell"] = _without_sentences(answer.get("cannot_tell") or [])
+    judged["set_aside"] = _without_sentences(answer.get("set_aside") or [])
     judged["candidates"] = [_candidate(c) for c in answer.get("candidates", [])[:BEST]]
     if "digest" in answer.get("experiment", {}):
-        judged["digest"] = answer["experiment"]["digest"]
+        judged["digest"] = answer["experiment"]["digest"][:DIGEST]
     return judged
 
 
 def _candidate(candidate: dict[str, Any]) -> dict[str, Any]:
-    names = ("effect", "at", "probability", "check_error", "refused")
+    names = ("effect", "at", "probability", "check_error")
     return {
         **{name: candidate[name] for name in names if name in candidate},
+        "is_refused": bool(candidate.get("refused")),
         "parameters": _parameters(candidate.get("parameters") or {}),
     }
+
+
+def _without_sentences(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What a row is about; how it is worded is no result."""
+    return [{k: v for k, v in row.items() if not (isinstance(v, str) and " " in v)} for row in rows]
 
 
 def _parameters(entries: dict[str, Any]) -> dict[str, Any]:

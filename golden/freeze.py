@@ -24,7 +24,7 @@ import pieces  # noqa: E402
 FROZEN = HERE / "frozen"
 #: digits that are kept of numbers: of answers as many as an optimiser determines
 DIGITS = {"answers": 7, "recordings": 7, "hidden": 7, "data": 7, "drawn": 7, "results": 7,
-          "studies": 8, "logs": 6, "simulations": 11}  # fmt: skip
+          "studies": 8, "logs": 6, "simulations": 10}  # fmt: skip
 #: longest text of a list or table that stands on one line
 LINE = 140
 

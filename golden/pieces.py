@@ -25,7 +25,7 @@ from teleopdesign.cli import main
 
 ROOT = Path(__file__).resolve().parents[1]
 #: instants of a simulation that are kept
-INSTANTS = 25
+INSTANTS = 21
 #: times, which the load of the machine decides
 TIMED = re.compile(r" in \d+ s(?=:)")
 
@@ -417,7 +417,7 @@ def _log(name: str) -> dict[str, Any]:
     return {
         "axis": reading.axis,
         "channels": dict(reading.channels),
-        "guessed": sorted(reading.guessed),
+        "guessed": sorted(key.removeprefix("channels.") for key in reading.guessed),
         "signals": {k: list(v) for k, v in reading.at.items()},
         "records": list(reading.records),
         "sample_time": reading.sample_time,

@@ -41,8 +41,10 @@ KEYS = (
     "column", "unit", "value", "sign", "scale", "offset", "unwrap", "counts_per_turn", "gear_ratio",
     "torque_constant", "lever_arm", "sign_bit", "twos_complement", "measured",
 )  # fmt: skip
-#: of these, keys that an entry need not state: what nothing in a log tells may be read in any way
-MAY_BE_LEFT_OUT = ("unit", "torque_constant", "lever_arm", "counts_per_turn")
+#: keys that are estimates, and by which part they may differ; in an entry, 0: nothing is estimated
+ESTIMATES = {"resolution": 0.02, "noise": 0.2}
+#: keys that an entry need not state: what nothing in a log tells may be read in any way
+MAY_BE_LEFT_OUT = ("unit", "torque_constant", "lever_arm", "counts_per_turn", *ESTIMATES)
 #: spellings of one unit
 SPELT = {"Nm": "N*m", "N m": "N*m", "°": "deg", "mNm": "mN*m", "rev": "turns"}
 #: keys of an entry that are no channels
@@ -155,7 +157,7 @@ def _loaded(folder: Path, printed: str) -> Reading:
         printed=printed,
         axis=experiment.axis(bodies[0]) if len(bodies) == 1 else "",
         channels={
-            quantity: {key: entry[key] for key in KEYS if key in entry}
+            quantity: {key: entry[key] for key in (*KEYS, *ESTIMATES) if key in entry}
             for quantity, entry in written["channels"].items()
             if quantity in CHANNELS
         },
@@ -219,7 +221,9 @@ def _channel(quantity: str, expected: Any, read: Any) -> list[str]:
         one, other = expected.get(key), read.get(key)
         if one is None and key in MAY_BE_LEFT_OUT:
             continue
-        if key == "unit":
+        if key in ESTIMATES:
+            same = math.isclose(one, other or 0.0, rel_tol=ESTIMATES[key])
+        elif key == "unit":
             same = SPELT.get(one, one) == SPELT.get(other, other)
         elif isinstance(one, dict) and isinstance(other, dict):
             same = one["unit"] == other["unit"]

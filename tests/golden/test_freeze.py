@@ -42,7 +42,7 @@ def test_an_answer_is_kept_as_it_is_judged(modules):
         "effect": "bias",
         "at": "device",
         "probability": 0.5,
-        "notes": "...",
+        "refused": "it moves nothing",
         "parameters": {"level": {"value": 1.0, "stderr": 0.1, "unit": "N"}},
     }
     answer = {
@@ -60,6 +60,7 @@ def test_an_answer_is_kept_as_it_is_judged(modules):
         "effect": "bias",
         "at": "device",
         "probability": 0.5,
+        "is_refused": True,
         "parameters": {"level": {"value": 1.0, "stderr": 0.1}},
     }
 
