@@ -4,7 +4,7 @@ One test for all of them, through the command that a user types.
 """
 
 import pytest
-from corpus.reading import CHANNELS, OTHERS, differences, entries, read, unpacked
+from corpus.reading import CHANNELS, OTHERS, Reading, differences, entries, read, unpacked
 
 ENTRIES = entries()
 #: kind of file -> what must be installed to read it
@@ -46,3 +46,41 @@ def test_every_file_has_an_entry_and_every_entry_says_something():
         assert not set(entry) - {*OTHERS, *CHANNELS, "folder"}, name
         says = {*CHANNELS, "refused", "sample_time", "says", "stated", "at"}
         assert entry["why"] and says & set(entry), name
+
+
+@pytest.fixture(scope="module")
+def reading(tmp_path_factory):
+    """What is read of a log with a position that counts against its force."""
+    folder = tmp_path_factory.mktemp("corpus")
+    entry = ENTRIES["roles/position_and_velocity_against_the_force"]
+    return entry, read(unpacked(entry, folder), [], folder / "made")
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"time": {"column": "torque_Nm", "unit": "s"}},
+        {"position": {"column": "angle_rad", "unit": "rad"}},  # its sign is turned
+        {"position": {"column": "angle_rad", "unit": "deg", "sign": -1}},
+        {"interaction_force": {"column": "torque_Nm", "unit": "N*m"}},
+        {"axis": "prismatic"},
+        {"records": ["fit", "check"]},
+        {"sample_time": 0.01},
+        {"duration": 3.0},
+        {"at": {"position": [-0.8242, -0.3006, 0.8666]}},
+        {"at": {"interaction_force": [0.0, 0.0, 0.0]}},
+        {"says": ["a word that is not printed"]},
+        {"refused": ["force"]},
+    ],
+)
+def test_another_reading_is_reported(reading, other):
+    entry, today = reading
+    assert not differences(entry, today)
+    assert differences({**entry, **other}, today)
+
+
+def test_a_refusal_is_reported_where_a_reading_is_expected():
+    entry = ENTRIES["roles/position_and_velocity_against_the_force"]
+    assert differences(entry, Reading(refused="log.csv: found no force"))
+    assert differences({"refused": ["position"]}, Reading(refused="log.csv: found no force"))
+    assert not differences({"refused": ["force"]}, Reading(refused="log.csv: found no force"))
