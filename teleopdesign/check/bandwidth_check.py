@@ -11,10 +11,10 @@ from ..diagnose.adequacy import is_adequate
 from ..diagnose.fit import estimate
 from ..diagnose.narrower_band import narrower_band
 from ..diagnose.noise_floor import noise_floor
-from ..diagnose.prepare import Prepared
 from ..measurement.bandwidth import motion_beyond
 from ..measurement.experiment import Experiment
 from ..measurement.hidden_motion import find_hidden_motion
+from ..measurement.prepare import Prepared
 from ..model import Model
 
 

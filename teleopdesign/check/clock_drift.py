@@ -14,8 +14,8 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..blocks import Body
-from ..diagnose.prepare import Stretch
 from ..measurement.filtering import Array
+from ..measurement.prepare import Stretch
 from .force_balance import Estimate, ForceBalance, force_balance
 
 #: parts of the records, by time: fewer show no straight line, more have too few reversals each

@@ -18,9 +18,9 @@ from ..diagnose.criteria import CRITERIA
 from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
-from ..diagnose.prepare import Prepared
 from ..diagnose.repeats import Repeatability, repeatability, repeats_data
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from ..blocks import Body
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import block_numbers, standard_errors
-from ..diagnose.prepare import Prepared, Stretch
 from ..effects import EFFECTS
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .force_timing import (
     BANDS,

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Body
-from ..diagnose.prepare import Stretch
 from ..measurement.filtering import Array
 from ..measurement.first_guess import hardly_varies
 from ..measurement.motion import Motion
+from ..measurement.prepare import Stretch
 from ..realise.along_motion import residual_along
 
 #: bandwidths, as parts of the comparison's bandwidth, at which shifts are fitted, one after another

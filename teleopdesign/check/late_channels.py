@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Literal
 
 from ..base.finding import Finding
-from ..diagnose.prepare import Prepared
-from ..diagnose.record_shift import CLOCK
+from ..measurement.logger_clock import CLOCK
+from ..measurement.prepare import Prepared
 from ..measurement.soundness.signal import channel_label
 from ..model import Model
 from .clock_drift import find_drift, report_drift

@@ -13,7 +13,7 @@ from ..base.finding import Finding
 from ..base.quantity import unit_of
 from ..base.standard_error import with_standard_error
 from ..diagnose.feedback_law import describe_computed
-from ..diagnose.prepare import Prepared
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .force_balance import ForceBalance, force_balances
 from .late_channels import check_lateness, is_without_hand, label_of

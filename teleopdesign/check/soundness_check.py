@@ -9,12 +9,12 @@ import numpy as np
 from ..base.errors import ExperimentError
 from ..base.finding import Finding, Findings
 from ..diagnose.constant_force import lacks_scale
-from ..diagnose.excerpt import excerpt
-from ..diagnose.prepare import prepare
 from ..diagnose.silent_records import why_silent
 from ..diagnose.unknown_drive import describe_work
+from ..measurement.excerpt import excerpt
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import VARIES
+from ..measurement.prepare import prepare
 from ..measurement.soundness import check_signals
 from ..model import Model
 from .bandwidth_check import check_bandwidth

@@ -7,8 +7,8 @@ from dataclasses import replace
 from itertools import combinations
 
 from ..base.finding import Finding
-from ..diagnose.prepare import Prepared, prepare
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .force_balance import ForceBalance, force_balances
 

@@ -19,10 +19,10 @@ import numpy as np
 from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import Fit, weigh_residuals
-from ..diagnose.prepare import Prepared, Stretch
 from ..diagnose.residual import relative_residuals
-from ..diagnose.scales import scales
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
+from ..measurement.scales import scales
 from ..model import Model
 
 #: most shapes of one effect (periods, speeds) that are evaluated

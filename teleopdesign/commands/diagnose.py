@@ -24,8 +24,8 @@ from ._report import write_arm_page, write_page
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis, Diagnosis, SimulationComparison
     from ..diagnose.arms.prepared import PreparedArm
-    from ..diagnose.prepare import Prepared
     from ..measurement import Experiment
+    from ..measurement.prepare import Prepared
     from ..model import Model
 
 EXAMPLES = """

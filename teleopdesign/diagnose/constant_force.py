@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..measurement.first_guess import VARIES, hardly_varies
+from ..measurement.prepare import Stretch, measured_force
 from ..model import Model
-from .prepare import Stretch, measured_force
 
 
 def is_constant(stretches: Sequence[Stretch]) -> bool:

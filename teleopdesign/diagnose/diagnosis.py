@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.by_value import ByValue
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate, list_look_alikes
@@ -17,7 +18,6 @@ from .ladder_text import ladder_html, ladder_text, sentence
 from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
-from .prepare import Prepared
 from .ranking import Ranking
 from .repeats import Repeatability
 from .rung import Rung

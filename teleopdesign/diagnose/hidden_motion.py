@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..measurement.hidden_motion import find_hidden_motion
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .criteria import CRITERIA
-from .prepare import Prepared, Stretch
 
 
 def describe_hidden_motion(prepared: Prepared, model: Model) -> str:

@@ -13,8 +13,8 @@ import numpy as np
 
 from ..measurement.encoder import reading_step, sampling_jitter
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Stretch
 from .criteria import CRITERIA
-from .prepare import Stretch
 
 
 def jitter_of(stretch: Stretch, experiment: Experiment) -> float:

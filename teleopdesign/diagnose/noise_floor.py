@@ -19,12 +19,12 @@ import numpy as np
 from ..base.by_value import ByValue
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .criteria import CRITERIA
 from .error import error_of
 from .error_at_command import refer_to_command
 from .jitter import jitter_of
-from .prepare import Prepared, Stretch
 from .residual import residuals
 from .sensors import is_noise_estimated, sensor_of
 

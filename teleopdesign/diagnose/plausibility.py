@@ -17,6 +17,7 @@ from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.repeated_rows import runs_of
 from ..measurement.reversals import count_reversals
 from ..model import Model
@@ -24,7 +25,6 @@ from ..realise.along_motion import measured_along
 from ..realise.traced import Along
 from .criteria import CRITERIA
 from .feedback_law import explain_computed
-from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
 
 

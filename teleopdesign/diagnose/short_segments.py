@@ -26,17 +26,6 @@ def short_segments_line(experiment: Experiment) -> str | None:
     return line + _without_check(experiment.records, parts)
 
 
-def why_too_short(records: Sequence[Record]) -> str:
-    """The cause where no segment of records counts, for a message; "": the records are short."""
-    lengths = [(s.stop - s.start) * r.sample_time for r in records for s in r.segments]
-    if len(lengths) == len(records):
-        return ""
-    return (
-        f": pauses and new trials cut them into {len(lengths)} segments, of which the longest "
-        f"lasts {max(lengths):.2g} s"
-    )
-
-
 def _left_out(record: Record) -> tuple[int, int]:
     """How many segments of a record are too short, and how many there are."""
     lengths = [(rows.stop - rows.start) * record.sample_time for rows in record.segments]

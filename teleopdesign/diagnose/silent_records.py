@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from ..measurement.encoder import rests
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .constant_force import describe_constant_force, lacks_scale
 from .hidden_motion import describe_hidden_motion
 from .jitter import describe_jitter, is_much_jitter
-from .prepare import Prepared
 from .unknown_drive import describe_work
 from .unsigned_force import describe_unsigned
 

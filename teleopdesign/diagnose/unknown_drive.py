@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..measurement.experiment import Experiment
+from ..measurement.logger_clock import CLOCK
 from ..measurement.work_balance import work_out_of_record
-from .record_shift import CLOCK
 
 
 def work_taken_out(experiment: Experiment) -> float | None:

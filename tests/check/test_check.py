@@ -17,10 +17,10 @@ from teleopdesign.check.plausibility import check_plausibility
 from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
 from teleopdesign.diagnose.effort import EFFORTS
-from teleopdesign.diagnose.excerpt import excerpt
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import catalogue
+from teleopdesign.measurement.excerpt import excerpt
+from teleopdesign.measurement.prepare import prepare
 
 #: effects that stand for each way of being seen; all of them take longer
 SOME = ("bias", "coulomb", "coulomb_asymmetry", "viscous", "stribeck", "spring", "actuation_delay")

@@ -11,7 +11,7 @@ from teleopdesign.check import clock_drift
 from teleopdesign.check.clock_drift import _grows_evenly, _quarters, find_drift
 from teleopdesign.check.force_balance import Estimate
 from teleopdesign.check.plausibility import check_plausibility
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 
 
 @pytest.fixture(scope="module")

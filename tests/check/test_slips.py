@@ -11,8 +11,8 @@ from teleopdesign.check.mixed_columns import check_clock_unit, check_mixed_colum
 from teleopdesign.check.plausibility import check_plausibility
 from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import EFFECTS, find_effect
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.soundness.held_samples import stuck_stretches
 from teleopdesign.model import Model
 

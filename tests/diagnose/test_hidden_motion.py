@@ -6,7 +6,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.check import check_experiment
 from teleopdesign.diagnose.hidden_motion import describe_hidden_motion
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 H = 0.002

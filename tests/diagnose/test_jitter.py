@@ -14,12 +14,12 @@ from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import objection
 from teleopdesign.diagnose.jitter import jitter_share
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranked
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.silent_records import why_silent
 from teleopdesign.effects import find_effect
 from teleopdesign.measurement.encoder import sampling_jitter
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 

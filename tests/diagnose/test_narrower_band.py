@@ -12,7 +12,7 @@ from teleopdesign import Model
 from teleopdesign.check.bandwidth_check import check_bandwidth
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.narrower_band import choose_band, narrower_band, narrower_to_search
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 
 
 def with_position(experiment, read):

@@ -15,11 +15,11 @@ from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.record_shift import RecordShift, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 
 def shifted(experiment, rows):

@@ -6,10 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..measurement.experiment import Experiment
-from ..measurement.record import Record
-from .prepare import Prepared, prepare
-from .search_plan import PLAN, SearchPlan
+from .experiment import Experiment
+from .record import Record
 
 #: most samples of all records together; if there are more, only windows of the records are used
 MOST = 100_000
@@ -29,13 +27,6 @@ def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
     part = most / total
     records = tuple(replace(r, segments=_windows(r, part)) for r in experiment.records)
     return replace(experiment, records=records)
-
-
-def cut_to_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
-    """The windows of prepared records that are searched; the whole records where they are short."""
-    if sum(len(r.time) for r in whole.experiment.records) <= plan.long:
-        return whole
-    return prepare(excerpt(whole.experiment, most=plan.windows), bandwidth=whole.bandwidth)
 
 
 def _windows(record: Record, part: float) -> tuple[slice, ...]:

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
-from ..measurement.bandwidth import bandwidth_of
-from ..measurement.experiment import Experiment
-from ..measurement.filtering import Array, spectrum
-from ..measurement.motion import SHORTEST, SMOOTHING, Motion, motions
-from ..measurement.record import Record
+from .bandwidth import bandwidth_of
+from .experiment import Experiment
+from .filtering import Array, spectrum
+from .motion import SHORTEST, SMOOTHING, Motion, motions
+from .record import Record
 from .scales import LARGEST, scales
 from .shared_links import Shared
-from .short_segments import why_too_short
 
 #: seconds at each end of a stretch where the low-pass is not yet in steady state
 TRIM = 0.25
@@ -150,7 +149,7 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
                 stretch = stretch_of(motion, record.use, chosen, record.offset_names)
                 stretches.append(replace(stretch, force_is_sensed=sensed))
     if not any(s.use == "fit" for s in stretches):
-        why = why_too_short([r for r in experiment.records if r.use == "fit"])
+        why = _why_too_short([r for r in experiment.records if r.use == "fit"])
         raise ExperimentError(
             f"{experiment.folder.name}: fit records: no stretch of {SHORTEST:g} s or more{why}"
         )
@@ -163,6 +162,17 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             )
     _refuse_without_force(experiment, stretches)
     return Prepared(experiment, chosen, tuple(stretches))
+
+
+def _why_too_short(records: Sequence[Record]) -> str:
+    """The cause where no segment of records counts, for a message; "": the records are short."""
+    lengths = [(s.stop - s.start) * r.sample_time for r in records for s in r.segments]
+    if len(lengths) == len(records):
+        return ""
+    return (
+        f": pauses and new trials cut them into {len(lengths)} segments, of which the longest "
+        f"lasts {max(lengths):.2g} s"
+    )
 
 
 def _refuse_huge(experiment: Experiment, record: Record) -> None:

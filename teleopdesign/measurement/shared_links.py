@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.by_value import ByValue
-from ..measurement.filtering import Array
+from .filtering import Array
 
 if TYPE_CHECKING:
     from .prepare import Stretch

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..measurement.motion import Motion
+from .motion import Motion
 
 #: size (SI) up to which a signal is none, and largest size that counts: cubes of sizes between
 #: them, and quotients of these, are numbers
