@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.errors import ExperimentError
-from ..check.motion_facts import RARE
 from ..measurement.experiment import Experiment
-from ..measurement.motion import TRAVEL
+from ..measurement.motion import RARE, TRAVEL
 from ..measurement.prepare import prepare
 from ..realise.reach import Reach
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..base.by_value import ByValue
+from ..check import why_silent
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
@@ -21,7 +22,6 @@ from .one_moment import Moment
 from .ranking import Ranking
 from .repeats import Repeatability
 from .rung import Rung
-from .silent_records import why_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..check import why_silent
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
@@ -24,7 +25,6 @@ from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
-from .silent_records import why_silent
 from .stated_fit import estimate_stated
 
 
