@@ -10,6 +10,7 @@ from ..base.finding import Finding
 from ..base.quantity import unit_of
 from ..diagnose.candidates import tells_place_from_time
 from ..measurement.filtering import Array
+from ..measurement.first_guess import hardly_varies
 from ..measurement.motion import RARE, Motion
 from ..model import Model
 
@@ -43,7 +44,7 @@ def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> d
     if share < LIGHT:
         reasons["acceleration"] = f"inertia makes only {100 * share:.2g} % of the force"
     commands = np.concatenate([m.command for m in motions])
-    if np.std(commands) < RARE * _rms([commands]) or not commands.any():
+    if hardly_varies(commands):
         reasons["command"] = reasons["acting_force"] = "the commanded force hardly varies"
     if not any(m.interaction.any() for m in motions):
         reasons["interaction_force"] = "no interaction force is measured"
