@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -63,8 +62,9 @@ class _Trial:
     """One strength of an effect.
 
     shaped: the model with the effect at its first strength;  factor: strength over the first one
-    mark: (rows,) change of the residual, over the root of the measured squares
-    rest: (rows,) the part of it outside the span of the model's parameters
+    mark: (rows,) change of the residual;  rest: (rows,) the part of it outside the span of the
+        model's parameters
+    whole, part: sizes of mark and rest, over the root of the measured squares
     """
 
     shaped: Model
@@ -72,16 +72,8 @@ class _Trial:
     factor: float
     mark: Array
     rest: Array
-
-    @cached_property
-    def whole(self) -> float:
-        """Size of the mark."""
-        return float(np.linalg.norm(self.mark))
-
-    @cached_property
-    def part(self) -> float:
-        """Size of the part that the model's parameters cannot imitate."""
-        return float(np.linalg.norm(self.rest))
+    whole: float
+    part: float
 
     @property
     def unique_share(self) -> float:
@@ -123,8 +115,11 @@ class _Scene:
         model = _keep_within_bounds(shaped, values)
         parts = relative_residuals(model, self.stretches)
         mark = weigh_residuals(self.stretches, [r for r, _ in parts]) - self.residual
-        mark = mark / self.measured if np.isfinite(mark).all() else np.zeros_like(mark)
-        return _Trial(shaped, model, factor, mark, mark - self.span @ (self.span.T @ mark))
+        if not np.isfinite(mark).all():
+            mark = np.zeros_like(mark)
+        rest = mark - self.span @ (self.span.T @ mark)
+        whole, part = (float(np.linalg.norm(y)) / self.measured for y in (mark, rest))
+        return _Trial(shaped, model, factor, mark, rest, whole, part)
 
     def best_shape(self, candidate: Candidate, shapes: Sequence[Model], factor: float) -> _Trial:
         """The most visible shape at equal strength, one that is not imitated if there is any."""
@@ -171,7 +166,7 @@ def _visibility(candidate: Candidate, scene: _Scene, unit: Mapping[str, float]) 
         {n: best.model.parameters[f"{place}.{n}"].value for n in effect.absent},
         best.unique_share,
         _list_imitators(best, scene.base),
-        best.rest / max(best.part, 1e-300),
+        best.rest / max(float(np.linalg.norm(best.rest)), 1e-300),
         best.whole < 1e-9,
     )
 
@@ -240,5 +235,5 @@ def _list_imitators(trial: _Trial, base: Fit) -> tuple[str, ...]:
     if not len(base.free) or trial.whole == 0.0:
         return ()
     shares = np.abs(np.linalg.lstsq(base.jacobian / size, trial.mark, rcond=1e-9)[0])
-    best = np.argsort(-shares)[:2]
-    return tuple(base.free[i] for i in best if shares[i] > trial.whole / 3)
+    best, whole = np.argsort(-shares)[:2], float(np.linalg.norm(trial.mark))
+    return tuple(base.free[i] for i in best if shares[i] > whole / 3)
