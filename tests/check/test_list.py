@@ -30,7 +30,7 @@ def log(force):
     )
 
 
-def test_each_check_has_a_place_of_its_own():
+def test_no_two_checks_have_the_same_place():
     assert max(Counter(check.order for check in CHECKS.values()).values()) == 1
 
 
