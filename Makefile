@@ -9,7 +9,7 @@ MUTATE ?= teleopdesign/effects tests/effects --number 10
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
 # what is run with the lowest versions: files, equations, compiled code, proofs, tables
-LOWEST_TESTS ?= tests/effects tests/measurement tests/realise tests/simulate tests/passivity/test_kyp.py \
+LOWEST_TESTS ?= tests/effects tests/measurement tests/check tests/realise tests/simulate tests/passivity/test_kyp.py \
 	tests/studies tests/tuning tests/plot tests/design tests/commands
 # processes at a time, of tests and of studies
 JOBS ?= 2

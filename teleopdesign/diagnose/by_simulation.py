@@ -28,10 +28,10 @@ from ..base.quantity import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .cores import map_in_threads
 from .error import force_error
-from .prepare import Prepared, prepare
 from .record_offsets import apply_record_offsets
 from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
 

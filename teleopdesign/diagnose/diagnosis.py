@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..base.by_value import ByValue
+from ..check import why_silent
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate, list_look_alikes
@@ -17,11 +19,9 @@ from .ladder_text import ladder_html, ladder_text, sentence
 from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
-from .prepare import Prepared
 from .ranking import Ranking
 from .repeats import Repeatability
 from .rung import Rung
-from .silent_records import why_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

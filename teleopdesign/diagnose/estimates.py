@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import prepare
 from ..model import Model
 from .corrected_fit import corrected_fit
 from .ladder_state import search_for
-from .prepare import prepare
 from .rank import rank_candidates
 from .ranking import Ranking
 from .stated_fit import estimate_stated
