@@ -71,7 +71,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from .base.folder_calls import let_folders_be_called
+from .base.folders import let_folders_be_called
 
 if TYPE_CHECKING:
     from . import app as app

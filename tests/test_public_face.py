@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.folder_calls import INSTEAD, VERBS
+from teleopdesign.base.folders import INSTEAD, VERBS
 
 ROOT = Path(td.__file__).parent
 TOP = {p.stem for p in ROOT.glob("*.py")} | {p.parent.name for p in ROOT.glob("*/__init__.py")}

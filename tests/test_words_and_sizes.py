@@ -50,6 +50,7 @@ CELLS = ("app/notebook",)
 MOST_LINES_OF_A_FILE = 310
 WHOLE = {
     "__init__": "the map of the package, and its names",
+    "base/units": "symbols, quantities and their units are one table",
     "app/notebook": "cells of one page, which marimo reads from one file",
     "realise/integrator": "one loop, compiled as a whole",
 }

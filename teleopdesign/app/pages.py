@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ..base.errors import TeleopDesignError
-from ..base.quantity import unit_after_number, unit_of
+from ..base.units import unit_after_number, unit_of
 from ..diagnose.comparison import residual_data
 from ..show.report.words import number, unit_text, with_error
 from .workbench import Workbench

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .by_value import ByValue
+from .frozen import ByValue
 from .notebook import html_table
 
 Array = NDArray[np.float64]

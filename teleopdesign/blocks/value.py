@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.arguments import instance, number
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..base.notebook import html_table
 
 #: half width of a 95 % interval in standard errors, for a normal distribution

@@ -10,8 +10,8 @@ import math
 from collections.abc import Iterator, Mapping
 
 from ..base.finding import Finding
-from ..base.quantity import unit_of
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.units import unit_of
 from ..diagnose.feedback_law import describe_computed
 from ..diagnose.prepare import Prepared
 from ..model import Model

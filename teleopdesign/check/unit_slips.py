@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 
 #: decades by which strengths may differ from those of a slip of units: a user's values are guesses
 NEAR = 0.5

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.plain_data import write_json
+from ..base.files import write_json
 from ._claims import claim_data, claim_lines
 from ._options import say_written
 from .derive import diagram_of

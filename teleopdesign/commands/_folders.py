@@ -11,7 +11,7 @@ from io import StringIO
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import harmless_cell, write_text
+from ..base.files import harmless_cell, write_text
 from . import STOPPED
 from ._diagnosis import candidate_effects, effects_by_name
 from ._failures import BAD_INPUT

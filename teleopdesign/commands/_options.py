@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import check_writable
+from ..base.files import check_writable
 from ._terminal import replace_line
 
 

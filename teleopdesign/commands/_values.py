@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 from ..base.errors import ExperimentError
-from ..base.quantity import AXES, QUANTITIES, to_si, unit_of
+from ..base.units import AXES, QUANTITIES, to_si, unit_of
 
 
 def value_from(text: str, *, quantity: str, axis: str, where: str) -> float:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ..base.by_name import ByName
 from ..base.errors import ModelError, did_you_mean
-from ..base.frozen import Frozen
+from ..base.frozen import ByName, Frozen
 from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
 from ..diagrams.short_form import kind_of
 from ..realise.tips import linear_tips

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..base.by_name import ByName
 from ..base.errors import ModelError
-from ..base.frozen import Frozen
+from ..base.frozen import ByName, Frozen
 from ..diagrams import Control, Diagram
 from ..realise.parted import linear_parted
 from ..realise.tips import linear_tips

@@ -7,7 +7,7 @@ design(find_missing(experiment))     # C, H, what they do, whether that is passi
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .assumptions import Assumptions as Assumptions

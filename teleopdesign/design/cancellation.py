@@ -11,8 +11,8 @@ import math
 from collections.abc import Iterable
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
-from ..base.rounding import round_down, round_up
+from ..base.sentences import round_down, round_up
+from ..base.units import unit_of
 from ..blocks import Body
 from ..controllers import controller, laws_that_declare
 from ..realise.acting_bound import largest_acting_force

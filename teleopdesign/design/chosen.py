@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..base.quantity import unit_after_number
+from ..base.units import unit_after_number
 from ..controllers import Controller
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from ..base.plain_data import make_plain
-from ..base.quantity import unit_of
+from ..base.files import make_plain
+from ..base.units import unit_of
 from ..passivity import Claim
 from .chosen import ProposedController
 from .felt_impedance import FeltImpedance

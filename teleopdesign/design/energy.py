@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagrams import Diagram
 from ..passivity import Claim, Evidence
 from ..realise.reach import Reach

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..base.quantity import unit_of
-from ..base.rounding import round_down, round_up
+from ..base.sentences import round_down, round_up
+from ..base.units import unit_of
 from ..blocks import Body
 from ..controllers import scheduled_force_feedback
 from ..realise.lti import S

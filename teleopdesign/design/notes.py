@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import say_floors
 from ..realise.friction_interval import FrictionInterval

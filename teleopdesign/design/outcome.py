@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.plain_data import write_json
-from ..base.toml_text import comment_text
+from ..base.files import write_json
+from ..base.frozen import ByValue
+from ..base.toml import comment_text
 from ..blocks import Body
 from ..diagrams import ANY, Attached, Block, Diagram, Moving, haptic_interface
 from ..diagrams.toml_writing import diagram_text

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..blocks import Body
 from ..controllers import Controller
 from ..diagrams import four_cases, haptic_interface

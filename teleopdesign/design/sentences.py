@@ -6,8 +6,8 @@ import math
 import textwrap
 from typing import TYPE_CHECKING
 
-from ..base.quantity import unit_of
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.units import unit_of
 
 if TYPE_CHECKING:
     from .outcome import Design  # a design prints itself through this module

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
-from ..base.rounding import round_down
+from ..base.sentences import round_down
+from ..base.units import unit_of
 from ..measurement.filtering import Array
 from ..realise.reach import Reach
 from ..simulate import Trajectory, sine

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from ..base.rounding import round_down, round_near, round_up
+from ..base.sentences import round_down, round_near, round_up
 from ..blocks import Body, Value
 from ..controllers import Controller
 from ..diagrams import haptic_interface

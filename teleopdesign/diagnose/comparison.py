@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
 from ..base.notebook import html_table
-from ..base.plain_data import write_netcdf
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..model import Model
 from ..realise.along_motion import residual_along

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import floors_left, is_adequate

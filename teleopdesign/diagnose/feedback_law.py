@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..effects import SIGNALS, Effect
 from ..measurement.experiment import Experiment
 from ..measurement.law_of_readings import LawOfReadings, law_of_readings

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..base.notebook import html_table
-from ..base.quantity import unit_after_number, unit_of
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.units import unit_after_number, unit_of
 from ..blocks import Value
 from ..measurement.bandwidth import slower_sensors
 from .adequacy import records_differ

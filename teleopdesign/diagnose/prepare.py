@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
 from ..measurement.bandwidth import bandwidth_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array, spectrum

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError
+from ..base.errors import ModelError, check_name
 from ..base.frozen import Frozen
-from ..base.names import check_name
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from .junctions import Junction, Kinematics, as_expression, check_names

@@ -10,8 +10,8 @@ from typing import Any
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_text
-from ..base.toml_text import inline_text, key_text, string_text
+from ..base.files import write_text
+from ..base.toml import inline_text, key_text, string_text
 from ..blocks import Body, Value, with_block_effects
 from ..controllers import CONTROLLERS, ControlLaw, Controller
 from ..effects import EFFECTS, Effect

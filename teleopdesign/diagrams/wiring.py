@@ -13,11 +13,10 @@ from typing import TypeGuard
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, check_name, did_you_mean
 from ..base.frozen import Frozen
-from ..base.names import check_name
 from ..base.notebook import html_table
-from ..base.quantity import QUANTITIES
+from ..base.units import QUANTITIES
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from .junctions import Junction, Kinematics, Weight, position_symbol

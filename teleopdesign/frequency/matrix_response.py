@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from ..derive.elimination import rows
 from ..derive.with_values import symbol_values
 from ..diagrams import Diagram, Moving

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis
 from ..realise.parted import simulated_parted

@@ -14,7 +14,7 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
-from ..base.plain_data import write_netcdf
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
 from ..derive import with_values
 from ..diagrams import Diagram
 from ..realise.lti import numerical

@@ -8,7 +8,7 @@ second opinion on the same data.
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .coulomb_level import CoulombLevel as CoulombLevel

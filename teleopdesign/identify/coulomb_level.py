@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
-from ..base.plain_data import make_plain, write_json
-from ..base.quantity import unit_of
-from ..base.standard_error import with_standard_error
+from ..base.files import make_plain, write_json
+from ..base.frozen import ByValue
+from ..base.sentences import with_standard_error
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from .mean_error import mean_error

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
+from ..base.frozen import ByValue
+from ..base.units import unit_of
 from ..blocks import Body
 from ..diagrams import Diagram
 from ..simulate import Sampling, Simulation, simulate

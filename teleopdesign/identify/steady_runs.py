@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions

@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..base.notebook import html_table
 from .channel import Channel, conversion_to_si, factor_of
 from .description import BodyDescription

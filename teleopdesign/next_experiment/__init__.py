@@ -8,7 +8,7 @@ show_in_simulation(proposal)                # each rival is made the truth, and 
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .arm_paths import ArmPaths as ArmPaths

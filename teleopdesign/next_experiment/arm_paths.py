@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arms.base_parameters import BaseParameters, base_parameters, columns_with_motors
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
 from ..diagnose import ArmDiagnosis
 from ..measurement.filtering import Array
 from .limits import Limits, shown_limits

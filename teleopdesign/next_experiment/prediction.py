@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagnose.error import error_of
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import Fit, estimate

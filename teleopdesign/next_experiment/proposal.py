@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ..base.by_value import ByValue
 from ..base.finding import Finding
+from ..base.frozen import ByValue
 from ..diagnose.diagnosis import Diagnosis
 from ..measurement.filtering import Array
 from .limits import Limits

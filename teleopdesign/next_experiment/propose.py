@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.errors import ModelError, did_you_mean
-from ..base.quantity import si_factor
+from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.sensors import sensors_of
 from ..measurement.experiment import Experiment

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.plain_data import harmless_cell, write_beside
-from ..base.quantity import si_factor
+from ..base.files import harmless_cell, write_beside
+from ..base.units import si_factor
 from ..measurement.experiment import Experiment
 from .proposal import Reference
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks.body import INERTIA
 from ..diagnose.fit import fit_squares
 from ..diagnose.least_squares import solve_normal

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.files import make_plain
 from ..base.finding import Finding, Graph, Series
-from ..base.plain_data import make_plain
-from ..base.quantity import si_factor
+from ..base.units import si_factor
 from ..diagnose.noise_floor import say_floors
 from ..diagnose.open_questions import open_questions
 from .prediction import DECIDES, SAME

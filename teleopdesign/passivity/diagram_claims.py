@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from ..base.notebook import html_table
 from ..diagrams import Diagram
 from .claims.claim import Claim, Proof, Refutation, Unknown

@@ -17,8 +17,8 @@ import numpy as np
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from ..derive import symbol_values, two_port_functions
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, ModelError
-from ..base.plain_data import write_netcdf
-from ..base.standard_error import with_standard_error
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
+from ..base.sentences import with_standard_error
 from ..blocks import NINETY_FIVE
 from ..measurement import Experiment, Record
 from ..simulate import Simulation

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from .claims.claim import Claim
 
 

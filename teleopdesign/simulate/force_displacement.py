@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.plain_data import write_json, write_netcdf
+from ..base.files import write_json, write_netcdf
+from ..base.frozen import ByValue
 from .simulation import Simulation
 
 if TYPE_CHECKING:

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..base.by_name import ByName
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
+from ..base.files import write_beside, write_netcdf
+from ..base.frozen import ByName, ByValue
 from ..base.notebook import html_table
-from ..base.plain_data import write_beside, write_netcdf
 from ..diagrams import Diagram
 from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling

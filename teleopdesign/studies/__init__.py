@@ -15,7 +15,7 @@ result.plot.map("force_error")
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .case import SimulatedCase as SimulatedCase

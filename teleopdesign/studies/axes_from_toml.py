@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.toml_table import Table, describe_toml_value
+from ..base.toml import Table, describe_toml_value
 from .samples import (
     Samples,
     latin_hypercube,

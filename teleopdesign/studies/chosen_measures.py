@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import instance, number
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
 from ..base.expectations import describe_value
+from ..base.frozen import ByValue
 from .measures import MEASURES
 from .point import Amount, Point, PointFunction
 from .points import check_name

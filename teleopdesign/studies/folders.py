@@ -13,9 +13,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, ModelError
-from ..base.whole_files import follow_links
+from ..base.files import follow_links
+from ..base.frozen import ByValue
 from ..effects import EFFECTS, Effect
 from ..measurement.files import content_digest
 from .chosen_measures import measures_of

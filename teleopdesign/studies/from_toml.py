@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
-from ..base.toml_table import Table, describe_toml_value, read_toml
+from ..base.toml import Table, describe_toml_value, read_toml
 from ..controllers import CONTROLLERS, ControlLaw
 from ..diagrams import Diagram, read_diagram
 from ..effects import EFFECTS, Effect

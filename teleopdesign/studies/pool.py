@@ -17,7 +17,7 @@ from functools import cached_property
 from typing import Any
 
 from ..base.errors import ModelError
-from ..base.process_copies import shield_from_ctrl_c
+from ..base.machine import shield_from_ctrl_c
 from .evaluate import StudyTask
 from .frames import receive, send
 from .outcomes import PointOutcome

@@ -9,8 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 
-from ..base.core_count import count_cores
-from ..base.process_copies import can_copy
+from ..base.machine import can_copy, count_cores
 from .evaluate import StudyTask
 from .one_thread import one_thread
 from .pool import Pool, Sink

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..base.rounding import duration_text
+from ..base.sentences import duration_text
 from .outcomes import PointOutcome
 
 #: s between two reports: as often as one can read

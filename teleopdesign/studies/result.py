@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_name import ByName
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.files import write_beside
+from ..base.frozen import ByName, ByValue
 from ..base.notebook import html_table
-from ..base.plain_data import write_beside
 from .hdf5_trial import read_on_trial
 from .outcomes import PointOutcome
 from .points import SAMPLE, Points

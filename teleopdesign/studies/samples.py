@@ -13,9 +13,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
 from ..base.expectations import describe_value
+from ..base.frozen import ByValue
 
 Method = Literal["latin_hypercube", "sobol", "random", "sensitivity"]
 #: most points of one sample: 8 bytes each and parameter, 0.8 GB for ten parameters

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from typing import BinaryIO
 
-from ..base.process_copies import forbid_copies
+from ..base.machine import forbid_copies
 from .evaluate import StudyTask
 from .frames import receive, send
 from .outcomes import as_row

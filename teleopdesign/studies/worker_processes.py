@@ -19,7 +19,7 @@ from functools import partial
 from typing import BinaryIO, cast
 
 from ..base.errors import ModelError, TeleopDesignError
-from ..base.process_copies import Copy, can_copy, has_hidden_threads
+from ..base.machine import Copy, can_copy, has_hidden_threads
 from .evaluate import StudyTask
 from .one_thread import ONE_THREAD, one_thread
 

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, UnstableLoop, did_you_mean
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.units import unit_after_number
 from ..diagrams import Diagram
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from ..passivity.intervals.box import ValueBox

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import ByValue
 from ..measurement import Record
 from ..measurement.from_arrays import log_of
 from ..simulate import Simulation, Trajectory, sampled_motion

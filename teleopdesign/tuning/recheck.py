@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..base.by_value import ByValue
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.units import unit_after_number
 from ..passivity.intervals.linear import CLAIMS
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.intervals.worst import search_worst

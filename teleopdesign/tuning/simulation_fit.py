@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from ..base.notebook import html_table
-from ..base.quantity import unit_after_number
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.units import unit_after_number
 from ..diagrams import Diagram
 from ..passivity.intervals.box import ValueBox
 from ..simulate import Sampling

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.units import unit_after_number
 from ..diagrams import Diagram
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED

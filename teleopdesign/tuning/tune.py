@@ -24,10 +24,10 @@ from typing import Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from ..base.notebook import html_table
-from ..base.quantity import unit_after_number
+from ..base.units import unit_after_number
 from ..diagrams import Diagram
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED

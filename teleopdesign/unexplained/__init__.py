@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import check_arguments
-from ..base.by_value import ByValue
 from ..base.finding import Finding
+from ..base.frozen import ByValue
 from ..diagnose.fit import Fit
 from ..diagnose.noise_floor import NoiseFloor
 from ..diagnose.prepare import Prepared, prepare

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.quantity import unit_after_number, unit_of
+from ..base.units import unit_after_number, unit_of
 
 #: quantities that are written in thousandths of their unit up to one unit
 _LENGTHS = ("position", "velocity")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..base.plain_data import make_plain
-from ..base.quantity import unit_of
+from ..base.files import make_plain
+from ..base.units import unit_of
 from .description import BodyResidual, DescribedDependence
 from .sentences import formula_text
 

@@ -10,7 +10,7 @@ import textwrap
 from pathlib import Path
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_text
+from ..base.files import write_text
 from ..diagnose.prepare import Prepared
 from ..diagnose.scales import scales
 from .amounts import describe_span

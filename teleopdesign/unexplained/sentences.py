@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.filtering import Array
 from .amounts import amount, describe_span, number
 from .curve import Curve

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.finding import Graph, Series
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.filtering import Array
 from .amounts import unit_for
 from .curve import BAND, BINS, Curve

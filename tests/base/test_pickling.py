@@ -12,9 +12,8 @@ import pytest
 from example_objects import BODY, LAW, QUICK, SLOW
 
 import teleopdesign as td
-from teleopdesign.base.by_value import is_same
 from teleopdesign.base.finding import Finding
-from teleopdesign.base.frozen import Catalogue, Frozen
+from teleopdesign.base.frozen import Catalogue, Frozen, is_same
 
 EVERY = [
     *(pytest.param(make, id=name) for name, make in QUICK.items()),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ...measurement.experiment import Experiment
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ...base.finding import Finding
-from ...base.quantity import si_factor
+from ...base.units import si_factor
 from ..channel import BODY_QUANTITIES
 from ..encoder import reading_step
 from ..filtering import Array

@@ -11,7 +11,7 @@ from scipy.ndimage import maximum_filter1d
 from scipy.special import ndtri
 
 from ...base.finding import Graph, Series
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from ..channel import BODY_QUANTITIES, Channel
 from ..description import ONE_BODY
 from ..encoder import reading_step

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ...base.quantity import is_unit
+from ...base.units import is_unit
 from ..column_names import likeness, words_of
 from .axes import same_but_axis
 from .content import (

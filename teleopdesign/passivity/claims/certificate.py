@@ -17,7 +17,7 @@ import sympy as sp
 
 from ...base.arguments import check_types
 from ...base.errors import ModelError
-from ...base.plain_data import write_text
+from ...base.files import write_text
 from ..checker import Refused, check, load
 
 #: one term of an identity, (weight, factor -> power, e): weight * product of factor^power * e^2

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from ...base.by_value import ByValue
 from ...base.errors import ModelError
+from ...base.frozen import ByValue
 from ...base.notebook import html_table
 from .certificate import Certificate
 

@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ...base.notebook import html_table
-from ...base.quantity import unit_after_number
+from ...base.units import unit_after_number
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
 from .box import ValueBox

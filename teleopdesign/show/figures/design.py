@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...base.plain_data import write_beside
+from ...base.files import write_beside
 from .letters import house_style
 
 if TYPE_CHECKING:

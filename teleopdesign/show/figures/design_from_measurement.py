@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from .design import CASES, TWO_COLUMNS, unit_text
 from .letters import house_style
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from .design import ONE_COLUMN, unit_text
 from .letters import house_style
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...base.files import make_plain, write_text
 from ...base.finding import Finding
-from ...base.plain_data import make_plain, write_text
 from ...diagnose import ArmDiagnosis
 from ...diagnose.arms.answer import arm_answer
 from ...diagnose.diagnosis import Diagnosis

@@ -16,8 +16,8 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from ...base.files import write_text
 from ...base.finding import Finding
-from ...base.plain_data import write_text
 from ...diagnose import Diagnosis
 from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
 from .page import Page, page_data, page_of

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ....base.plain_data import write_text
+from ....base.files import write_text
 from .figure import figure
 from .shapes import SheetShape
 from .svg import svg

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError, nearest
-from teleopdesign.base.quantity import (
+from teleopdesign.base.units import (
     AXES,
     QUANTITIES,
     converting_factor,

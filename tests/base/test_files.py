@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.plain_data import json_text, make_plain, write_beside, write_json, write_text
+from teleopdesign.base.files import json_text, make_plain, write_beside, write_json, write_text
 
 NUMBERS = st.floats() | st.integers() | st.floats(width=32).map(np.float32) | st.booleans()
 LEAVES = NUMBERS | st.text() | st.none() | st.lists(st.floats()).map(np.array)

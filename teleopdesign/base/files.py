@@ -1,4 +1,8 @@
-"""Results as plain data and as files: one function makes JSON, and one writes to the disk.
+"""Whole files, and results as plain data: one function makes JSON, and one writes to the disk.
+
+A pipe that nobody writes into would stop a reader for ever, and a device such as /dev/zero would
+fill the memory: reading has limits on waiting time and size. A pipe from a shell, `<(command)`, is
+read like a file.
 
 A file is written under another name beside its target and is renamed when it is complete. A reader
 never meets an incomplete file, and the old file stays where writing fails.
@@ -7,21 +11,64 @@ never meets an incomplete file, and the old file stays where writing fails.
 from __future__ import annotations
 
 import dataclasses
+import errno
 import json
 import math
 import os
+import select
 from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-import numpy as np
-
 from .errors import ExperimentError
 
 if TYPE_CHECKING:
     import xarray
+
+
+#: most bytes of a file: an answer with all arrays has some MiB, and reading a larger one as JSON
+#: would take gigabytes of memory
+LARGEST = 1 << 28
+#: s without a byte from a pipe that someone holds open
+_PATIENCE = 10.0
+_BLOCK = 1 << 20
+
+
+def read_whole(path: str | Path, *, largest: int = LARGEST) -> bytes:
+    """The bytes of a file.
+
+    largest: limit on the number of bytes
+    raises OSError: as `open` does; more bytes than `largest`; a pipe from which nothing comes
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    blocks, size = list[bytes](), 0
+    with open(os.open(path, flags), "rb", buffering=0) as file:
+        while (block := _next_block(file.fileno())) and size <= largest:
+            blocks.append(block)
+            size += len(block)
+    if size > largest:
+        raise OSError(errno.EFBIG, f"more than {largest >> 20} MiB")
+    return b"".join(blocks)
+
+
+def follow_links(path: Path) -> Path:
+    """The path without symbolic links; a link in a ring stays, and is not a file then.
+
+    `Path.resolve` raises RuntimeError there, and OSError from Python 3.13 on.
+    """
+    return Path(os.path.realpath(path))
+
+
+def _next_block(file: int) -> bytes:
+    while True:
+        try:
+            return os.read(file, _BLOCK)
+        except BlockingIOError:
+            if not select.select([file], [], [], _PATIENCE)[0]:
+                raise OSError(errno.ETIMEDOUT, f"nothing came for {_PATIENCE:g} s") from None
+
 
 _TRIAL = 4096  # bytes of a trial of writing: one block, which a full disk does not have
 
@@ -40,20 +87,19 @@ def make_plain(value: object, *, digits: int | None = None) -> Any:
         return {f.name: make_plain(getattr(value, f.name), digits=digits) for f in fields}
     if isinstance(value, Mapping):
         return {str(k): make_plain(v, digits=digits) for k, v in value.items()}
-    if isinstance(value, np.ndarray):
-        listed = value.tolist()  # of a 0-dimensional array: its number
-        return _round(listed, digits) if digits is not None else make_plain(listed)
+    if hasattr(value, "dtype") and hasattr(value, "tolist"):  # an array, or a number of numpy
+        listed = value.tolist()
+        rounds = digits is not None and isinstance(listed, list)
+        return _round(listed, digits) if rounds else make_plain(listed)
     if isinstance(value, list | tuple):
         return [make_plain(v, digits=digits) for v in value]
     if isinstance(value, Set):
         return [make_plain(v, digits=digits) for v in sorted(value)]
     if value is None or isinstance(value, str):
         return value if value is None else str(value)
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    if isinstance(value, float | np.floating):
+    if isinstance(value, int):  # True and False are such numbers
+        return value if isinstance(value, bool) else int(value)
+    if isinstance(value, float):
         return float(value) if math.isfinite(value) else None
     if isinstance(value, PurePath):
         return str(value)
@@ -142,7 +188,7 @@ def harmless_cell(text: str) -> str:
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
-def _round(value: Any, digits: int) -> Any:
+def _round(value: Any, digits: int | None) -> Any:
     if isinstance(value, list):
         return [_round(v, digits) for v in value]
     if isinstance(value, float) and math.isfinite(value):

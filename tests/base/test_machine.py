@@ -1,14 +1,26 @@
-"""Machine code that is kept on disk is made anew where anything that it holds has changed."""
+"""Cores and workers of this process, and machine code that is kept on disk."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from teleopdesign.base.machine_code import hash_files, list_files_of_callees
+from teleopdesign.base.machine import count_cores, count_workers, hash_files, list_files_of_callees
 from teleopdesign.measurement import zero_phase, zero_phase_spans
 from teleopdesign.realise import balance, compiled, lane_exp
+
+
+def test_cores_are_counted_where_the_system_tells_none_for_the_process(monkeypatch):
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    assert count_cores() == (os.cpu_count() or 1)
+
+
+@pytest.mark.parametrize(("allowed", "count"), [("1", 1), ("3", 3), ("0", None), ("x", None)])
+def test_workers_are_as_many_as_numba_may_have_threads(allowed, count, monkeypatch):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", allowed)
+    assert count_workers() == (count or count_cores())
 
 
 def test_what_a_compiled_function_calls_in_other_files_counts_for_it():
@@ -40,7 +52,7 @@ def test_a_file_that_is_gone_counts_as_empty(tmp_path):
     assert hash_files([there]) != hash_files([])
 
 
-INNER = """from teleopdesign.base.machine_code import compile_and_keep
+INNER = """from teleopdesign.base.machine import compile_and_keep
 
 
 @compile_and_keep
@@ -48,7 +60,7 @@ def inner(x):
     return {factor} * x
 """
 OUTER = """from inner import inner
-from teleopdesign.base.machine_code import compile_and_keep
+from teleopdesign.base.machine import compile_and_keep
 
 
 @compile_and_keep

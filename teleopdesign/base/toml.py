@@ -1,5 +1,11 @@
-"""A table of a TOML file, read strictly: an unknown, missing or wrongly typed key is an error."""
+"""TOML: tables that are read strictly, and text for all functions that write a file.
 
+An unknown, missing or wrongly typed key is an error.
+"""
+
+from __future__ import annotations
+
+import json
 import math
 import re
 import tomllib
@@ -8,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
-from .errors import ExperimentError, did_you_mean, quote
-from .whole_files import read_whole
+from .errors import ExperimentError, did_you_mean, printable, quote
+from .files import read_whole
 
 
 @final
@@ -41,7 +47,7 @@ class Table:
                     f"expected {listed}{did_you_mean(key, known)}"
                 )
 
-    def table(self, key: str) -> "Table":
+    def table(self, key: str) -> Table:
         """The table under `key`; an empty one if the key is absent.
 
         raises ExperimentError: no table
@@ -51,7 +57,7 @@ class Table:
             raise self._wrong_type(key, "a table")
         return Table(value, self.file, ".".join(part for part in (self.key, key) if part))
 
-    def tables(self, key: str) -> tuple["Table", ...]:
+    def tables(self, key: str) -> tuple[Table, ...]:
         """The tables of the array `[[key]]`, each with its number (from 1) in its key."""
         value = self.content.get(key, [])
         if not isinstance(value, list) or not all(isinstance(row, dict) for row in value):
@@ -160,3 +166,24 @@ def read_toml(path: Path, file: str) -> Table:
         raise ExperimentError(f"{file}: brackets nested too deeply") from None
     except ValueError as problem:  # TOMLDecodeError, and numbers too long to convert
         raise ExperimentError(f"{file}: not valid TOML: {problem}") from None
+
+
+def string_text(text: str) -> str:
+    """A basic string of TOML: as in JSON, with one more control character escaped."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def key_text(name: str) -> str:
+    """A key of TOML: bare where TOML allows it, else in quotes."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else string_text(name)
+
+
+def comment_text(text: str) -> str:
+    """A TOML comment on one line; control characters, which TOML forbids there, are escaped."""
+    return f"# {printable(text, keep=chr(9))}".rstrip()
+
+
+def inline_text(entries: Mapping[str, str]) -> str:
+    """An inline table; keys and values are TOML text already."""
+    inside = ", ".join(f"{key} = {value}" for key, value in entries.items())
+    return f"{{ {inside} }}" if inside else "{}"
