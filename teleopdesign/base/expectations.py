@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from .errors import did_you_mean, quote
+from .sentences import join_names
 
 _LONGEST = 60  # characters of a value that a message repeats
 
@@ -170,10 +171,7 @@ def _make_any_check(parts: tuple[Any, ...]) -> TypeCheck | None:
             return deeper[0]
         words = [w for w in dict.fromkeys(w.expected for w in wrong) if w != "None"]
         hints = [w.hint for w in wrong if w.hint]
-        listed = ", ".join(words[:-1])
-        return WrongValue(
-            "", value, f"{listed} or {words[-1]}" if listed else words[-1], *hints[:1]
-        )
+        return WrongValue("", value, join_names(words, "or"), *hints[:1])
 
     return check
 

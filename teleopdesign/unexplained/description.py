@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.finding import Finding, Graph
+from ..base.sentences import number
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
 from ..model import Model
-from .amounts import number
 from .curve import Curve, curve_of, without_columns
 from .dependence import ALARM, Dependence, dependences, model_columns
 from .formula import Formula, formula_for

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ..base.sentences import amount, number, span
 from ..base.units import unit_of
 from ..measurement.filtering import Array
-from .amounts import amount, describe_span, number
 from .curve import Curve
 from .formula import Formula
 from .library import FormulaTerm
@@ -62,7 +62,7 @@ def place(region: SignRegion, variable: Variable, axis: str) -> str:
 def _range(region: SignRegion, variable: Variable, axis: str, before: str = "") -> str:
     q = variable.quantity
     if math.isfinite(region.low) and math.isfinite(region.high):
-        return f"{before}between {describe_span(region.low, region.high, q, axis)}"
+        return f"{before}between {span(region.low, region.high, q, axis)}"
     if math.isfinite(region.high):
         return f"{before}below {amount(region.high, q, axis)}"
     if math.isfinite(region.low):
@@ -75,7 +75,7 @@ def _describe_since(region: SignRegion, variable: Variable, axis: str) -> str:
     if variable.name == "travel":
         after += " after it sets off"
     if math.isfinite(region.low) and math.isfinite(region.high):
-        return f"between {describe_span(region.low, region.high, q, axis)}{after}"
+        return f"between {span(region.low, region.high, q, axis)}{after}"
     if math.isfinite(region.high):
         first = "in the first" if variable.name == "time" else "within"
         return f"{first} {amount(region.high, q, axis)}{after}"

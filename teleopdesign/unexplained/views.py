@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.finding import Graph, Series
+from ..base.sentences import readable_unit
 from ..base.units import unit_of
 from ..measurement.filtering import Array
-from .amounts import unit_for
 from .curve import BAND, BINS, Curve
 from .rows import Rows
 from .shapes import Shape
@@ -52,7 +52,7 @@ def label(words: str, quantity: str, axis: str, largest: float = np.inf) -> tupl
     if quantity == "acceleration" or not np.isfinite(largest):
         unit = unit_of(quantity, axis).replace("*", " ").replace("^2", "²")
         return 1.0, f"{words} ({unit})"
-    factor, unit = unit_for(quantity, axis, largest)
+    factor, unit = readable_unit(quantity, axis, largest)
     return factor, f"{words} ({unit})"
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...base.files import write_beside
+from ...base.sentences import unit_at_axis
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -56,11 +57,6 @@ def symbol(name: str) -> str:
     return name.replace("_", " ")
 
 
-def unit_text(unit: str) -> str:
-    """A unit as printed at an axis."""
-    return unit.replace("*", r"$\,$").replace("^2", "²")
-
-
 def save_figure(
     figure: matplotlib.figure.Figure,
     path: str | Path,
@@ -95,8 +91,8 @@ def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
 
     data = result.data
     cases = [str(c) for c in data["case"].values]
-    unit = unit_text(data["force"].attrs["units"])
-    speed = unit_text(data["velocity"].attrs["units"])
+    unit = unit_at_axis(data["force"].attrs["units"])
+    speed = unit_at_axis(data["velocity"].attrs["units"])
     largest = float(abs(data["force"]).max())
     limit = 1.0 if 0.4 < largest <= 1.0 else 1.15 * largest
     with plt.style.context(house_style()):
@@ -139,7 +135,7 @@ def plot_simulation(
         for name, axis in zip(shown, axes[:, 0], strict=True):
             signal = simulation[name]
             axis.plot(signal["time"].values, signal.values)
-            axis.set_ylabel(f"{symbol(name)} ({unit_text(signal.attrs['units'])})")
+            axis.set_ylabel(f"{symbol(name)} ({unit_at_axis(signal.attrs['units'])})")
             axis.grid(True)
         axes[-1, 0].set_xlabel("time (s)")
         figure.align_ylabels()

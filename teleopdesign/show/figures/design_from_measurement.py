@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
-from .design import CASES, TWO_COLUMNS, unit_text
+from .design import CASES, TWO_COLUMNS
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -44,18 +45,18 @@ def _force_error(axis: Axes, design: Design) -> None:
         colour, line, _ = CASES[case]
         one = data.sel(case=case)
         axis.plot(one["velocity"].values, one["force"].values, color=colour, linestyle=line, lw=0.8)
-    force, speed = (unit_text(data[n].attrs["units"]) for n in ("force", "velocity"))
+    force, speed = (unit_at_axis(data[n].attrs["units"]) for n in ("force", "velocity"))
     axis.set_xlabel(f"velocity ({speed})")
     axis.set_ylabel(rf"force error $R_D - R_M$ ({force})")
 
 
 def _residual(axis: Axes, design: Design) -> None:
-    unit = unit_text(unit_of("force", design.body.axis))
+    unit = unit_at_axis(unit_of("force", design.body.axis))
     for case, row in design.residual.rows.items():
         colour, line, label = CASES[case]
         axis.semilogx(design.residual.speeds, row, color=colour, linestyle=line, label=label)
     axis.set_ylim(bottom=min(0.0, *(float(r.min()) for r in design.residual.rows.values())))
-    axis.set_xlabel(f"speed ({unit_text(unit_of('velocity', design.body.axis))})")
+    axis.set_xlabel(f"speed ({unit_at_axis(unit_of('velocity', design.body.axis))})")
     axis.set_ylabel(f"friction left ({unit})")
     axis.grid(True)
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
-from .design import unit_text
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def check_rows(data: Any) -> Any:
 
 def label_of(data: Any, name: str) -> str:
     """Name and unit of a variable of residual data, for an axis."""
-    return f"{name} ({unit_text(data[name].attrs['units'])})"
+    return f"{name} ({unit_at_axis(data[name].attrs['units'])})"
 
 
 def draw_by_direction(ax: Axes, data: Any, over: str) -> None:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
-from .design import ONE_COLUMN, unit_text
+from .design import ONE_COLUMN
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def plot_force_velocity_curve(level: CoulombLevel) -> Figure:
                 speed = np.array([0.0, max(abs(r.velocity) for r in level.runs)])
                 force = way * (line.level + line.damping * speed)
                 axis.plot(way * speed, force, color="#0072B2", label="line" if way > 0 else None)
-        axis.set_xlabel(f"velocity ({unit_text(unit_of('velocity', level.axis))})")
-        axis.set_ylabel(f"force that moves it ({unit_text(unit_of('force', level.axis))})")
+        axis.set_xlabel(f"velocity ({unit_at_axis(unit_of('velocity', level.axis))})")
+        axis.set_ylabel(f"force that moves it ({unit_at_axis(unit_of('force', level.axis))})")
         axis.legend(loc="lower right")
     return figure

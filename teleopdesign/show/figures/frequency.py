@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, TWO_COLUMNS, unit_text
+from ...base.sentences import unit_at_axis
+from .design import ONE_COLUMN, TWO_COLUMNS
 from .frequency_axes import (
     PageColumns,
     legend_below,
@@ -61,7 +62,7 @@ def plot_bode(
                 lower.plot(f, _unwrap_beside(part["phase"], response, name), **style)
         unit = response.data["magnitude"].attrs["units"]
         upper.set_ylabel(
-            "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_text(unit)})"
+            "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_at_axis(unit)})"
         )
         lower.set_ylabel("phase (deg)")
         mark_degrees(lower)
@@ -104,7 +105,7 @@ def plot_nyquist(
         low, high = axis.get_xlim()
         if unit == "1" and low < -1 < high:
             axis.plot(-1, 0, "+", color="#000000", markersize=6)
-        beside = "" if unit == "1" else f" ({unit_text(unit)})"
+        beside = "" if unit == "1" else f" ({unit_at_axis(unit)})"
         axis.set_xlabel(f"real part{beside}")
         axis.set_ylabel(f"imaginary part{beside}")
         (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from .design import unit_text
+from ...base.sentences import unit_at_axis
 from .frequency_axes import (
     PageColumns,
     legend_below,
@@ -48,7 +48,7 @@ def plot_impedance(
                 dotted = one is result and model is not None
                 _impedance_lines((upper, lower), one, against, dotted=dotted)
         x, label = _scale(result, against)
-        unit = unit_text(result.decibel.attrs["units"])
+        unit = unit_at_axis(result.decibel.attrs["units"])
         upper.set_ylabel(rf"$|\hat Z_M|$ ({unit})")
         lower.set_ylabel(r"phase of $\hat Z_M$ (deg)")
         lower.set_ylim(0, 360)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, unit_text
+from ...base.sentences import unit_at_axis
+from .design import ONE_COLUMN
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -31,8 +32,8 @@ def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
         colours = axes.pcolormesh(x, y, shown, cmap="RdBu", vmin=-_LARGEST, vmax=_LARGEST)
         if shown.min() < 0 < shown.max():
             axes.contour(x, y, shown, levels=[0.0], colors="black")
-        axes.set_xlabel(f"{second} ({unit_text(margin[second].units)})")
-        axes.set_ylabel(f"{first} ({unit_text(margin[first].units)})")
+        axes.set_xlabel(f"{second} ({unit_at_axis(margin[second].units)})")
+        axes.set_ylabel(f"{first} ({unit_at_axis(margin[first].units)})")
         bar = figure.colorbar(colours, ax=axes)
         bar.set_label("least Llewellyn margin on the axis (1)")
     return figure

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, unit_text
+from ...base.sentences import unit_at_axis
+from .design import ONE_COLUMN
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def plot_normalised_force(
 
     data = curves.data
     cases = [str(c) for c in data["case"].values]
-    speed = unit_text(data["velocity"].attrs["units"])
+    speed = unit_at_axis(data["velocity"].attrs["units"])
     with plt.style.context(house_style()):
         figure, (upper, lower) = plt.subplots(
             2, 1, figsize=(ONE_COLUMN, 4.2), height_ratios=(1.0, 2.0)

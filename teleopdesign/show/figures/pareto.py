@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, unit_text
+from ...base.sentences import unit_at_axis
+from .design import ONE_COLUMN
 from .letters import house_style
 from .study_data import words
 
@@ -35,7 +36,7 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
         axes.set_xlim(right=min(axes.get_xlim()[1], _farthest(x)))
         axes.set_ylim(top=min(axes.get_ylim()[1], _farthest(y)))
         first, second = (
-            f"{words(name)} ({unit_text(unit or '1')})"
+            f"{words(name)} ({unit_at_axis(unit or '1')})"
             for name, unit in zip(front.names, front.units, strict=True)
         )
         axes.set_xlabel(first)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, symbol, unit_text
+from ...base.sentences import unit_at_axis
+from .design import ONE_COLUMN, symbol
 from .letters import house_style
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
             above, below = axes[2 * k, 0], axes[2 * k + 1, 0]
             measured = fitted.data[f"{name}_measured"]
             simulated = fitted.data[f"{name}_simulated"].values
-            unit = unit_text(measured.attrs["units"])
+            unit = unit_at_axis(measured.attrs["units"])
             above.plot(time, measured.values, ".", color=GREY, markersize=1.5, label="measured")
             above.plot(time, simulated, color=FITTED, label="simulated")
             above.set_ylabel(f"{symbol(name)} ({unit})")

@@ -12,7 +12,8 @@ import numpy as np
 from ...base.arguments import number as number_of
 from ...base.errors import ModelError, did_you_mean
 from ...base.expectations import describe_value
-from .design import symbol, unit_text
+from ...base.sentences import unit_at_axis
+from .design import symbol
 
 if TYPE_CHECKING:
     import xarray
@@ -42,7 +43,9 @@ class StudyData:
 
     def name_with_value(self, name: str, value: Any) -> str:
         """The text "parameter = value unit"."""
-        unit = "" if isinstance(value, str) else unit_text(self.data[name].attrs.get("units", ""))
+        unit = (
+            "" if isinstance(value, str) else unit_at_axis(self.data[name].attrs.get("units", ""))
+        )
         return f"{self.name(name)} = {number(value)} {unit}".rstrip()
 
     def is_number(self, *names: str) -> bool:
@@ -134,7 +137,7 @@ def label(array: xarray.DataArray) -> str:
     """Name and unit of an array, for an axis."""
     unit = array.attrs.get("units", "")
     name = words(array.attrs.get("long_name") or str(array.name))
-    return f"{name} ({unit_text(unit)})" if unit else name
+    return f"{name} ({unit_at_axis(unit)})" if unit else name
 
 
 def words(name: str) -> str:
