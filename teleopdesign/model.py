@@ -12,8 +12,8 @@ from functools import cached_property
 from .base.arguments import check_types, describe_value, instance
 from .base.errors import ExperimentError, ModelError, did_you_mean
 from .base.frozen import Frozen
-from .base.notebook import html_table
 from .base.sentences import with_standard_error
+from .base.shown import html_table
 from .base.units import unit_after_number
 from .blocks import CONTACT, Body, Value
 from .blocks.described import free_body_of, joint_with_links, with_environment

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .frozen import ByValue
-from .notebook import html_table
+from .shown import html_table
 
 Array = NDArray[np.float64]
 

@@ -152,7 +152,7 @@ class ByValue:
     def __init_subclass__(cls) -> None:
         # a dataclass writes a `__repr__` with every number of an array where the class has none
         if cls.__repr__ is object.__repr__:
-            cls.__repr__ = _repr_by_fields  # type: ignore[method-assign]
+            cls.__repr__ = repr_by_fields  # type: ignore[method-assign]
 
     def __eq__(self, other: object) -> bool:
         return is_same(self, other) if type(self) is type(other) else NotImplemented
@@ -163,7 +163,8 @@ class ByValue:
         return hash((type(self), *(v for v in plain if isinstance(v, str | int))))
 
 
-def _repr_by_fields(self: Any) -> str:
+def repr_by_fields(self: Any) -> str:
+    """A dataclass by its fields, with shape and range in place of an array's numbers."""
     shown = (f"{f.name}={_shorten(getattr(self, f.name))}" for f in fields(self) if f.repr)
     return f"{type(self).__qualname__}({', '.join(shown)})"
 

@@ -121,8 +121,8 @@ def run(options: argparse.Namespace) -> int:
     experiment = load_experiment(folder)
     print()
     print(experiment)
-    from ..show.figures.letters import explain_boxes
     from ..show.figures.log import draw_survey, save_survey
+    from ..show.figures.style import explain_boxes
 
     picture = folder / "understood.png"
     save_survey(draw_survey(survey, experiment), picture)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..base.shown import Shown
 from ..base.units import unit_after_number
 from ..controllers import Controller
 
@@ -23,7 +24,7 @@ class Reason:
 
 
 @dataclass(frozen=True)
-class ProposedController:
+class ProposedController(Shown):
     """A controller and the reasons for its numbers.
 
     controller: stages in series, parameters in SI;  reasons: one for each chosen parameter
@@ -36,7 +37,3 @@ class ProposedController:
     def law(self) -> str:
         """Name of the first law of the controller."""
         return self.controller.stages[0].law.name
-
-    def __repr__(self) -> str:
-        names = ", ".join(stage.law.name for stage in self.controller.stages)
-        return "\n".join([names, *(f"  {r}" for r in self.reasons)])

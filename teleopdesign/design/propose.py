@@ -28,7 +28,6 @@ from .felt_impedance import felt_impedance
 from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .from_answer import DiagnosedModel, diagnosed_model
 from .linear import transparency
-from .notes import notes_on
 from .outcome import Design
 from .prediction import Prediction, predict
 from .reach import reach_of
@@ -92,7 +91,7 @@ def design(
     trials = [_trial(body, one, motion, reach, settings) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
     others = [t for t in trials if t is not best]
-    proposal = Design(
+    return Design(
         experiment=diagnosis.experiment.title or diagnosis.experiment.folder.name,
         place=at,
         body=body,
@@ -115,9 +114,9 @@ def design(
         ),
         transparency=transparency(_with_load(best, body, settings), motion),
         claims=_claims(best, body, friction, reach, settings),
-        notes=(),
+        verdict=diagnosis.verdict,
+        left=diagnosis.left,
     )
-    return replace(proposal, notes=notes_on(proposal, diagnosis))
 
 
 def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> Assumptions:

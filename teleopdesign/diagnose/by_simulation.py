@@ -23,7 +23,7 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..base.files import make_plain
 from ..base.frozen import ByValue
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array

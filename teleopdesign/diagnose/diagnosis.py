@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..base.frozen import ByValue
+from ..base.shown import figure_of
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .adequacy import floors_left, is_adequate
@@ -198,9 +199,7 @@ class Diagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
-        from ..show.figures.diagnosis import plot_diagnosis
-
-        return plot_diagnosis(self)
+        return figure_of(self)
 
     def _repr_html_(self) -> str:
         return ladder_html(self.rungs, floor=self.floor.value, note=sentence(self))

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ..base.notebook import html_table
 from ..base.sentences import with_standard_error
+from ..base.shown import html_table
 from ..base.units import unit_after_number, unit_of
 from ..blocks import Value
 from ..measurement.bandwidth import slower_sensors

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.frozen import ByValue
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from .candidates import Candidate
 from .fit import Fit
 

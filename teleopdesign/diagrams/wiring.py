@@ -15,7 +15,7 @@ import sympy as sp
 from ..base.arguments import check_types
 from ..base.errors import ModelError, check_name, did_you_mean
 from ..base.frozen import Frozen
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from ..base.units import QUANTITIES
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller

@@ -10,6 +10,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from ..base.errors import ModelError, UnstableLoop
+from ..base.shown import Shown
 from ..controllers import Controller
 from ..derive import symbol_values
 from ..derive.elimination import round_trip
@@ -32,7 +33,7 @@ _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 20001
 
 
 @dataclass(frozen=True)
-class LoopGain:
+class LoopGain(Shown):
     """Gain once round the loop of a controller; stable feedback is > 0. Dead times are exact.
 
     expression: in `realise.lti.S`, with exact numbers
@@ -70,12 +71,6 @@ class LoopGain:
         order 1.
         """
         return as_transfer_function(self.expression, delay_order=delay_order)
-
-    def __repr__(self) -> str:
-        held = f"; sampled and held: {', '.join(self.held)}" if self.held else ""
-        gone = ", ".join(self.left_out) or "nothing"
-        held += ", margins by an approximation" if self.held and self.sampled is None else ""
-        return f"Gain round the loop of {self.controller}; left out: {gone}{held}"
 
 
 def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) -> LoopGain:

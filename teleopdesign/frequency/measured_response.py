@@ -12,7 +12,7 @@ from ..diagrams import Diagram
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .cases import cases_of
-from .response import FrequencyResponse, label_response, ratio_unit
+from .response import FrequencyResponse, phase_of, ratio_unit
 from .sinusoid import BRISTLE_SHARE, Sinusoid, steady_harmonics
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ def simulated_response(
 def _points(
     values: np.ndarray, cases: list[str], f: np.ndarray, output: str, source: str, unit: str
 ) -> FrequencyResponse:
-    data = label_response(values, cases, f, unit=unit)
-    data.attrs |= {"output": output, "input": source, "measured": 1}
-    return FrequencyResponse(data, output, source, {})
+    size, phase = np.abs(values), phase_of(values, f)
+    return FrequencyResponse(
+        tuple(cases), f, size, phase, unit, output, source, left_out={}, measured=True
+    )

@@ -9,7 +9,7 @@ from typing import final
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import follow_links
 from ..base.frozen import ByValue
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from ..base.toml import Table, describe_toml_value, read_toml
 from ..base.units import unit_of
 from .arm_description import ArmDescription, arm_from

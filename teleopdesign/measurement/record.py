@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.frozen import ByValue
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from .channel import Channel, conversion_to_si, factor_of
 from .description import BodyDescription
 from .log_clock import clock_of_log

@@ -16,7 +16,7 @@ import numpy as np
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from ..diagrams import Diagram
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims

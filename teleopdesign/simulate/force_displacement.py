@@ -12,6 +12,7 @@ import numpy as np
 from ..base.errors import ModelError
 from ..base.files import write_json, write_netcdf
 from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 from .simulation import Simulation
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ class Loop:
 
 
 @dataclass(frozen=True, eq=False)
-class ForceDisplacement(ByValue):
+class ForceDisplacement(Shown, ByValue):
     """Force against displacement at the user's hand and at the environment.
 
     data: `force` and `displacement` at the hand, `environment_force` and `environment_displacement`
@@ -49,9 +50,7 @@ class ForceDisplacement(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot displacement and force over time, and force over displacement."""
-        from ..show.figures.force_displacement import plot_force_displacement
-
-        return plot_force_displacement(self)
+        return figure_of(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the curves with their units to a netCDF file."""
@@ -70,15 +69,6 @@ class ForceDisplacement(ByValue):
             for case, loop in self.loops.items()
         }
         write_json(path, figures)
-
-    def __repr__(self) -> str:
-        lines = [
-            f"  {case:<24} {loop.stiffness:8.4g} N/m (environment "
-            f"{self.environment[case].stiffness:.4g}), loop {loop.width:.3f} N wide (environment "
-            f"{self.environment[case].width:.3f}), rms difference {self.rms[case]:.3f} N"
-            for case, loop in self.loops.items()
-        ]
-        return "\n".join(["Force against displacement", *lines])
 
 
 def force_displacement(

@@ -12,6 +12,7 @@ import numpy as np
 from ..base.errors import ModelError
 from ..base.files import write_json, write_netcdf
 from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 from .simulation import Simulation
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class ForceVelocity(ByValue):
+class ForceVelocity(Shown, ByValue):
     """Force against velocity.
 
     data: `force` and `velocity` over `case` and `time`
@@ -33,9 +34,7 @@ class ForceVelocity(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot one panel for each case, from top to bottom."""
-        from ..show.figures.design import plot_force_velocity
-
-        return plot_force_velocity(self)
+        return figure_of(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the curves with their units to a netCDF file."""
@@ -49,15 +48,6 @@ class ForceVelocity(ByValue):
             for case in self.rms
         }
         write_json(path, figures)
-
-    def __repr__(self) -> str:
-        unit = self.data["force"].attrs["units"]
-        lines = [
-            f"  {case:<8} rms {self.rms[case]:.3f} {unit}, at peak speed "
-            f"{self.at_peak_speed[case]:.3f} {unit}"
-            for case in self.rms
-        ]
-        return "\n".join(["Force against velocity", *lines])
 
 
 def force_velocity(

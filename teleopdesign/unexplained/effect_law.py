@@ -11,9 +11,8 @@ import numpy as np
 from ..base.units import unit_of
 from ..measurement.filtering import Array
 from .dependence import Dependence
-from .formula import Formula
+from .formula import Formula, formula_text
 from .library import FormulaTerm
-from .sentences import formula_text
 
 #: largest deviation of the written line from f, relative to the largest f
 EXACT = 0.01

@@ -14,7 +14,7 @@ from typing import Protocol
 
 from ...base.errors import ModelError
 from ...base.frozen import ByValue
-from ...base.notebook import html_table
+from ...base.shown import html_table
 from .certificate import Certificate
 
 _EXACT = "decided in exact arithmetic; a certificate would ask for more work than its checker does"

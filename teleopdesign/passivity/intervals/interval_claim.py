@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ...base.frozen import ByValue
-from ...base.notebook import html_table
+from ...base.shown import html_table
 from ...base.units import unit_after_number
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse

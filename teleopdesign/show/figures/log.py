@@ -16,7 +16,7 @@ from ...base.units import unit_of
 from ...measurement.experiment import Experiment
 from ...measurement.first_guess import motion_columns
 from ...measurement.survey import Survey
-from .letters import further_fonts
+from .style import further_fonts
 
 #: points of a line: more are not seen
 _POINTS = 4000

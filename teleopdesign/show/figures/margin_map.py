@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
-from .design import ONE_COLUMN
-from .letters import house_style
+from .style import ONE_COLUMN, house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...blocks import NINETY_FIVE
-from .design import ONE_COLUMN
-from .letters import house_style
-from .passivity import GREY, THEORY
+from .style import GREY, ONE_COLUMN, THEORY, house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure

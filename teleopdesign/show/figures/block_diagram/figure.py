@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..letters import house_style
+from ..style import house_style
 from .shapes import SIZES, SMALLER, Box, Circle, Dot, Run, SheetShape, Text, Wire
 from .svg import BASELINE, RAISED, arrow_head, shaft
 

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, TWO_COLUMNS
-from .letters import house_style
+from teleopdesign.show.figures.style import (
+    GREY,
+    ONE_COLUMN,
+    PROVED,
+    REFUTED,
+    THEORY,
+    TWO_COLUMNS,
+    house_style,
+)
 
 if TYPE_CHECKING:
     import matplotlib.figure
     import numpy as np
     import xarray
     from matplotlib.axes import Axes
-
-PROVED, REFUTED, THEORY, GREY = "#009E73", "#D55E00", "#0072B2", "#7F7F7F"
 
 
 def plot_largest_compensation(data: xarray.Dataset) -> matplotlib.figure.Figure:

@@ -5,32 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from ..base.sentences import amount, number, span
-from ..base.units import unit_of
-from ..measurement.filtering import Array
-from .curve import Curve
-from .formula import Formula
-from .library import FormulaTerm
-from .qualifiers import Contrast
-from .regions import SignRegion, goes_up_and_down, largest_regions, regions_of
-from .shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
+from ...base.sentences import amount, number, span
+from ...unexplained.curve import Curve
+from ...unexplained.formula import Formula, formula_text
+from ...unexplained.qualifiers import Contrast
+from ...unexplained.regions import SignRegion, goes_up_and_down, largest_regions, regions_of
+from ...unexplained.shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
+from ..registry import shows
 
-#: symbol of each variable in a formula
-SYMBOLS = {
-    "position": "x",
-    "speed": "|v|",
-    "velocity": "v",
-    "acceleration": "a",
-    "actuator_force": "u",
-    "load": "|u|",
-    "interaction_force": "f_h",
-    "time": "t",
-    "since_reversal": "t_r",
-    "travel": "s_r",
-}
-#: carrier -> text of the factor of f in a formula
-FACTORS = {"friction": " sgn v", "damping": " v", "mass": " a", "lost command": " u"}
+if TYPE_CHECKING:
+    from ...unexplained.description import DescribedDependence
+
 #: ratio of the sizes on two sides from which the text states a difference
 UNLIKE = 1.5
 #: words before a range, except for a plain "below 4 mm/s"
@@ -102,10 +89,17 @@ def _size(value: float, shape: Shape, axis: str, *, backward: bool = False) -> s
     return f"{size} {'later' if value > 0 else 'earlier'}"
 
 
+@shows("sentence")
+def sentence_of(one: DescribedDependence) -> str:
+    """The sentence, without its full stop."""
+    shape, curve, formula = one.dependence.shape, one.curve, one.formula
+    return sentence_for(shape, curve, formula, one.contrasts, one.axis)
+
+
 def sentence_for(
     shape: Shape, curve: Curve, formula: Formula | None, contrasts: Sequence[Contrast], axis: str
 ) -> str:
-    """The sentence, without its full stop; "" where no range surely differs from zero."""
+    """The sentence on a dependence, without its full stop; "" where no range surely differs."""
     if shape.variable is None:
         return _constant(shape, float(curve.y[0]), axis)
     regions = regions_of(curve, signed=shape.variable.signed)
@@ -220,38 +214,3 @@ def _qualify(shape: Shape, contrasts: Sequence[Contrast]) -> str:
 
 def _describe_following(formula: Formula | None, axis: str) -> str:
     return "" if formula is None else f"; it follows {formula_text(formula, axis)}"
-
-
-def formula_text(formula: Formula, axis: str) -> str:
-    """The formula with its numbers in SI units: "F = 1.5 x v (N s/m, m)"."""
-    shape = formula.shape
-    assert shape.variable is not None
-    u = SYMBOLS[shape.variable.name]
-    parts = [_term(t, c, u) for t, c in formula.split()]
-    text = parts[0] + "".join(f" - {p[1:]}" if p[0] == "-" else f" + {p}" for p in parts[1:])
-    if len(parts) > 1 and shape.carrier.name in FACTORS:
-        text = f"({text})"
-    units = [unit_of(q, axis) for q in (shape.carrier.quantity, shape.variable.quantity)]
-    units_text = ", ".join(dict.fromkeys(u.replace("*", " ") for u in units if u != "1"))
-    return f"F = {text}{FACTORS.get(shape.carrier.name, '')} ({units_text})"
-
-
-def _term(term: FormulaTerm, c: Array, u: str) -> str:
-    n = f"{abs(term.number):.3g}"
-    if term.kind == "power":
-        return f"{c[0]:.3g} {u}" + ("" if term.number == 1 else f"^{term.number:g}")
-    if term.kind == "decay":
-        return f"{c[0]:.3g} exp(-{u} / {n})"
-    if term.kind == "bell":
-        return f"{c[0]:.3g} exp(-({u} / {n})^2)"
-    if term.kind == "beyond":
-        return f"{c[0]:.3g} ({u} - clip({u}, {n}))"
-    sign = "-" if term.number > 0 else "+"
-    if term.kind == "above":
-        return f"{c[0]:.3g} max(0, {u} {sign} {n})"
-    if term.kind == "below":
-        return f"{c[0]:.3g} max(0, {term.number:.3g} - {u})"
-    size, phase = math.hypot(*c), math.atan2(c[0], c[1])
-    return (
-        f"{size:.3g} sin(2 pi {term.number:.5g} {u} {'+' if phase >= 0 else '-'} {abs(phase):.3g})"
-    )

@@ -6,15 +6,16 @@ import math
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from ...unexplained import BodyResidual, ResidualDescription
-from .diagnosis import AFTER, BACKWARD, FORWARD, MEASURED
-from .letters import house_style
+from ..figures.diagnosis import AFTER, BACKWARD, FORWARD, MEASURED
+from ..figures.style import house_style
+from ..registry import shows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ...base.finding import Graph, Series
+    from ...unexplained import BodyResidual, ResidualDescription
 
 #: panels side by side; height of a row of them (in)
 COLUMNS, HEIGHT = 3, 1.75
@@ -33,6 +34,7 @@ COLOURS = {
 }
 
 
+@shows("figure")
 def plot_unexplained(failure: ResidualDescription) -> Figure:
     """The sentences of all findings, and below them the graphs of each body, dependences first."""
     import matplotlib.pyplot as plt

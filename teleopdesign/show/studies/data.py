@@ -13,11 +13,13 @@ from ...base.arguments import number as number_of
 from ...base.errors import ModelError, did_you_mean
 from ...base.expectations import describe_value
 from ...base.sentences import unit_at_axis
-from .design import symbol
+from ..figures.style import symbol
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
+
+    from ...studies.plots import StudyPlots
 
 #: an axis is logarithmic if the ratios of neighbouring values differ by less than this (relative)
 _EVEN = 1e-3
@@ -63,9 +65,9 @@ class StudyData:
         if not listed:
             raise ModelError("study: every point failed: there is nothing to draw")
         if name in listed or not name:
-            raise ModelError(f"study: {name or join_names(listed)}: found texts, expected numbers")
+            raise ModelError(f"study: {name or ', '.join(listed)}: found texts, expected numbers")
         raise ModelError(
-            f'study: no measure "{name}" in numbers, has {join_names(known) or "none"}'
+            f'study: no measure "{name}" in numbers, has {", ".join(known) or "none"}'
             f"{did_you_mean(name, known)}"
         )
 
@@ -80,7 +82,7 @@ class StudyData:
             if value not in texts:
                 raise ModelError(
                     f"study: at: {name}: found {describe_value(value)}, expected one of "
-                    f"{join_names(texts)}{did_you_mean(str(value), texts)}"
+                    f"{', '.join(texts)}{did_you_mean(str(value), texts)}"
                 )
             values = values.sel({name: value})
         return values.squeeze(drop=True)
@@ -89,7 +91,7 @@ class StudyData:
         """Raise ModelError if `name` is not a known axis."""
         if name not in known:
             raise ModelError(
-                f'study: no axis "{name}", has {join_names(known)}{did_you_mean(name, known)}'
+                f'study: no axis "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
             )
 
     def pair(self, values: xarray.DataArray, x: str, y: str) -> tuple[str, str]:
@@ -102,7 +104,7 @@ class StudyData:
             raise ModelError(f'study: a map over "{x}" alone: expected two axes, x and y')
         if len(dims) != 2:
             raise ModelError(
-                f"study: a map has two axes, found {join_names(dims) or 'none'}"
+                f"study: a map has two axes, found {', '.join(dims) or 'none'}"
                 f"{': give values of the others: at=...' if len(dims) > 2 else ''}"
             )
         for name in (x, y):
@@ -120,6 +122,11 @@ class StudyData:
             if np.ptp(ratios) < _EVEN * ratios[0] and ratios[0] > 1.01:
                 axis.set(**{f"{which}scale": "log"})
         axis.set(**{f"{which}label": label(self.data[name])})
+
+
+def data_of(plots: StudyPlots) -> StudyData:
+    """The data of a study, with rising axes."""
+    return StudyData(sort_axes(plots.data))
 
 
 def sort_axes(data: Any) -> Any:
@@ -156,11 +163,6 @@ def words(name: str) -> str:
         if signal.startswith("$"):
             return " ".join([*parts[:k], signal])
     return " ".join(parts)
-
-
-def join_names(names: Sequence[str]) -> str:
-    """Names in a list for a message."""
-    return ", ".join(names)
 
 
 def number(value: Any) -> str:

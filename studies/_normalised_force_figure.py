@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ...base.sentences import unit_at_axis
-from .design import ONE_COLUMN
-from .letters import house_style
+from teleopdesign.base.sentences import unit_at_axis
+from teleopdesign.show.figures.style import ONE_COLUMN, house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
 
-    from ...simulate import ForceVelocity
+    from teleopdesign.simulate import ForceVelocity
 
 _LINES = (("#0072B2", "-"), ("#D55E00", (0, (5, 1.6))), ("#000000", (0, (4, 1.4, 1, 1.4))))
 

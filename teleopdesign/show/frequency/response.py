@@ -1,4 +1,4 @@
-"""Bode and Nyquist figures. Nothing is computed.
+"""Texts of responses and loop gains, Bode and Nyquist figures.
 
 A figure of one column is 3.5 in wide with magnitude above phase, a figure of two columns is 7.16 in
 wide with both side by side; fonts, lines and colours are the same. A model is drawn as lines,
@@ -10,8 +10,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
-from .design import ONE_COLUMN, TWO_COLUMNS
-from .frequency_axes import (
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, house_style
+from ..registry import shows
+from .axes import (
     PageColumns,
     legend_below,
     look,
@@ -20,17 +21,48 @@ from .frequency_axes import (
     points,
     share_abscissa,
 )
-from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
     import numpy as np
-    import xarray
 
-    from ...frequency import FrequencyResponse
+    from ...frequency import FrequencyResponse, LoopGain, MatrixResponse
 
 
+@shows("text")
+def response_text(response: FrequencyResponse) -> str:
+    """Signals and range, and what each case leaves out."""
+    f = response.frequency
+    head = f"Frequency response {response.input} to {response.output}, {f[0]:g} to {f[-1]:g} Hz"
+    if response.measured:
+        return f"{head}, measured"
+    lines = [f"{head}, at speed {response.speed:g}"]
+    for case, gone in response.left_out.items():
+        zero = "zero at every frequency, " if response.is_zero(case) else ""
+        lines.append(f"  {case}: {zero}left out: {', '.join(gone) or 'nothing'}")
+    return "\n".join(lines)
+
+
+@shows("text")
+def matrix_response_text(response: MatrixResponse) -> str:
+    """Numbers of outputs and inputs, the range, and what is left out."""
+    shape = f"{len(response.data['output'])} outputs from {len(response.data['input'])} inputs"
+    f = response.data["frequency"].values
+    gone = f"; left out: {', '.join(response.left_out)}" if response.left_out else ""
+    return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}"
+
+
+@shows("text")
+def loop_text(loop: LoopGain) -> str:
+    """The controller, and what is left out or sampled."""
+    held = f"; sampled and held: {', '.join(loop.held)}" if loop.held else ""
+    gone = ", ".join(loop.left_out) or "nothing"
+    held += ", margins by an approximation" if loop.held and loop.sampled is None else ""
+    return f"Gain round the loop of {loop.controller}; left out: {gone}{held}"
+
+
+@shows("figure")
 def plot_bode(
     response: FrequencyResponse,
     *,
@@ -49,30 +81,29 @@ def plot_bode(
         for one in (response, measured):
             if one is None:
                 continue
-            f = one.data["frequency"].values
-            names = [str(case) for case in one.data["case"].values]
-            for name in names:
-                part = one.data.sel(case=name)
-                style = points(name, alone=len(names) == 1) if one.measured else look(name)
+            for name in one.cases:
+                style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
                 style["label"] = _name(one, name)
                 if one.is_zero(name):
                     upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
                     continue
-                upper.plot(f, 20 * np.log10(part["magnitude"]), **style)
-                lower.plot(f, _unwrap_beside(part["phase"], response, name), **style)
-        unit = response.data["magnitude"].attrs["units"]
+                size = one.magnitude[one.row(name)]
+                upper.plot(one.frequency, 20 * np.log10(size), **style)
+                lower.plot(one.frequency, _unwrap_beside(one, response, name), **style)
+        unit = response.unit
         upper.set_ylabel(
             "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_at_axis(unit)})"
         )
         lower.set_ylabel("phase (deg)")
         mark_degrees(lower)
-        ends = response.data["frequency"].values
-        share_abscissa(upper, lower, "frequency (Hz)", (float(ends[0]), float(ends[-1])), columns)
-        if measured is not None or len(response.data["case"]) > 1:
+        ends = float(response.frequency[0]), float(response.frequency[-1])
+        share_abscissa(upper, lower, "frequency (Hz)", ends, columns)
+        if measured is not None or len(response.cases) > 1:
             legend_below(figure, upper)
     return figure
 
 
+@shows("nyquist")
 def plot_nyquist(
     response: FrequencyResponse,
     *,
@@ -86,7 +117,7 @@ def plot_nyquist(
     """
     import matplotlib.pyplot as plt
 
-    unit = response.data["magnitude"].attrs["units"]
+    unit = response.unit
     width = TWO_COLUMNS if columns == 2 else ONE_COLUMN
     with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(width, 0.9 * ONE_COLUMN))
@@ -95,13 +126,12 @@ def plot_nyquist(
         for one in (response, measured):
             if one is None:
                 continue
-            names = [str(case) for case in one.data["case"].values]
-            for name in names:
+            for name in one.cases:
                 z = one.values(name)
-                style = points(name, alone=len(names) == 1) if one.measured else look(name)
+                style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
                 axis.plot(z.real, z.imag, **(style | {"label": _name(one, name)}))
                 if not one.measured:
-                    _decades(axis, one.data["frequency"].values, z, style["color"])
+                    _decades(axis, one.frequency, z, style["color"])
         low, high = axis.get_xlim()
         if unit == "1" and low < -1 < high:
             axis.plot(-1, 0, "+", color="#000000", markersize=6)
@@ -114,7 +144,7 @@ def plot_nyquist(
         figure.set_size_inches(width, min(max(height, 1.6), 4.5))
         axis.set_aspect("equal", adjustable="box")
         axis.grid(True)
-        if measured is not None or len(response.data["case"]) > 1:
+        if measured is not None or len(response.cases) > 1:
             legend_below(figure, axis)
     return figure
 
@@ -122,18 +152,17 @@ def plot_nyquist(
 def _name(one: FrequencyResponse, case: str) -> str:
     if not one.measured:
         return str(look(case)["label"])
-    return "measured" if len(one.data["case"]) == 1 else "_"
+    return "measured" if len(one.cases) == 1 else "_"
 
 
-def _unwrap_beside(phase: xarray.DataArray, model: FrequencyResponse, case: str) -> np.ndarray:
-    """Measured phase, shifted by multiples of 360 degrees to lie beside the phase of the model."""
+def _unwrap_beside(one: FrequencyResponse, model: FrequencyResponse, case: str) -> np.ndarray:
+    """Phase of a case, shifted by multiples of 360 degrees to lie beside the phase of the model."""
     import numpy as np
 
-    known = [str(c) for c in model.data["case"].values]
-    line = model.data["phase"].sel(case=case if case in known else known[0])
-    f = np.log(line["frequency"].values)
-    expected = np.interp(np.log(phase["frequency"].values), f, line.values)
-    return np.asarray(phase.values + 360 * np.round(np.median(expected - phase.values) / 360))
+    phase, f = one.phase[one.row(case)], np.log(model.frequency)
+    line = model.phase[model.row(case if case in model.cases else "")]
+    expected = np.interp(np.log(one.frequency), f, line)
+    return np.asarray(phase + 360 * np.round(np.median(expected - phase) / 360))
 
 
 def _decades(axis: matplotlib.axes.Axes, f: np.ndarray, z: np.ndarray, colour: str | None) -> None:

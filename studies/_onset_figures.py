@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import TWO_COLUMNS
-from .letters import house_style
-from .passivity import GREY, PROVED, REFUTED, THEORY
+from teleopdesign.show.figures.style import (
+    GREY,
+    PROVED,
+    REFUTED,
+    THEORY,
+    TWO_COLUMNS,
+    hatch_region,
+    house_style,
+)
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -78,22 +84,6 @@ def _mark_growth(axis: Axes, x: np.ndarray, y: np.ndarray, grown: np.ndarray, la
     shown = np.ma.masked_where(~grown, np.ones(grown.shape))
     axis.pcolormesh(x, y, shown, shading="nearest", cmap=ListedColormap([GROWS]))
     axis.plot([], [], "s", color=GROWS, label=label)
-
-
-def hatch_region(
-    axis: Axes, x: np.ndarray, low: float | np.ndarray, high: float | np.ndarray, label: str
-) -> None:
-    """Hatch a region between `low` and `high` that a theorem covers."""
-    axis.fill_between(
-        x,
-        low,
-        high,
-        facecolor="#EEF8F4",
-        edgecolor="#8FCDB8",
-        hatch="///",
-        linewidth=0.0,
-        label=label,
-    )
 
 
 def _mark_onsets(axis: Axes, x: np.ndarray, onsets: xarray.DataArray) -> None:

@@ -6,17 +6,20 @@ import math
 import textwrap
 from typing import TYPE_CHECKING
 
-from ..base.sentences import with_standard_error
-from ..base.units import unit_of
+from ...base.sentences import with_standard_error
+from ...base.units import unit_of
+from ..registry import shows
 
 if TYPE_CHECKING:
-    from .outcome import Design  # a design prints itself through this module
+    from ...design import Design, ProposedController, TunedControllers
+    from ...design.felt_impedance import FeltImpedance
 
 WIDTH = 100
 #: every tenth speed of the residual friction is printed: half a decade apart
 SHOWN = 10
 
 
+@shows("text")
 def design_text(design: Design) -> str:
     """The whole design as text of at most `WIDTH` columns."""
     parts = [
@@ -129,7 +132,29 @@ def _impedance(design: Design) -> list[str]:
     """Zhat_M of the four cases over frequency, at the peak speed of the stated motion."""
     unit = unit_of("stiffness", design.body.axis)
     head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
-    return [f"{head}functions)", *design.impedance.lines()]
+    return [f"{head}functions)", *_list_felt(design.impedance)]
+
+
+def _list_felt(felt: FeltImpedance) -> list[str]:
+    """A table of cases by frequency: magnitude and phase, predicted ones in brackets."""
+    impedance = felt.simulated or felt.predicted
+    if impedance is None:
+        return [f"  none: {why}" for why in felt.missing]
+    frequency = impedance.data["frequency"].values
+    rows = [f"  {'at Hz':<8}" + "".join(f"{f:>22.3g}" for f in frequency)]
+    for case in map(str, impedance.data["case"].values):
+        cells = (_felt_cell(felt, case, i) for i in range(len(frequency)))
+        rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))
+    return rows + [f"  without {why}" for why in felt.missing]
+
+
+def _felt_cell(felt: FeltImpedance, case: str, i: int) -> str:
+    texts = [
+        f"{float(m.decibel.sel(case=case)[i]):.1f}/{float(m.phase.sel(case=case)[i]):.0f}"
+        for m in (felt.simulated, felt.predicted)
+        if m is not None
+    ]
+    return texts[0] if len(texts) == 1 else f"{texts[0]} ({texts[1]})"
 
 
 def _residuals(design: Design) -> list[str]:
@@ -149,3 +174,23 @@ def _passivity(design: Design) -> list[str]:
         for claim in claims:
             lines.append(f"  {case}: {claim.heading}: {claim.statement} ({claim.verdict})")
     return lines
+
+
+@shows("text")
+def controller_text(proposed: ProposedController) -> str:
+    """The laws, and the reason for each number."""
+    names = ", ".join(stage.law.name for stage in proposed.controller.stages)
+    return "\n".join([names, *(f"  {r}" for r in proposed.reasons)])
+
+
+@shows("text")
+def tuned_text(tuned: TunedControllers) -> str:
+    """The force error before and after, and the numbers."""
+    names = dict(tuned.cancellation.names()) if tuned.cancellation else {}
+    names |= tuned.force_feedback.names()
+    numbers = ", ".join(f"{n} = {v:.4g}" for n, v in names.items())
+    return (
+        f"Tuned by {tuned.simulations} simulations: force error {tuned.before:.4g} -> "
+        f"{tuned.after:.4g} rms\n  {numbers}\n"
+        f"  at a bound: {', '.join(tuned.at_bound) or 'none'}"
+    )

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base.errors import ModelError
-from .design import ONE_COLUMN, TWO_COLUMNS
-from .letters import house_style
-from .onset import hatch_region
-from .study_data import StudyData, join_names, label, sort_axes, spread
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region, house_style
+from ..registry import shows
+from .data import StudyData, data_of, label, sort_axes, spread
 
 if TYPE_CHECKING:
     import matplotlib.figure
     import xarray
     from matplotlib.axes import Axes
 
-    #: where a theorem holds: a measure that is "proved" there, an array that is true there, or the
-    #: upper limit of y as a function of x
-    Proved = str | xarray.DataArray | Callable[[np.ndarray], np.ndarray]
+    from ...studies.plots import StudyPlots
 
+Marks = tuple[Any, str, float | None, str]
 #: panels side by side that can still be read on a page
 MOST_PANELS = 9
 #: most ticks of a linear axis: labels such as 0.00125 are wide beside a panel of 1.5 in
@@ -39,16 +37,18 @@ class Overlay:
     onset_label: str
 
 
+@shows("map")
 def draw_map(
-    study: StudyData,
+    plots: StudyPlots,
     measure: str,
     along: tuple[str, str],
     at: Mapping[str, float] | None,
-    over: Overlay,
+    marks: Marks,
 ) -> matplotlib.figure.Figure:
     """One map;  along: axes across and up, "" for the default: see `StudyPlots.map`."""
     import matplotlib.pyplot as plt
 
+    study, over = data_of(plots), Overlay(*marks)
     values = study.at(study.measure(measure), at)
     across, up = study.pair(values, *along)
     with plt.style.context(house_style()):
@@ -61,16 +61,18 @@ def draw_map(
     return figure
 
 
+@shows("panels")
 def draw_panels(
-    study: StudyData,
+    plots: StudyPlots,
     measure: str,
     along: tuple[str, str, str],
     at: Mapping[str, float] | None,
-    over: Overlay,
+    marks: Marks,
 ) -> matplotlib.figure.Figure:
     """Maps side by side;  along: axes across, up and by: see `StudyPlots.panels`."""
     import matplotlib.pyplot as plt
 
+    study, over = data_of(plots), Overlay(*marks)
     *plane, by = along
     whole = study.measure(measure)
     values = study.at(whole, at)
@@ -188,7 +190,7 @@ def _draw_marks(
         inside = study.at(held, {k: v for k, v in (at or {}).items() if k in held.dims})
         if set(inside.dims) != {across, up} or inside.size != values.size:
             raise ModelError(
-                f"study: proved: found an array over {join_names([*map(str, inside.dims)])} of "
+                f"study: proved: found an array over {', '.join(map(str, inside.dims))} of "
                 f"shape {inside.shape}, expected one over {across} and {up} as the measure"
             )
         shown = np.ma.masked_where(~inside.transpose(up, across).values.astype(bool), inside.T)

@@ -6,8 +6,8 @@ import matplotlib.pyplot as plt
 import pytest
 from matplotlib.figure import Figure
 
-from teleopdesign.show.figures import letters
-from teleopdesign.show.figures.letters import explain_boxes, further_fonts, house_style
+from teleopdesign.show.figures import style
+from teleopdesign.show.figures.style import explain_boxes, further_fonts, house_style
 from teleopdesign.show.report.picture import picture
 
 #: Arabic: in DejaVu Sans, which comes with matplotlib, and in no font of the house style
@@ -46,7 +46,7 @@ def test_letters_without_a_font_are_reported_in_one_line_with_what_helps():
 
 def test_a_font_that_is_here_is_used(monkeypatch):
     further_fonts.cache_clear()
-    monkeypatch.setattr(letters, "MANY_LETTERS", ("No Such Font", "DejaVu Sans Mono"))
+    monkeypatch.setattr(style, "MANY_LETTERS", ("No Such Font", "DejaVu Sans Mono"))
     assert further_fonts() == ("DejaVu Sans Mono",)
     further_fonts.cache_clear()
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.finding import Graph, Series
-from .letters import house_style
+from ..figures.style import house_style
+from ..registry import shows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 TRUTH, OTHER, NOW = "0.55", "#D55E00", "#0072B2"
 
 
+@shows("figure")
 def plot_proposal(proposal: Proposal) -> Figure:
     """The proposed motion, the force that a wrong model would leave, and the separation of rivals.
 

@@ -1,33 +1,30 @@
-"""The proposal in words, as data, and as findings."""
+"""The proposed motion in words, and as findings."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ..base.files import make_plain
-from ..base.finding import Finding, Graph, Series
-from ..base.units import si_factor
-from ..diagnose.noise_floor import say_floors
-from ..diagnose.open_questions import open_questions
-from .prediction import DECIDES, SAME
-from .rivals import pairs
+from ...base.finding import Finding, Graph, Series
+from ...base.sentences import percent
+from ...base.units import si_factor
+from ...diagnose.noise_floor import say_floors
+from ...diagnose.open_questions import open_questions
+from ...next_experiment.prediction import DECIDES, SAME
+from ..registry import shows
 
 if TYPE_CHECKING:
-    from .prediction import Separation
-    from .proposal import Proposal
-    from .remedies import Remedy
+    from ...next_experiment import ArmPaths, Proposal, SimulatedDiagnosis
+    from ...next_experiment.remedies import Remedy
 
 #: most pairs of rival models that a sentence names one by one; more are summarised
 FEW = 2
 
 
-def sentence_of(proposal: Proposal) -> Proposal:
-    """The proposal with its sentence."""
-    return replace(proposal, sentence=" ".join(_sentences(proposal)))
+@shows("sentence")
+def sentence_of(proposal: Proposal) -> str:
+    """The motion and its expected result."""
+    return " ".join(_sentences(proposal))
 
 
 def _sentences(proposal: Proposal) -> list[str]:
@@ -36,9 +33,8 @@ def _sentences(proposal: Proposal) -> list[str]:
     if proposal.reference is None:
         return ["All candidate motions exceed the limits, so no motion is proposed."]
     sentences = []
-    pairs = list_pairs_once(proposal)
-    decided = [p for p in pairs if proposal.decides(p)]
-    left_open = [p for p in pairs if not proposal.decides(p)]
+    decided = [p for p in proposal.pairs if proposal.decides(p)]
+    left_open = [p for p in proposal.pairs if not proposal.decides(p)]
     if proposal.is_useful:
         sentences.append(_describe_motion(proposal))
     if len(decided) > FEW:
@@ -70,17 +66,6 @@ def _explain_nothing_open(proposal: Proposal) -> str:
     return "The present records decide: no rival is left to distinguish."
 
 
-def list_pairs_once(proposal: Proposal) -> list[tuple[int, int]]:
-    """Pairs of rivals of one question, each once."""
-    return [(i, j) for i, j in pairs(proposal.rivals) if i < j]
-
-
-def select_pair(proposal: Proposal, pair: tuple[int, int]) -> list[Separation]:
-    """Both separations of a pair of rivals."""
-    ids = {id(proposal.rivals[i]) for i in pair}
-    return [s for s in proposal.separations if {id(s.truth), id(s.other)} == ids]
-
-
 def _describe_motion(proposal: Proposal) -> str:
     reference = proposal.reference
     assert reference is not None
@@ -96,9 +81,9 @@ def _describe_motion(proposal: Proposal) -> str:
 
 
 def _describe_count(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
-    both = [s for p in decided for s in select_pair(proposal, p)]
+    both = [s for p in decided for s in proposal.both(p)]
     return (
-        f"This motion distinguishes {len(decided)} of {len(list_pairs_once(proposal))} pairs of "
+        f"This motion distinguishes {len(decided)} of {len(proposal.pairs)} pairs of "
         "rivals: the wrong effect "
         f"of each pair then leaves {min(s.predicted for s in both):.1f} to "
         f"{max(s.predicted for s in both):.1f} noise floors beyond sensor noise (now "
@@ -107,7 +92,7 @@ def _describe_count(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> s
 
 
 def _describe_gain(proposal: Proposal, pair: tuple[int, int]) -> str:
-    first, second = select_pair(proposal, pair)
+    first, second = proposal.both(pair)
     return (
         f"If {first.truth} is right, {first.other} then leaves {first.predicted:.1f} noise floors "
         f"beyond sensor noise (now {first.present:.2f}). If {second.truth} is right, "
@@ -117,10 +102,10 @@ def _describe_gain(proposal: Proposal, pair: tuple[int, int]) -> str:
 
 def _describe_rest(proposal: Proposal, pair: tuple[int, int]) -> str:
     a, b = (proposal.rivals[i] for i in pair)
-    most = min(s.predicted for s in select_pair(proposal, pair))
+    most = min(s.predicted for s in proposal.both(pair))
     sentence = (
         f"No candidate motion within the limits distinguishes {a} from {b}: the separation is "
-        f"{most:.2f} noise floors, and {min(s.present for s in select_pair(proposal, pair)):.2f} "
+        f"{most:.2f} noise floors, and {min(s.present for s in proposal.both(pair)):.2f} "
         "on the present records, where 1 is clear."
     )
     remedies = proposal.remedies.get(pair, ())
@@ -149,6 +134,7 @@ def _describe_remedies(remedies: Sequence[Remedy]) -> str:
     return f"None of these changes is sufficient: {changes}."
 
 
+@shows("text")
 def proposal_text(proposal: Proposal) -> str:
     """The proposal as text: sentence, table of separations, parameters that become determinable."""
     lines = ["next experiment: " + proposal.sentence]
@@ -163,61 +149,13 @@ def proposal_text(proposal: Proposal) -> str:
             )
     for d in proposal.determined:
         lines.append(
-            f"  {d.name} becomes determinable: standard error {_percent(d.before)} -> "
-            f"{_percent(d.after)} of {d.value:.3g} {d.unit}"
+            f"  {d.name} becomes determinable: standard error {percent(d.before, '.2g')} -> "
+            f"{percent(d.after, '.2g')} of {d.value:.3g} {d.unit}"
         )
     return "\n".join(lines)
 
 
-def _percent(part: float) -> str:
-    return f"{100 * part:.2g} %" if np.isfinite(part) else "unknown"
-
-
-def proposal_data(proposal: Proposal) -> dict[str, Any]:
-    """The proposal as plain data (SI) for a JSON file.
-
-    Separations in noise floors (1: a right model's error); times in s, bodies by name.
-    """
-    reference = proposal.reference
-    data = {
-        "verdict": proposal.diagnosis.verdict,
-        "sentence": proposal.sentence,
-        "rivals": [_place(r) for r in proposal.rivals],
-        "reference": None
-        if reference is None
-        else {
-            "duration": reference.duration,
-            "parts": list(reference.parts),
-            "repeats": reference.repeats,
-        },
-        "separations": [
-            {
-                "truth": _place(s.truth),
-                "other": _place(s.other),
-                "present": s.present,
-                "predicted": s.predicted,
-                "score": s.score,
-            }
-            for s in proposal.separations
-        ],
-        "determined": [asdict(d) for d in proposal.determined],
-        "remedies": [
-            {
-                "rivals": [_place(proposal.rivals[i]) for i in pair],
-                "tried": [asdict(r) for r in value],
-            }
-            for pair, value in proposal.remedies.items()
-        ],
-        "limits": {b: asdict(value) for b, value in proposal.limits.items()},
-    }
-    content: dict[str, Any] = make_plain(data)
-    return content
-
-
-def _place(rival: Any) -> dict[str, str]:
-    return {"effect": rival.candidate.effect.name, "at": rival.candidate.at}
-
-
+@shows("findings")
 def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
     """The proposal as findings: the motion, the separations, and parameters to be determined."""
     if not proposal.rivals:
@@ -231,8 +169,8 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
             graph=_reference_graph(proposal),
         )
     ]
-    for pair in list_pairs_once(proposal):
-        both = select_pair(proposal, pair)
+    for pair in proposal.pairs:
+        both = proposal.both(pair)
         if not both:
             continue
         decides = proposal.decides(pair)
@@ -243,7 +181,9 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
             Finding("separation of rivals", "note" if decides else "warning", text, numbers)
         )
     for d in proposal.determined:
-        text = f"{d.name} becomes determinable: standard error {_percent(d.after)} of its value."
+        text = (
+            f"{d.name} becomes determinable: standard error {percent(d.after, '.2g')} of its value."
+        )
         findings.append(
             Finding("determinable parameters", "note", text, {"before": d.before, "after": d.after})
         )
@@ -262,3 +202,27 @@ def _reference_graph(proposal: Proposal) -> Graph | None:
         factor = si_factor(file_unit, quantity="position", axis=experiment.axis(name))
         series.append(Series(name, reference.time, position / factor, "model"))
     return Graph("time (s)", f"position reference ({unit})", tuple(series))
+
+
+@shows("text")
+def simulated_text(simulated: SimulatedDiagnosis) -> str:
+    """What the diagnosis of simulated records states."""
+    diagnosis = simulated.diagnosis
+    what = ", ".join(str(c) for c in diagnosis.missing) or diagnosis.verdict
+    return f"if {simulated.truth} is the true effect, the diagnosis states: {what}"
+
+
+@shows("text")
+def paths_text(paths: ArmPaths) -> str:
+    """How well the paths determine the parameters, beside the records."""
+    best = sorted(paths.errors, key=lambda name: paths.errors[name])[:3]
+    gained = ", ".join(f"{name} (x {paths.errors[name]:.2g})" for name in best)
+    text = (
+        f"paths of {len(paths.reference.position)} joints, period {paths.period:g} s; standard "
+        f"errors for as many samples as in the records: x {paths.gain:.2g} (mean), x "
+        f"{max(paths.errors.values()):.2g} at most; condition number of the regressor "
+        f"{paths.condition:.3g}, of the records {paths.recorded:.3g}"
+    )
+    if paths.is_useful:
+        return f"{text}; largest gains: {gained}"
+    return f"no path is better than the present records: {text}"

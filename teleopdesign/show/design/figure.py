@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
-from .design import CASES, TWO_COLUMNS
-from .letters import house_style
+from ..figures.style import CASES, TWO_COLUMNS, house_style
+from ..registry import shows
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ...design import Design
 
 
+@shows("figure")
 def plot_design(design: Design) -> matplotlib.figure.Figure:
     """Three panels that compare the designed cases with no compensation, a line for each case."""
     import matplotlib.pyplot as plt
@@ -62,18 +63,13 @@ def _residual(axis: Axes, design: Design) -> None:
 
 
 def _transparency(axis: Axes, design: Design) -> None:
-    data = design.transparency.data
-    for case in map(str, data["case"].values):
+    response = design.transparency
+    for case, size in zip(response.cases, response.magnitude, strict=True):
         colour, line, _ = CASES[case]
-        axis.semilogx(
-            data["frequency"].values,
-            data["magnitude"].sel(case=case).values,
-            color=colour,
-            linestyle=line,
-        )
+        axis.semilogx(response.frequency, size, color=colour, linestyle=line)
     axis.axhline(1.0, color="#BFBFBF", linewidth=0.5, zorder=0)
     axis.set_ylim(bottom=0.0)
-    axis.set_xlim(float(data["frequency"][0]), float(data["frequency"][-1]))
+    axis.set_xlim(float(response.frequency[0]), float(response.frequency[-1]))
     axis.set_xlabel("frequency (Hz)")
     axis.set_ylabel(r"$|R_M/R_D|$ (1)")
     axis.grid(True)

@@ -3,38 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from ..base.units import unit_of
-from ..diagnose.criteria import CRITERIA
-from ..diagnose.noise_floor import say_floors
-from ..realise.friction_interval import FrictionInterval
-from .from_answer import DiagnosedModel
-from .outcome import Design
-from .prediction import CasePrediction
-from .quasi_static import slow_body
+from ...base.units import unit_of
+from ...design.quasi_static import slow_body
+from ...diagnose.criteria import CRITERIA
+from ...diagnose.noise_floor import say_floors
+from ...realise.friction_interval import FrictionInterval
+from ..registry import shows
+
+if TYPE_CHECKING:
+    from ...design import CasePrediction, Design
 
 #: relative difference of two predictions of a force up to which no note is made
 CLOSE = 0.1
 
 
-def notes_on(design: Design, answer: DiagnosedModel) -> tuple[str, ...]:
+@shows("notes")
+def notes_on(design: Design) -> tuple[str, ...]:
     """The notes of a design; those on its model come first."""
-    makers: tuple[Callable[[Design], list[str]], ...] = (
-        _friction,
-        _sensors,
-        _list_left_out,
-        _compare_predictions,
-    )
-    return (*_model(design, answer), *(line for make in makers for line in make(design)))
+    makers = (_model, _friction, _sensors, _list_left_out, _compare_predictions)
+    return tuple(line for make in makers for line in make(design))
 
 
-def _model(design: Design, answer: DiagnosedModel) -> list[str]:
+def _model(design: Design) -> list[str]:
     lines = []
-    if answer.left > CRITERIA.adequate:
+    if design.left > CRITERIA.adequate:
         lines.append(
-            f"The model leaves {say_floors(answer.left)} noise floors unexplained (verdict "
-            f"{answer.verdict}): standard errors hold within the model only, so the least level "
+            f"The model leaves {say_floors(design.left)} noise floors unexplained (verdict "
+            f"{design.verdict}): standard errors hold within the model only, so the least level "
             "may be lower than these errors state, and the fraction "
             f"{design.assumptions.fraction:g} is the only margin against this."
         )

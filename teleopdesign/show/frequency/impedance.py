@@ -1,11 +1,13 @@
-"""Figures of an impedance over frequency and amplitude. Nothing is computed."""
+"""Text and figures of an impedance over frequency and amplitude."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
 from ...base.sentences import unit_at_axis
-from .frequency_axes import (
+from ..figures.style import house_style
+from ..registry import shows
+from .axes import (
     PageColumns,
     legend_below,
     look,
@@ -14,7 +16,6 @@ from .frequency_axes import (
     points,
     share_abscissa,
 )
-from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -26,6 +27,29 @@ if TYPE_CHECKING:
 _WHICH = "points: simulated, lines: describing functions"
 
 
+@shows("text")
+def impedance_text(result: ImpedanceMap) -> str:
+    """Ranges of frequency and amplitude, and those of size and phase of each case."""
+    f, a = result.data["frequency"].values, result.data["amplitude"].values
+    unit = result.data["amplitude"].attrs["units"]
+    how = "following frequency" if result.on_profile else f"{len(a)} of them at each"
+    lines = [
+        f"{'Measured' if result.measured else 'Quasi-linear'} impedance, {len(f)} frequencies "
+        f"{f.min():g} to {f.max():g} Hz, amplitude {a.min():g} to {a.max():g} {unit}, {how}"
+    ]
+    for case in result.data["case"].values:
+        z, p = result.decibel.sel(case=case), result.phase.sel(case=case)
+        line = (
+            f"  {case!s:<8} {float(z.min()):.1f} to {float(z.max()):.1f} {z.attrs['units']}, "
+            f"{float(p.min()):.0f} to {float(p.max()):.0f} deg"
+        )
+        if result.measured:
+            line += f", settled to {float(result.data['unsettled'].sel(case=case).max()):.1g}"
+        lines.append(line)
+    return "\n".join(lines)
+
+
+@shows("figure")
 def plot_impedance(
     result: ImpedanceMap,
     *,

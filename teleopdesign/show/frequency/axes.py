@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from .design import CASES, ONE_COLUMN, TWO_COLUMNS
+from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS
 
 if TYPE_CHECKING:
     import matplotlib.axes
