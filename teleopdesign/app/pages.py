@@ -141,7 +141,7 @@ def moved_residuals(bench: Workbench, parameter: str, factor: float) -> Dataset 
 
 def what_is_left(bench: Workbench) -> Figure:
     """Views of the residual of the last model, with a sentence for each dependence."""
-    from ..show.unexplained.figure import plot_unexplained
+    from ..show.unexplained.findings import plot_unexplained
     from ..unexplained import describe_residual
 
     floor = bench.state.floor if bench.is_ranked else None

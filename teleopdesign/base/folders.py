@@ -19,18 +19,14 @@ lists its functions.
 
 from __future__ import annotations
 
-import ast
-import inspect
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache
 from importlib import import_module
-from importlib.util import resolve_name
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeVar
 
-from .arguments import check_types
+from .arguments import check_types, type_imports
 from .frozen import Catalogue
 from .recipes import remember
 
@@ -58,16 +54,10 @@ def lazy_face(folder: str) -> tuple[Callable[[str], Any], Callable[[], list[str]
     return find, lambda: sorted({*homes, *vars(sys.modules[folder])}), sorted(homes)
 
 
-@cache
 def face_names(folder: str) -> dict[str, tuple[str, str]]:
-    """Public name -> (module, its name there), of the imports of a folder for type checkers."""
-    homes = dict[str, tuple[str, str]]()
-    tree = ast.parse(inspect.getsource(sys.modules[folder]))
-    for node in (n for block in tree.body if isinstance(block, ast.If) for n in block.body):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            home = resolve_name("." * node.level + (node.module or ""), folder)
-            homes |= {a.asname or a.name: (home, a.name) for a in node.names}
-    return homes
+    """Public name -> (module, its name there): a folder's imports of the package, for checkers."""
+    package = f"{folder.partition('.')[0]}."
+    return {n: home for n, home in type_imports(folder).items() if home[0].startswith(package)}
 
 
 Content = TypeVar("Content", covariant=True)

@@ -22,7 +22,7 @@ from ..controllers import scheduled_force_feedback
 from ..realise.lti import S
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .chosen import ProposedController, Reason
+from .cancellation import ProposedController, Reason
 
 #: largest proposed gain: at this gain only a few percent of friction is left
 MOST_GAIN = 20.0

@@ -21,13 +21,12 @@ from ..passivity import Claim
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from ..simulate import Sampling
-from .assumptions import Assumptions
-from .chosen import ProposedController
+from .assumptions import Assumptions, sampling_of
+from .cancellation import ProposedController
 from .felt_impedance import FeltImpedance
 from .force_feedback import FeedbackLoop
 from .prediction import Prediction
-from .residual_friction import ResidualFriction
-from .sampling import sampling_of
+from .quasi_static import ResidualFriction
 
 if TYPE_CHECKING:
     import matplotlib.figure

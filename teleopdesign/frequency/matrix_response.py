@@ -17,7 +17,7 @@ from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from ..base.shown import Shown
 from ..derive.elimination import rows
-from ..derive.with_values import symbol_values
+from ..derive.transfer_functions import symbol_values
 from ..diagrams import Diagram, Moving
 from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted

@@ -19,12 +19,12 @@ from ..derive import with_values
 from ..diagrams import Diagram
 from ..realise.lti import numerical
 from ..realise.tips import linear_tips
-from .cases import cases_of
 
 if TYPE_CHECKING:
     import control
     import matplotlib.figure
     import xarray
+
 
 Array = NDArray[np.float64]
 #: powers of frequency between which a magnitude lies, and the highest phase (deg) at its start:
@@ -198,3 +198,12 @@ def ratio_unit(diagram: Diagram, output: str, source: str) -> str:
     units = signal_units(diagram)
     above, below = units(output), units(source)
     return "1" if above == below else f"{above}/{below}"
+
+
+def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
+    """Case -> diagram; a single diagram has its name as case. Raises ModelError: no diagram."""
+    if isinstance(diagrams, Diagram):
+        return {diagrams.name: diagrams}
+    if not diagrams:
+        raise ModelError("diagrams: found none, expected a diagram, or several by case")
+    return dict(diagrams)

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from .largest_stiffness import (
         largest_stiffness_without_oscillation as largest_stiffness_without_oscillation,
     )
-    from .mean_error import mean_error as mean_error
     from .steady_runs import SteadyRun as SteadyRun
+    from .steady_runs import mean_error as mean_error
     from .steady_runs import steady_runs as steady_runs
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

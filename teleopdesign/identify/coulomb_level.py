@@ -24,8 +24,7 @@ from ..base.shown import Shown, figure_of
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from .mean_error import mean_error
-from .steady_runs import SteadyRun, steady_runs
+from .steady_runs import SteadyRun, mean_error, steady_runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

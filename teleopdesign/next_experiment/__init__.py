@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from .proposal import Proposal as Proposal
     from .proposal import Reference as Reference
     from .proposal import proposal_data as proposal_data
+    from .proposal import write_reference as write_reference
     from .propose import propose as propose
-    from .reference_csv import write_reference as write_reference
     from .remedies import Remedy as Remedy
     from .rivals import Rival as Rival
 

@@ -22,8 +22,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.record import Record
 from ..model import Model
-from .rivals import Rival, pairs
-from .separation import rms_measured
+from .rivals import Rival, pairs, rms_measured
 from .synthesis import Bench, PlannedMotion, record_under
 
 #: the two records of a proposed motion

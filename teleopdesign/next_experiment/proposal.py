@@ -1,16 +1,25 @@
-"""The proposal: the next motion, the reason for it, what it will show, and what it cannot show."""
+"""The proposal: the next motion, the reason for it, what it will show, and what it cannot show.
+
+The proposed motion as a CSV file for a servo.
+"""
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.files import make_plain
+import numpy as np
+
+from ..base.files import harmless_cell, make_plain, write_beside
 from ..base.finding import Finding
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of, look
+from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
+from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from .limits import Limits
 from .prediction import DECIDES, SAME, Curves, DeterminedParameter, Separation
@@ -142,3 +151,24 @@ def proposal_data(proposal: Proposal) -> dict[str, Any]:
 
 def _place(rival: Any) -> dict[str, str]:
     return {"effect": rival.candidate.effect.name, "at": rival.candidate.at}
+
+
+def write_reference(reference: Reference, experiment: Experiment, path: str | Path) -> None:
+    """Write time and position reference of each body, with header and units of the experiment.
+
+    Without a time channel the first column is t, in s.
+    """
+    clock = experiment.channels.get("time")
+    head, columns, forms = ["t"], [reference.time], ["%.9g"]
+    if clock is not None:
+        head = [clock.column]
+        columns = [reference.time / si_factor(clock.unit, quantity="time")]
+    for body, position in reference.position.items():
+        channel = experiment.channels[f"{body}.position"]
+        factor = si_factor(channel.unit, quantity="position", axis=experiment.axis(body))
+        head.append(channel.column)
+        columns.append(position / factor)
+        forms.append("%.9g")
+    with write_beside(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerow(map(harmless_cell, head))
+        np.savetxt(file, np.column_stack(columns), fmt=forms, delimiter=",")

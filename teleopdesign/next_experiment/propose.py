@@ -18,9 +18,8 @@ from .limits import Limits, course_of, shown_limits
 from .prediction import find_least_determined, predict
 from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups
-from .rivals import Rival, depends_on_time, pairs, rivals_of
+from .rivals import Rival, depends_on_time, floor_force, pairs, present_separation, rivals_of
 from .search import SafeParts, compose, join_paths, try_parts
-from .separation import floor_force, present_separation
 from .synthesis import Bench, plan_motion
 
 #: s: default of the longest duration of a proposal, and its shortest duration: a short one is

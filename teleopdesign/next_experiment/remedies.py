@@ -21,9 +21,8 @@ from ..diagnose.sensors import Sensor
 from ..measurement.filtering import Array
 from .family import Setting, family
 from .limits import Limits, course_of
-from .rivals import Rival
+from .rivals import Rival, Sums
 from .search import try_parts
-from .separation import Sums
 from .synthesis import Bench
 
 #: factors of a remedy: a sensor that is finer by this, limits that are wider by this

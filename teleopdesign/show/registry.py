@@ -20,9 +20,12 @@ from pkgutil import iter_modules
 from typing import Any, TypeVar
 
 from ..base.shown import LookKind
+from .figures.style import in_house_style
 
 Look = TypeVar("Look", bound=Callable[..., Any])
 
+#: kinds of looks that are figures
+FIGURES = ("figure", "nyquist", "curves", "map", "panels", "scatter", "sensitivity")
 #: (kind of look, name of a class) -> its function
 LOOKS: dict[tuple[LookKind, str], Callable[..., Any]] = {}
 
@@ -30,6 +33,7 @@ LOOKS: dict[tuple[LookKind, str], Callable[..., Any]] = {}
 def shows(kind: LookKind) -> Callable[[Look], Look]:
     """The function below gives this kind of look of the class that its first argument names.
 
+    A figure is drawn in house style.
     raises ValueError: another function gives the same look
     """
 
@@ -37,8 +41,9 @@ def shows(kind: LookKind) -> Callable[[Look], Look]:
         shown = str(next(iter(look.__annotations__.values())))
         if (kind, shown) in LOOKS:
             raise ValueError(f"show: two functions give the {kind} of {shown}")
-        LOOKS[kind, shown] = look
-        return look
+        entered = in_house_style(look) if kind in FIGURES else look
+        LOOKS[kind, shown] = entered
+        return entered
 
     return enter
 

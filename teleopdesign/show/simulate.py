@@ -8,7 +8,7 @@ import numpy as np
 
 from ..base.sentences import unit_at_axis
 from ..base.shown import html_table
-from .figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, house_style, symbol
+from .figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, symbol
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -58,18 +58,17 @@ def plot_simulation(simulation: Simulation, *names: str) -> matplotlib.figure.Fi
     import matplotlib.pyplot as plt
 
     shown = names or tuple(n for n in ("L", "R_A", "R_M") if n in simulation.data)
-    with plt.style.context(house_style()):
-        height = 0.6 + 1.05 * len(shown)
-        figure, axes = plt.subplots(
-            len(shown), 1, sharex=True, squeeze=False, figsize=(ONE_COLUMN, height)
-        )
-        for name, axis in zip(shown, axes[:, 0], strict=True):
-            signal = simulation[name]
-            axis.plot(signal["time"].values, signal.values)
-            axis.set_ylabel(f"{symbol(name)} ({unit_at_axis(signal.attrs['units'])})")
-            axis.grid(True)
-        axes[-1, 0].set_xlabel("time (s)")
-        figure.align_ylabels()
+    height = 0.6 + 1.05 * len(shown)
+    figure, axes = plt.subplots(
+        len(shown), 1, sharex=True, squeeze=False, figsize=(ONE_COLUMN, height)
+    )
+    for name, axis in zip(shown, axes[:, 0], strict=True):
+        signal = simulation[name]
+        axis.plot(signal["time"].values, signal.values)
+        axis.set_ylabel(f"{symbol(name)} ({unit_at_axis(signal.attrs['units'])})")
+        axis.grid(True)
+    axes[-1, 0].set_xlabel("time (s)")
+    figure.align_ylabels()
     return figure
 
 
@@ -100,25 +99,24 @@ def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
     speed = unit_at_axis(data["velocity"].attrs["units"])
     largest = float(abs(data["force"]).max())
     limit = 1.0 if 0.4 < largest <= 1.0 else 1.15 * largest
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(
-            len(cases), 1, sharex=True, sharey=True, squeeze=False, figsize=(ONE_COLUMN, 5.4)
-        )
-        for letter, case, axis in zip("abcdefgh", cases, axes[:, 0], strict=False):
-            colour, _, label = CASES.get(case, (None, "-", case))
-            one = data.sel(case=case)
-            axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
-            axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
-            axis.plot(one["velocity"].values, one["force"].values, color=colour)
-            axis.set_title(f"({letter}) {label}", loc="left", pad=3)
-            text = f"rms {result.rms[case]:.2f} {unit}"
-            axis.text(0.985, 0.06, text, transform=axis.transAxes, ha="right", color=colour)
-            axis.set_ylim(-limit, limit)
-            if limit == 1.0:
-                axis.yaxis.set_major_locator(MultipleLocator(0.5))
-        axes[-1, 0].xaxis.set_major_locator(MaxNLocator(5))
-        axes[-1, 0].set_xlabel(f"velocity ({speed})")
-        figure.supylabel(rf"force error $R_D - R_M$ ({unit})", fontsize=8)
+    figure, axes = plt.subplots(
+        len(cases), 1, sharex=True, sharey=True, squeeze=False, figsize=(ONE_COLUMN, 5.4)
+    )
+    for letter, case, axis in zip("abcdefgh", cases, axes[:, 0], strict=False):
+        colour, _, label = CASES.get(case, (None, "-", case))
+        one = data.sel(case=case)
+        axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+        axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+        axis.plot(one["velocity"].values, one["force"].values, color=colour)
+        axis.set_title(f"({letter}) {label}", loc="left", pad=3)
+        text = f"rms {result.rms[case]:.2f} {unit}"
+        axis.text(0.985, 0.06, text, transform=axis.transAxes, ha="right", color=colour)
+        axis.set_ylim(-limit, limit)
+        if limit == 1.0:
+            axis.yaxis.set_major_locator(MultipleLocator(0.5))
+    axes[-1, 0].xaxis.set_major_locator(MaxNLocator(5))
+    axes[-1, 0].set_xlabel(f"velocity ({speed})")
+    figure.supylabel(rf"force error $R_D - R_M$ ({unit})", fontsize=8)
     return figure
 
 
@@ -143,39 +141,38 @@ def plot_force_displacement(result: ForceDisplacement) -> matplotlib.figure.Figu
     cases = [str(c) for c in data["case"].values]
     time = data["time"].values - data["time"].values[0]
     touched = float(abs(data["environment_force"]).max()) > 0
-    with plt.style.context(house_style()):
-        figure, (left, middle, right) = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.3))
-        last = data.sel(case=cases[-1])
-        if touched:
-            right.plot(
-                1e3 * last["environment_displacement"].values,
-                last["environment_force"].values,
-                color=ENVIRONMENT,
-                linewidth=3.0,
-                label="environment",
-            )
-        left.plot(time, 1e3 * last["displacement"].values, color="#000000", label="master")
-        slave = 1e3 * last["environment_displacement"].values
-        left.plot(time, slave, color="#D55E00", linestyle="--", label="slave")
-        for (colour, line), case in zip(LINES, cases, strict=False):
-            one = data.sel(case=case)
-            style = {"color": colour, "linestyle": line}
-            middle.plot(time, one["force"].values, **style)
-            shown = 1e3 * one["displacement"].values
-            right.plot(shown, one["force"].values, label=case, **style)
-        left.set_ylabel("displacement (mm)")
-        left.legend(loc="best")
-        for axis in (left, middle):
-            axis.set_xlabel("time (s)")
-        for axis in (middle, right):
-            axis.set_ylabel("force of the user (N)")
-        right.set_xlabel("displacement (mm)")
-        for letter, axis in zip("abc", (left, middle, right), strict=True):
-            axis.set_title(f"({letter})", loc="left", pad=3)
-            axis.grid(True)
-        figure.legend(
-            *right.get_legend_handles_labels(),
-            loc="outside lower center",
-            ncols=len(cases) + touched,
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.3))
+    last = data.sel(case=cases[-1])
+    if touched:
+        right.plot(
+            1e3 * last["environment_displacement"].values,
+            last["environment_force"].values,
+            color=ENVIRONMENT,
+            linewidth=3.0,
+            label="environment",
         )
+    left.plot(time, 1e3 * last["displacement"].values, color="#000000", label="master")
+    slave = 1e3 * last["environment_displacement"].values
+    left.plot(time, slave, color="#D55E00", linestyle="--", label="slave")
+    for (colour, line), case in zip(LINES, cases, strict=False):
+        one = data.sel(case=case)
+        style = {"color": colour, "linestyle": line}
+        middle.plot(time, one["force"].values, **style)
+        shown = 1e3 * one["displacement"].values
+        right.plot(shown, one["force"].values, label=case, **style)
+    left.set_ylabel("displacement (mm)")
+    left.legend(loc="best")
+    for axis in (left, middle):
+        axis.set_xlabel("time (s)")
+    for axis in (middle, right):
+        axis.set_ylabel("force of the user (N)")
+    right.set_xlabel("displacement (mm)")
+    for letter, axis in zip("abc", (left, middle, right), strict=True):
+        axis.set_title(f"({letter})", loc="left", pad=3)
+        axis.grid(True)
+    figure.legend(
+        *right.get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=len(cases) + touched,
+    )
     return figure

@@ -11,7 +11,7 @@ from ..base.shown import html_table
 from ..base.units import unit_after_number
 from ..simulate.units import signal_units
 from ..tuning.follow import MOST_APART
-from .figures.style import ONE_COLUMN, house_style, symbol
+from .figures.style import ONE_COLUMN, symbol
 from .registry import shows
 from .studies.data import words
 
@@ -101,22 +101,21 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
 
     x, y = front.objectives.T
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
-        axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
-        axes.step(*front.evaluated_best.T, where="post", color=BEST, label="best found")
-        axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="limits checked again")
-        if np.isfinite(front.before).all():
-            axes.plot(*front.before, "x", color=BEFORE, zorder=4, label="before")
-        axes.set_xlim(right=min(axes.get_xlim()[1], _farthest(x)))
-        axes.set_ylim(top=min(axes.get_ylim()[1], _farthest(y)))
-        first, second = (
-            f"{words(name)} ({unit_at_axis(unit or '1')})"
-            for name, unit in zip(front.names, front.units, strict=True)
-        )
-        axes.set_xlabel(first)
-        axes.set_ylabel(second)
-        axes.legend()
+    figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
+    axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
+    axes.step(*front.evaluated_best.T, where="post", color=BEST, label="best found")
+    axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="limits checked again")
+    if np.isfinite(front.before).all():
+        axes.plot(*front.before, "x", color=BEFORE, zorder=4, label="before")
+    axes.set_xlim(right=min(axes.get_xlim()[1], _farthest(x)))
+    axes.set_ylim(top=min(axes.get_ylim()[1], _farthest(y)))
+    first, second = (
+        f"{words(name)} ({unit_at_axis(unit or '1')})"
+        for name, unit in zip(front.names, front.units, strict=True)
+    )
+    axes.set_xlabel(first)
+    axes.set_ylabel(second)
+    axes.legend()
     return figure
 
 
@@ -179,30 +178,27 @@ def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
 
     names = tuple(fitted.rms)
     time = fitted.data["time"].values
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(
-            2 * len(names),
-            1,
-            sharex=True,
-            squeeze=False,
-            figsize=(ONE_COLUMN, 0.6 + 2.1 * len(names)),
-            height_ratios=[2, 1] * len(names),
-            layout="constrained",
-        )
-        for k, name in enumerate(names):
-            above, below = axes[2 * k, 0], axes[2 * k + 1, 0]
-            measured = fitted.data[f"{name}_measured"]
-            simulated = fitted.data[f"{name}_simulated"].values
-            unit = unit_at_axis(measured.attrs["units"])
-            above.plot(
-                time, measured.values, ".", color="#9A9A9A", markersize=1.5, label="measured"
-            )
-            above.plot(time, simulated, color=BEST, label="simulated")
-            above.set_ylabel(f"{symbol(name)} ({unit})")
-            below.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
-            below.plot(time, simulated - measured.values, color=BEST, linewidth=0.6)
-            below.set_ylabel(f"difference ({unit})")
-        axes[0, 0].legend()
-        axes[-1, 0].set_xlabel("time (s)")
-        figure.align_ylabels()
+    figure, axes = plt.subplots(
+        2 * len(names),
+        1,
+        sharex=True,
+        squeeze=False,
+        figsize=(ONE_COLUMN, 0.6 + 2.1 * len(names)),
+        height_ratios=[2, 1] * len(names),
+        layout="constrained",
+    )
+    for k, name in enumerate(names):
+        above, below = axes[2 * k, 0], axes[2 * k + 1, 0]
+        measured = fitted.data[f"{name}_measured"]
+        simulated = fitted.data[f"{name}_simulated"].values
+        unit = unit_at_axis(measured.attrs["units"])
+        above.plot(time, measured.values, ".", color="#9A9A9A", markersize=1.5, label="measured")
+        above.plot(time, simulated, color=BEST, label="simulated")
+        above.set_ylabel(f"{symbol(name)} ({unit})")
+        below.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+        below.plot(time, simulated - measured.values, color=BEST, linewidth=0.6)
+        below.set_ylabel(f"difference ({unit})")
+    axes[0, 0].legend()
+    axes[-1, 0].set_xlabel("time (s)")
+    figure.align_ylabels()
     return figure

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from .case import SimulatedCase as SimulatedCase
     from .chosen_measures import Measure as Measure
     from .chosen_measures import measure as measure
-    from .diagnosed import diagnose_recording as diagnose_recording
+    from .from_toml import diagnose_recording as diagnose_recording
     from .from_toml import read_study_file as read_study_file
     from .measures import MEASURES as MEASURES
-    from .onset import find_onset as find_onset
-    from .onset import growth as growth
+    from .measures import find_onset as find_onset
+    from .measures import growth as growth
     from .outcomes import PointOutcome as PointOutcome
     from .point import Amount as Amount
     from .point import Point as Point
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from .samples import random_samples as random_samples
     from .samples import sensitivity_samples as sensitivity_samples
     from .samples import sobol as sobol
-    from .sensitivities import sensitivities as sensitivities
+    from .sensitivity import sensitivities as sensitivities
     from .sensitivity import sensitivity as sensitivity
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -11,11 +11,11 @@ from typing import Any
 
 from ..base.errors import ExperimentError, ModelError
 from .evaluate import StudyTask
+from .fingerprint import versions
 from .one_thread import one_thread
 from .outcomes import PointOutcome
 from .pool import Sink
 from .side_by_side import Unit, evaluate_unit
-from .versions import versions
 from .worker_processes import pack_task
 
 #: s: duration of a task of the cluster, long against the milliseconds of the scheduler for each

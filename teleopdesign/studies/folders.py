@@ -20,14 +20,13 @@ from ..effects import EFFECTS, Effect
 from ..measurement.files import content_digest
 from .chosen_measures import measures_of
 from .evaluate import StudyTask
-from .fingerprint import fingerprint
+from .fingerprint import fingerprint, versions
 from .journal import Journal
 from .outcomes import PointOutcome
 from .points import points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
 from .side_by_side import Unit
-from .versions import versions
 
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis, Diagnosis

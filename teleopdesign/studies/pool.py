@@ -19,10 +19,9 @@ from typing import Any
 from ..base.errors import ModelError
 from ..base.machine import shield_from_ctrl_c
 from .evaluate import StudyTask
-from .frames import receive, send
 from .outcomes import PointOutcome
 from .side_by_side import Unit
-from .worker_processes import WorkerProcess, pack_task, start_anew, start_copies
+from .worker_processes import WorkerProcess, pack_task, receive, send, start_anew, start_copies
 
 Sink = Callable[[PointOutcome], None]
 

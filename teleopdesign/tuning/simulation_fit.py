@@ -32,10 +32,10 @@ from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
 from ..studies.case import SimulatedCase, case_of
 from ..studies.differences import check_slopes_exist
-from ..studies.sensitivities import labelled_slopes
+from ..studies.sensitivity import labelled_slopes
 from .follow import Followed, Target, follow, rms_of
 from .measured_signals import MeasuredSignals, measured_signals
-from .shares import box_of_parameters
+from .problem import box_of_parameters
 
 if TYPE_CHECKING:
     import matplotlib.figure

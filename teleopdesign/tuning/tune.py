@@ -33,9 +33,8 @@ from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of
 from ..studies.chosen_measures import measures_of
 from .limits import limit_of
-from .problem import Problem, TrialPoint
+from .problem import AT_END, Problem, TrialPoint, box_of_parameters, shares_of, unit_box, values_at
 from .recheck import CheckedLimit, recheck
-from .shares import AT_END, box_of_parameters, shares_of, unit_box, values_at
 
 #: most rounds: after each, the worst point of an interval that the search had not evaluated is
 #: added

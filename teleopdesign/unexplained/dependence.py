@@ -19,9 +19,9 @@ from ..diagnose.evidence import chance, gain_score
 from ..diagnose.least_squares import solve_normal
 from ..diagnose.prepare import FOLDS
 from ..measurement.filtering import Array
+from .library import wave_number
 from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
-from .waves import wave_number
 
 #: weights of the roughness penalty that are compared, relative to the weight of the data
 SMOOTHNESS = np.logspace(-4, 3, 8)

@@ -13,15 +13,13 @@ from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
 from ..model import Model
-from .curve import Curve, curve_of, without_columns
+from .curve import Curve, curve_of, regions_of, without_columns
 from .dependence import Dependence, dependences, model_columns
 from .formula import Formula, formula_for
 from .qualifiers import Contrast, contrasts
-from .regions import regions_of
 from .rows import Rows, rows_of
 from .shapes import Shape
-from .views import curve_graph, views_of
-from .whiteness import Whiteness, whiteness_of
+from .views import Whiteness, curve_graph, views_of, whiteness_of
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,9 @@ from ..diagnose.evidence import gain_score
 from ..diagnose.fit import standard_errors
 from ..measurement.filtering import Array
 from .dependence import Columns, Dependence, predict_held_out
-from .library import FormulaTerm, terms_of
+from .library import FormulaTerm, terms_of, wave_number
 from .rows import Rows, StretchSignals
 from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
-from .waves import wave_number
 
 #: symbol of each variable in a formula
 SYMBOLS = {

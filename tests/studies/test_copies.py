@@ -15,9 +15,9 @@ import teleopdesign as td
 from teleopdesign.studies import pool, worker_processes
 from teleopdesign.studies.chosen_measures import measures_of
 from teleopdesign.studies.evaluate import StudyTask
-from teleopdesign.studies.frames import receive
 from teleopdesign.studies.journal import Journal
 from teleopdesign.studies.points import points_of
+from teleopdesign.studies.worker_processes import receive
 
 copied = pytest.mark.usefixtures("copies")
 

@@ -8,10 +8,10 @@ no font has is drawn as a box.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from functools import cache
+from collections.abc import Callable, Iterable
+from functools import cache, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ...base.files import write_beside
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import matplotlib.figure
     import numpy as np
     from matplotlib.axes import Axes
+
+Draw = TypeVar("Draw", bound=Callable[..., Any])
 
 ONE_COLUMN, TWO_COLUMNS = 3.5, 7.16  # inches
 
@@ -127,6 +129,19 @@ def further_fonts() -> tuple[str, ...]:
 def house_style() -> Any:
     """The house style for `plt.style.context`, with further fonts of this machine at the end."""
     return [STYLE, {"font.family": ["STIXGeneral", "DejaVu Serif", *further_fonts()]}]
+
+
+def in_house_style(draw: Draw) -> Draw:
+    """The function, which draws in house style."""
+
+    @wraps(draw)
+    def drawn(*arguments: Any, **options: Any) -> Any:
+        import matplotlib.pyplot as plt
+
+        with plt.style.context(house_style()):
+            return draw(*arguments, **options)
+
+    return cast(Draw, drawn)
 
 
 def letters_without_a_font(texts: Iterable[str]) -> str:

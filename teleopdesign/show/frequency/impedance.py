@@ -63,26 +63,24 @@ def plot_impedance(
 
     model: drawn as lines; `result` is then drawn as points
     """
-    import matplotlib.pyplot as plt
 
-    with plt.style.context(house_style()):
-        figure, (upper, lower) = panels(columns)
-        for one in (result, model):
-            if one is not None:
-                dotted = one is result and model is not None
-                _impedance_lines((upper, lower), one, against, dotted=dotted)
-        x, label = _scale(result, against)
-        unit = unit_at_axis(result.decibel.attrs["units"])
-        upper.set_ylabel(rf"$|\hat Z_M|$ ({unit})")
-        lower.set_ylabel(r"phase of $\hat Z_M$ (deg)")
-        lower.set_ylim(0, 360)
-        mark_degrees(lower)
-        share_abscissa(upper, lower, label, (float(x.min()), float(x.max())), columns)
-        if len(result.data["case"]) > 1:
-            # below 90 and above 270 degrees there is room
-            lower.legend(loc="upper left", ncols=1 if columns == 2 else 2)
-        texts = [_shade_text(result, _other_variable(result, against)), _WHICH if model else ""]
-        upper.set_title("; ".join(t for t in texts if t), loc="left", pad=3)
+    figure, (upper, lower) = panels(columns)
+    for one in (result, model):
+        if one is not None:
+            dotted = one is result and model is not None
+            _impedance_lines((upper, lower), one, against, dotted=dotted)
+    x, label = _scale(result, against)
+    unit = unit_at_axis(result.decibel.attrs["units"])
+    upper.set_ylabel(rf"$|\hat Z_M|$ ({unit})")
+    lower.set_ylabel(r"phase of $\hat Z_M$ (deg)")
+    lower.set_ylim(0, 360)
+    mark_degrees(lower)
+    share_abscissa(upper, lower, label, (float(x.min()), float(x.max())), columns)
+    if len(result.data["case"]) > 1:
+        # below 90 and above 270 degrees there is room
+        lower.legend(loc="upper left", ncols=1 if columns == 2 else 2)
+    texts = [_shade_text(result, _other_variable(result, against)), _WHICH if model else ""]
+    upper.set_title("; ".join(t for t in texts if t), loc="left", pad=3)
     return figure
 
 

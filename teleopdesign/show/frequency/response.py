@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS, house_style
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS
 from ..registry import shows
 from .axes import (
     PageColumns,
@@ -73,33 +73,31 @@ def plot_bode(
 
     A case that is zero at every frequency has no curve; the legend says that it is zero.
     """
-    import matplotlib.pyplot as plt
     import numpy as np
 
-    with plt.style.context(house_style()):
-        figure, (upper, lower) = panels(columns)
-        for one in (response, measured):
-            if one is None:
+    figure, (upper, lower) = panels(columns)
+    for one in (response, measured):
+        if one is None:
+            continue
+        for name in one.cases:
+            style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
+            style["label"] = _name(one, name)
+            if one.is_zero(name):
+                upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
                 continue
-            for name in one.cases:
-                style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
-                style["label"] = _name(one, name)
-                if one.is_zero(name):
-                    upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
-                    continue
-                size = one.magnitude[one.row(name)]
-                upper.plot(one.frequency, 20 * np.log10(size), **style)
-                lower.plot(one.frequency, _unwrap_beside(one, response, name), **style)
-        unit = response.unit
-        upper.set_ylabel(
-            "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_at_axis(unit)})"
-        )
-        lower.set_ylabel("phase (deg)")
-        mark_degrees(lower)
-        ends = float(response.frequency[0]), float(response.frequency[-1])
-        share_abscissa(upper, lower, "frequency (Hz)", ends, columns)
-        if measured is not None or len(response.cases) > 1:
-            legend_below(figure, upper)
+            size = one.magnitude[one.row(name)]
+            upper.plot(one.frequency, 20 * np.log10(size), **style)
+            lower.plot(one.frequency, _unwrap_beside(one, response, name), **style)
+    unit = response.unit
+    upper.set_ylabel(
+        "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_at_axis(unit)})"
+    )
+    lower.set_ylabel("phase (deg)")
+    mark_degrees(lower)
+    ends = float(response.frequency[0]), float(response.frequency[-1])
+    share_abscissa(upper, lower, "frequency (Hz)", ends, columns)
+    if measured is not None or len(response.cases) > 1:
+        legend_below(figure, upper)
     return figure
 
 
@@ -119,33 +117,32 @@ def plot_nyquist(
 
     unit = response.unit
     width = TWO_COLUMNS if columns == 2 else ONE_COLUMN
-    with plt.style.context(house_style()):
-        figure, axis = plt.subplots(figsize=(width, 0.9 * ONE_COLUMN))
-        axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
-        axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
-        for one in (response, measured):
-            if one is None:
-                continue
-            for name in one.cases:
-                z = one.values(name)
-                style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
-                axis.plot(z.real, z.imag, **(style | {"label": _name(one, name)}))
-                if not one.measured:
-                    _decades(axis, one.frequency, z, style["color"])
-        low, high = axis.get_xlim()
-        if unit == "1" and low < -1 < high:
-            axis.plot(-1, 0, "+", color="#000000", markersize=6)
-        beside = "" if unit == "1" else f" ({unit_at_axis(unit)})"
-        axis.set_xlabel(f"real part{beside}")
-        axis.set_ylabel(f"imaginary part{beside}")
-        (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()
-        # room for labels, and no emptier page than the curve's shape
-        height = 0.6 + (width - 0.6) * (highest - lowest) / (right - left)
-        figure.set_size_inches(width, min(max(height, 1.6), 4.5))
-        axis.set_aspect("equal", adjustable="box")
-        axis.grid(True)
-        if measured is not None or len(response.cases) > 1:
-            legend_below(figure, axis)
+    figure, axis = plt.subplots(figsize=(width, 0.9 * ONE_COLUMN))
+    axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+    axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+    for one in (response, measured):
+        if one is None:
+            continue
+        for name in one.cases:
+            z = one.values(name)
+            style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
+            axis.plot(z.real, z.imag, **(style | {"label": _name(one, name)}))
+            if not one.measured:
+                _decades(axis, one.frequency, z, style["color"])
+    low, high = axis.get_xlim()
+    if unit == "1" and low < -1 < high:
+        axis.plot(-1, 0, "+", color="#000000", markersize=6)
+    beside = "" if unit == "1" else f" ({unit_at_axis(unit)})"
+    axis.set_xlabel(f"real part{beside}")
+    axis.set_ylabel(f"imaginary part{beside}")
+    (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()
+    # room for labels, and no emptier page than the curve's shape
+    height = 0.6 + (width - 0.6) * (highest - lowest) / (right - left)
+    figure.set_size_inches(width, min(max(height, 1.6), 4.5))
+    axis.set_aspect("equal", adjustable="box")
+    axis.grid(True)
+    if measured is not None or len(response.cases) > 1:
+        legend_below(figure, axis)
     return figure
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.finding import Graph, Series
-from ..figures.style import house_style
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -25,22 +24,21 @@ def plot_proposal(proposal: Proposal) -> Figure:
     """
     import matplotlib.pyplot as plt
 
-    with plt.style.context(house_style()):
-        if proposal.reference is None:
-            figure, ax = plt.subplots(figsize=(7.16, 1.2))
-            ax.text(0.0, 0.5, proposal.sentence, wrap=True, va="center")
-            ax.set_axis_off()
-            return figure
-        figure, axes = plt.subplots(
-            3,
-            1,
-            figsize=(7.16, 4.2 + 0.34 * len(proposal.separations)),
-            height_ratios=(1.6, 1.6, 0.4 + 0.34 * len(proposal.separations)),
-        )
-        graphs = [f.graph for f in proposal.findings() if f.graph is not None]
-        _graph(axes[0], graphs[0])
-        _plot_separation(axes[1], proposal)
-        _separations(axes[2], proposal)
+    if proposal.reference is None:
+        figure, ax = plt.subplots(figsize=(7.16, 1.2))
+        ax.text(0.0, 0.5, proposal.sentence, wrap=True, va="center")
+        ax.set_axis_off()
+        return figure
+    figure, axes = plt.subplots(
+        3,
+        1,
+        figsize=(7.16, 4.2 + 0.34 * len(proposal.separations)),
+        height_ratios=(1.6, 1.6, 0.4 + 0.34 * len(proposal.separations)),
+    )
+    graphs = [f.graph for f in proposal.findings() if f.graph is not None]
+    _graph(axes[0], graphs[0])
+    _plot_separation(axes[1], proposal)
+    _separations(axes[2], proposal)
     return figure
 
 

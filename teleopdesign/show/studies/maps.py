@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import ModelError
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region, house_style
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region
 from ..registry import shows
 from .data import StudyData, data_of, label, sort_axes, spread
 
@@ -51,13 +51,12 @@ def draw_map(
     study, over = data_of(plots), Overlay(*marks)
     values = study.at(study.measure(measure), at)
     across, up = study.pair(values, *along)
-    with plt.style.context(house_style()):
-        figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.9))
-        limits = _limits(values, over.onset)
-        mesh = _draw_mesh(study, axis, values, across, up, limits)
-        _draw_marks(study, axis, values, (across, up), over, at)
-        figure.colorbar(mesh, ax=axis, label=label(values), extend=_extend(values, limits))
-        _draw_legend(figure, axis)
+    figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.9))
+    limits = _limits(values, over.onset)
+    mesh = _draw_mesh(study, axis, values, across, up, limits)
+    _draw_marks(study, axis, values, (across, up), over, at)
+    figure.colorbar(mesh, ax=axis, label=label(values), extend=_extend(values, limits))
+    _draw_legend(figure, axis)
     return figure
 
 
@@ -84,32 +83,31 @@ def draw_panels(
     across, up = study.pair(values.isel({third: 0}), *plane)
     columns = min(len(shown), 3)
     rows = -(-len(shown) // columns)
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(
-            rows,
-            columns,
-            sharex=True,
-            sharey=True,
-            squeeze=False,
-            figsize=(TWO_COLUMNS, 0.7 + 1.9 * rows),
-        )
-        limits = _limits(values, over.onset)
-        for letter, k, axis in zip("abcdefghi", shown, axes.flat, strict=False):
-            one = values.isel({third: k})
-            mesh = _draw_mesh(study, axis, one, across, up, limits)
-            where = {**(at or {}), third: study.data[third].values[k]}
-            _draw_marks(study, axis, one, (across, up), over, where)
-            title = study.name_with_value(third, study.data[third].values[k])
-            axis.set_title(f"({letter}) {title}", loc="left", pad=3)
-            axis.label_outer()
-        for empty in range(len(shown), axes.size):
-            axes.flat[empty].remove()
-            above = axes.flat[empty - columns]  # has the ticks of its column
-            above.tick_params(labelbottom=True)
-            study.label_axis(above, "x", across)
-        parents = axes.flat[: len(shown)].tolist()
-        figure.colorbar(mesh, ax=parents, label=label(whole), extend=_extend(values, limits))
-        _draw_legend(figure, axes[0, 0])
+    figure, axes = plt.subplots(
+        rows,
+        columns,
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+        figsize=(TWO_COLUMNS, 0.7 + 1.9 * rows),
+    )
+    limits = _limits(values, over.onset)
+    for letter, k, axis in zip("abcdefghi", shown, axes.flat, strict=False):
+        one = values.isel({third: k})
+        mesh = _draw_mesh(study, axis, one, across, up, limits)
+        where = {**(at or {}), third: study.data[third].values[k]}
+        _draw_marks(study, axis, one, (across, up), over, where)
+        title = study.name_with_value(third, study.data[third].values[k])
+        axis.set_title(f"({letter}) {title}", loc="left", pad=3)
+        axis.label_outer()
+    for empty in range(len(shown), axes.size):
+        axes.flat[empty].remove()
+        above = axes.flat[empty - columns]  # has the ticks of its column
+        above.tick_params(labelbottom=True)
+        study.label_axis(above, "x", across)
+    parents = axes.flat[: len(shown)].tolist()
+    figure.colorbar(mesh, ax=parents, label=label(whole), extend=_extend(values, limits))
+    _draw_legend(figure, axes[0, 0])
     return figure
 
 

@@ -11,7 +11,7 @@ from ...base.errors import ModelError
 from ...base.shown import html_table
 from ...studies.points import SAMPLE
 from ...studies.result import REASON
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS, house_style
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS
 from ..registry import shows
 from .data import data_of, label, number, spread
 from .maps import MOST_PANELS
@@ -88,7 +88,6 @@ def draw_fitting(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
         if study.data.attrs["sampling"] == "sensitivity":
             return plots.sensitivity(measure)
         return plots.scatter(measure)
-    import matplotlib.pyplot as plt
 
     study.measure(measure)
     grids = [n for n in study.axes if study.data.sizes[n] > 1]
@@ -101,8 +100,7 @@ def draw_fitting(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
     values = {n: study.data[n].values for n in grids[3:]}
     at = {n: v[len(v) // 2] for n, v in values.items()}
     figure = plots.panels(measure, at=at)
-    with plt.style.context(house_style()):
-        figure.suptitle(", ".join(study.name_with_value(n, v) for n, v in at.items()))
+    figure.suptitle(", ".join(study.name_with_value(n, v) for n, v in at.items()))
     return figure
 
 
@@ -123,20 +121,19 @@ def draw_curves(
     each = [d for d in dims if d != across]
     if len(each) > 1:
         raise ModelError(f"curves: give values of all but two of {', '.join(dims)}: at=...")
-    with plt.style.context(house_style()):
-        figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
-        lines = study.data[each[0]].values if each else [None]
-        shown = spread(len(lines), _MOST_LINES)
-        colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown)))
-        for colour, k in zip(colours, shown, strict=True):
-            one = values.isel({each[0]: k}) if each else values
-            entry = number(lines[k]) if each else None
-            axis.plot(study.data[across].values, one.values, ".-", color=colour, label=entry)
-        study.label_axis(axis, "x", across)
-        axis.set_ylabel(label(values))
-        if each:
-            title = label(study.data[each[0]])
-            figure.legend(title=title, loc="outside lower center", ncols=4)
+    figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
+    lines = study.data[each[0]].values if each else [None]
+    shown = spread(len(lines), _MOST_LINES)
+    colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown)))
+    for colour, k in zip(colours, shown, strict=True):
+        one = values.isel({each[0]: k}) if each else values
+        entry = number(lines[k]) if each else None
+        axis.plot(study.data[across].values, one.values, ".-", color=colour, label=entry)
+    study.label_axis(axis, "x", across)
+    axis.set_ylabel(label(values))
+    if each:
+        title = label(study.data[each[0]])
+        figure.legend(title=title, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -160,28 +157,27 @@ def draw_points(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
     size = 1.5 if values.sizes[SAMPLE] > _MANY_POINTS else 4.0
     columns = min(len(names), 4)
     rows = -(-len(names) // columns)
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(
-            rows,
-            columns,
-            sharey=True,
-            squeeze=False,
-            figsize=(TWO_COLUMNS, 0.5 + 1.7 * rows),
-        )
-        for name, axis in zip(names, axes.flat, strict=False):
-            for colour, k in zip(colours, shown, strict=True):
-                one = values.isel({each: k}) if each else values
-                entry = number(lines[k]) if each else None
-                axis.plot(study.data[name], one, ".", markersize=size, color=colour, label=entry)
-            study.label_axis(axis, "x", name)
-        for axis in axes.flat[len(names) :]:
-            axis.remove()
-        for row in axes[:, 0]:
-            row.set_ylabel(label(values))
-        if each:
-            entries = axes[0, 0].get_legend_handles_labels()
-            title = label(study.data[each])
-            figure.legend(*entries, title=title, loc="outside lower center", ncols=4)
+    figure, axes = plt.subplots(
+        rows,
+        columns,
+        sharey=True,
+        squeeze=False,
+        figsize=(TWO_COLUMNS, 0.5 + 1.7 * rows),
+    )
+    for name, axis in zip(names, axes.flat, strict=False):
+        for colour, k in zip(colours, shown, strict=True):
+            one = values.isel({each: k}) if each else values
+            entry = number(lines[k]) if each else None
+            axis.plot(study.data[name], one, ".", markersize=size, color=colour, label=entry)
+        study.label_axis(axis, "x", name)
+    for axis in axes.flat[len(names) :]:
+        axis.remove()
+    for row in axes[:, 0]:
+        row.set_ylabel(label(values))
+    if each:
+        entries = axes[0, 0].get_legend_handles_labels()
+        title = label(study.data[each])
+        figure.legend(*entries, title=title, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -198,37 +194,36 @@ def draw_indices(plots: StudyPlots, *measures: str) -> matplotlib.figure.Figure:
     ]
     indices = [sensitivity(whole, m) for m in chosen]
     columns = len(chosen)
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(
-            1,
-            columns,
-            squeeze=False,
-            figsize=(
-                ONE_COLUMN if columns == 1 else TWO_COLUMNS,
-                0.9 + 0.34 * len(study.axes),
-            ),
-        )
-        for axis, name, ranked in zip(axes[0], chosen, indices, strict=True):
-            ranked = ranked.isel(parameter=np.argsort(ranked["total"].values, kind="stable"))
-            place = np.arange(ranked.sizes["parameter"])
-            for kind, shift, colour, label in (
-                ("total", -0.19, TOTAL, "with others"),
-                ("first", 0.19, FIRST, "alone"),
-            ):
-                axis.barh(
-                    place + shift,
-                    ranked[kind].values,
-                    0.36,
-                    xerr=ranked[f"{kind}_interval"].values,
-                    color=colour,
-                    label=label,
-                    error_kw={"linewidth": 0.7},
-                )
-            shown = [study.name(str(p)) for p in ranked["parameter"].values]
-            axis.set_yticks(place, shown)
-            axis.tick_params(axis="y", length=0)
-            axis.set_xlim(min(0.0, axis.get_xlim()[0]), None)
-            axis.axvline(0.0, color="black", linewidth=0.6)
-            axis.set_xlabel(f"share of the variance of {study.name(name)} (1)")
-        axes[0, 0].legend(loc="lower right")
+    figure, axes = plt.subplots(
+        1,
+        columns,
+        squeeze=False,
+        figsize=(
+            ONE_COLUMN if columns == 1 else TWO_COLUMNS,
+            0.9 + 0.34 * len(study.axes),
+        ),
+    )
+    for axis, name, ranked in zip(axes[0], chosen, indices, strict=True):
+        ranked = ranked.isel(parameter=np.argsort(ranked["total"].values, kind="stable"))
+        place = np.arange(ranked.sizes["parameter"])
+        for kind, shift, colour, entry in (
+            ("total", -0.19, TOTAL, "with others"),
+            ("first", 0.19, FIRST, "alone"),
+        ):
+            axis.barh(
+                place + shift,
+                ranked[kind].values,
+                0.36,
+                xerr=ranked[f"{kind}_interval"].values,
+                color=colour,
+                label=entry,
+                error_kw={"linewidth": 0.7},
+            )
+        shown = [study.name(str(p)) for p in ranked["parameter"].values]
+        axis.set_yticks(place, shown)
+        axis.tick_params(axis="y", length=0)
+        axis.set_xlim(min(0.0, axis.get_xlim()[0]), None)
+        axis.axvline(0.0, color="black", linewidth=0.6)
+        axis.set_xlabel(f"share of the variance of {study.name(name)} (1)")
+    axes[0, 0].legend(loc="lower right")
     return figure
