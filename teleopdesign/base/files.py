@@ -137,25 +137,12 @@ def write_beside(path: str | Path) -> Iterator[Path]:
 
     raises ExperimentError: the system refuses to write; the message is one line
     """
-    try:
-        target = Path(os.path.realpath(path))  # a link stays a link
-    except (OSError, ValueError) as error:  # ValueError: a null character in the path
-        raise ExperimentError(f"{path}: cannot be written: {error}") from error
-    try:
-        if target.exists() and not target.is_file():  # a folder is refused, a pipe just written to
-            yield target
-            return
-        part = target.with_name(f".{uuid4().hex[:8]}.{target.name}")
-        try:
-            yield part
+    with _part_beside(path) as (target, part):
+        yield part
+        if part is not target:
             if target.exists():
                 part.chmod(target.stat().st_mode)
             os.replace(part, target)
-        finally:
-            with suppress(OSError):
-                part.unlink()
-    except OSError as error:
-        raise ExperimentError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
 def check_writable(path: str | Path) -> None:
@@ -163,20 +150,28 @@ def check_writable(path: str | Path) -> None:
 
     raises ExperimentError: an unwritable folder, a full disk
     """
+    with _part_beside(path) as (target, part):
+        if part is not target:  # a pipe is opened once, for the result
+            part.write_bytes(bytes(_TRIAL))
+
+
+@contextmanager
+def _part_beside(path: str | Path) -> Iterator[tuple[Path, Path]]:
+    """The file of a path, and a temporary path beside it: of a pipe or a folder, itself."""
     try:
-        target = Path(os.path.realpath(path))
-        if target.exists() and not target.is_file():  # a pipe is opened once, for the result
-            return
-        part = target.with_name(f".{uuid4().hex[:8]}.{target.name}")
-        try:
-            with part.open("wb") as file:
-                file.write(bytes(_TRIAL))
-        finally:
+        target = Path(os.path.realpath(path))  # a link stays a link
+        is_file = target.is_file() or not target.exists()
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        raise ExperimentError(f"{path}: cannot be written: {error}") from error
+    part = target.with_name(f".{uuid4().hex[:8]}.{target.name}") if is_file else target
+    try:
+        yield target, part
+    except OSError as error:
+        raise ExperimentError(f"{path}: cannot be written: {error.strerror or error}") from error
+    finally:
+        if is_file:
             with suppress(OSError):
                 part.unlink()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ExperimentError(f"{path}: cannot be written: {reason}") from error
 
 
 def harmless_cell(text: str) -> str:

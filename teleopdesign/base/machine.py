@@ -6,6 +6,9 @@ without other threads is copied, and only on Linux. A copy ends with this proces
 one is killed. It never receives Ctrl-C, runs none of the handlers with which this process reacts to
 signals or ends, and makes no copies itself.
 
+Libraries start threads by themselves. These would compete with other processes, and could add
+numbers in another order: `one_thread` allows none.
+
 numba keeps machine code on disk. A function is compiled in the process, which takes seconds, where
 nothing can be written (a package that only other users may write to, no home folder, a full disk)
 or where the kept code is damaged. None of these raises an error. Compiled code contains the
@@ -41,6 +44,37 @@ def count_workers() -> int:
     """Threads or copies of this process at a time: as many as cores, or NUMBA_NUM_THREADS."""
     allowed = os.environ.get("NUMBA_NUM_THREADS", "")
     return int(allowed) if allowed.isdecimal() and int(allowed) else count_cores()
+
+
+#: environment in which libraries start no threads
+ONE_THREAD = {
+    name: "1"
+    for name in (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "NUMBA_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+    )
+}
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Allow no threads of libraries, and none that simulate side by side."""
+    from threadpoolctl import threadpool_limits
+
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(ONE_THREAD)
+    try:
+        with threadpool_limits(1):
+            yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
 
 
 #: threads of a library that starts them again in a copy: jemalloc's, which pyarrow contains

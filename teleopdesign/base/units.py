@@ -7,6 +7,8 @@ degrees, turns and rpm are converted. Currents and voltages become forces by a c
 (`converting_factor`).
 """
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Mapping
@@ -179,16 +181,15 @@ class _Kind:
     noun: str
     units: tuple[str, ...]
 
+    @classmethod
+    def of(cls, text: str) -> _Kind:
+        """The kind of a text such as "a length: m, mm"."""
+        noun, _, units = text.partition(": ")
+        return cls(noun, tuple(units.split(", ")))
 
-_TIME = _Kind("a time", ("s", "ms"))
-_FREQUENCY = _Kind("a frequency", ("Hz", "rad/s"))
-_ANGLE = _Kind("an angle", ("rad", "deg"))
-_NUMBER = _Kind("a number without dimension", ("1", "%"))
+
 #: a part of a range or of a rated value: no angle, although both have no dimension
 _PER_CENT = "%"
-_TEMPERATURE = _Kind("a temperature", ("K", "mK"))
-_PER_KELVIN = _Kind("a part per kelvin", ("1/K", "%/K"))
-
 #: several times a unit of time: ticks of a clock of 8 kHz are "125 us" or "1/8000 s"
 _SEVERAL = re.compile(
     r"\s*(?P<number>\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)(?:\s*/\s*(?P<parts>[1-9]\d*))?"
@@ -198,46 +199,41 @@ _SEVERAL = re.compile(
 #: a frequency, which as a speed of rotation counts turns
 _HERTZ = re.compile(r"[a-zA-Zµμ]?Hz")
 
-# quantity -> (on a prismatic axis, on a revolute axis)
-QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
-    "time": (_TIME, _TIME),
-    "position": (_Kind("a length", ("m", "mm")), _ANGLE),
-    "velocity": (
-        _Kind("a velocity", ("m/s", "mm/s")),
-        _Kind("an angular velocity", ("rad/s", "deg/s")),
-    ),
+#: quantity -> its noun and units on a prismatic axis, and on a revolute axis if they differ there
+_NOUNS = {
+    "time": ("a time: s, ms",),
+    "position": ("a length: m, mm", "an angle: rad, deg"),
+    "velocity": ("a velocity: m/s, mm/s", "an angular velocity: rad/s, deg/s"),
     "acceleration": (
-        _Kind("an acceleration", ("m/s^2", "mm/s^2")),
-        _Kind("an angular acceleration", ("rad/s^2", "deg/s^2")),
+        "an acceleration: m/s^2, mm/s^2",
+        "an angular acceleration: rad/s^2, deg/s^2",
     ),
-    "force": (_Kind("a force", ("N", "mN")), _Kind("a torque", ("N*m", "mNm"))),
-    "energy": (_Kind("an energy", ("J", "mJ")), _Kind("an energy", ("J", "mJ"))),
-    "inertia": (_Kind("a mass", ("kg", "g")), _Kind("a moment of inertia", ("kg*m^2", "g*cm^2"))),
-    "damping": (
-        _Kind("a damping", ("N*s/m", "N*s/mm")),
-        _Kind("a rotary damping", ("N*m*s/rad", "mNm*s/rad")),
-    ),
-    "stiffness": (
-        _Kind("a stiffness", ("N/m", "N/mm")),
-        _Kind("a rotary stiffness", ("N*m/rad", "N*m/deg")),
-    ),
+    "force": ("a force: N, mN", "a torque: N*m, mNm"),
+    "energy": ("an energy: J, mJ",),
+    "inertia": ("a mass: kg, g", "a moment of inertia: kg*m^2, g*cm^2"),
+    "damping": ("a damping: N*s/m, N*s/mm", "a rotary damping: N*m*s/rad, mNm*s/rad"),
+    "stiffness": ("a stiffness: N/m, N/mm", "a rotary stiffness: N*m/rad, N*m/deg"),
     "drag": (
-        _Kind("a quadratic drag", ("N*s^2/m^2", "kg/m")),
-        _Kind("a rotary quadratic drag", ("N*m*s^2/rad^2", "mNm*s^2/rad^2")),
+        "a quadratic drag: N*s^2/m^2, kg/m",
+        "a rotary quadratic drag: N*m*s^2/rad^2, mNm*s^2/rad^2",
     ),
     "cubic_stiffness": (
-        _Kind("a cubic stiffness", ("N/m^3", "N/mm^3")),
-        _Kind("a rotary cubic stiffness", ("N*m/rad^3", "mNm/rad^3")),
+        "a cubic stiffness: N/m^3, N/mm^3",
+        "a rotary cubic stiffness: N*m/rad^3, mNm/rad^3",
     ),
     "per_square_of_position": (
-        _Kind("a part per length squared", ("1/m^2", "1/mm^2")),
-        _Kind("a part per angle squared", ("1/rad^2", "1/deg^2")),
+        "a part per length squared: 1/m^2, 1/mm^2",
+        "a part per angle squared: 1/rad^2, 1/deg^2",
     ),
-    "temperature": (_TEMPERATURE, _TEMPERATURE),
-    "temperature_coefficient": (_PER_KELVIN, _PER_KELVIN),
-    "frequency": (_FREQUENCY, _FREQUENCY),
-    "angle": (_ANGLE, _ANGLE),
-    "dimensionless": (_NUMBER, _NUMBER),
+    "temperature": ("a temperature: K, mK",),
+    "temperature_coefficient": ("a part per kelvin: 1/K, %/K",),
+    "frequency": ("a frequency: Hz, rad/s",),
+    "angle": ("an angle: rad, deg",),
+    "dimensionless": ("a number without dimension: 1, %",),
+}
+#: quantity -> (on a prismatic axis, on a revolute axis)
+QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
+    name: (_Kind.of(texts[0]), _Kind.of(texts[-1])) for name, texts in _NOUNS.items()
 }
 
 
@@ -374,7 +370,7 @@ def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:
 
 def _is_part(unit: str, kind: _Kind) -> bool:
     """Whether a unit is a part of a whole where an angle is wanted: "Valve position [%]"."""
-    return kind is _ANGLE and unit.strip() == _PER_CENT
+    return kind.noun == "an angle" and unit.strip() == _PER_CENT
 
 
 def _kind(quantity: str, axis: str, where: str) -> _Kind:

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from ..base.errors import ExperimentError
 from ..base.files import read_whole, write_json
 from ._arms import add_body
-from ._claims import WIDTH, claim_data, claim_lines
+from ._claims import BESIDE_A_DIAGRAM, WIDTH, claim_data, claim_lines, is_diagram, settle_diagram
 from ._diagnosis import body_of_source
-from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
 from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
 
 if TYPE_CHECKING:

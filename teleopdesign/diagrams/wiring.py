@@ -21,8 +21,17 @@ from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from .junctions import Junction, Kinematics, Weight, position_symbol
 from .one_axis import require_one_axis
-from .part_text import list_laws, write_equation
-from .parts import AnyBlock, Attached, Block, Control, Linked, Moving, Part
+from .parts import (
+    AnyBlock,
+    Attached,
+    Block,
+    Control,
+    Linked,
+    Moving,
+    Part,
+    list_laws,
+    write_equation,
+)
 
 
 @check_types

@@ -13,8 +13,8 @@ from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.sensors import sensors_of
 from ..measurement.experiment import Experiment
 from .family import PathPart, Setting, Show, family
-from .following import servo_of
 from .limits import Limits, course_of, shown_limits
+from .path import servo_of
 from .prediction import find_least_determined, predict
 from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups

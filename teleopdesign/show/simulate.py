@@ -171,8 +171,6 @@ def plot_force_displacement(result: ForceDisplacement) -> matplotlib.figure.Figu
         axis.set_title(f"({letter})", loc="left", pad=3)
         axis.grid(True)
     figure.legend(
-        *right.get_legend_handles_labels(),
-        loc="outside lower center",
-        ncols=len(cases) + touched,
+        *right.get_legend_handles_labels(), loc="outside lower center", ncols=len(cases) + touched
     )
     return figure

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from .measures import find_onset as find_onset
     from .measures import growth as growth
     from .outcomes import PointOutcome as PointOutcome
+    from .outcomes import Progress as Progress
     from .point import Amount as Amount
     from .point import Point as Point
-    from .progress import Progress as Progress
     from .result import Study as Study
     from .result import read_study as read_study
     from .run import study as study

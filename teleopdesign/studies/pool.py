@@ -18,9 +18,8 @@ from typing import Any
 
 from ..base.errors import ModelError
 from ..base.machine import shield_from_ctrl_c
-from .evaluate import StudyTask
+from .evaluate import StudyTask, Unit
 from .outcomes import PointOutcome
-from .side_by_side import Unit
 from .worker_processes import WorkerProcess, pack_task, receive, send, start_anew, start_copies
 
 Sink = Callable[[PointOutcome], None]

@@ -23,11 +23,9 @@ from functools import partial
 from typing import Any, BinaryIO, cast
 
 from ..base.errors import ModelError, TeleopDesignError
-from ..base.machine import Copy, can_copy, forbid_copies, has_hidden_threads
-from .evaluate import StudyTask
-from .one_thread import ONE_THREAD, one_thread
+from ..base.machine import ONE_THREAD, Copy, can_copy, forbid_copies, has_hidden_threads, one_thread
+from .evaluate import StudyTask, evaluate_unit
 from .outcomes import as_row
-from .side_by_side import evaluate_unit
 
 
 @dataclass

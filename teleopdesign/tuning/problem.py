@@ -15,12 +15,11 @@ from ..base.expectations import describe_value
 from ..passivity.intervals.box import ValueBox
 from ..studies.case import SimulatedCase
 from ..studies.chosen_measures import Measure
-from ..studies.evaluate import StudyTask
+from ..studies.evaluate import StudyTask, units_of
 from ..studies.outcomes import PointOutcome
 from ..studies.points import points_of
 from ..studies.processes import run_on_this_machine
 from ..studies.samples import Samples
-from ..studies.side_by_side import units_of
 from .limits import TuningLimit, margin_function
 
 #: intervals whose ends differ by more than this factor are searched in logarithms

@@ -14,9 +14,8 @@ from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
 from ..model import Model
 from .curve import Curve, curve_of, regions_of, without_columns
-from .dependence import Dependence, dependences, model_columns
+from .dependence import Contrast, Dependence, contrasts, dependences, model_columns
 from .formula import Formula, formula_for
-from .qualifiers import Contrast, contrasts
 from .rows import Rows, rows_of
 from .shapes import Shape
 from .views import Whiteness, curve_graph, views_of, whiteness_of

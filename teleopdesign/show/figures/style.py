@@ -33,23 +33,14 @@ CASES = {
 }
 #: colours of what is proved, what is refuted, a theory, and all else
 PROVED, REFUTED, THEORY, GREY = "#009E73", "#D55E00", "#0072B2", "#7F7F7F"
+#: symbols of signals that are no letter with an index
 _SYMBOLS = {
-    "R_D": "R_D",
-    "R_A": "R_A",
-    "R_M": "R_M",
-    "R_V": "R_V",
-    "R_H": "R_H",
     "E": "R_D - R_M",
     "L": "L",
-    "L_D": "L_D",
     "L_E": "L_D - L",
-    "R_FF": r"R_{\mathrm{FF}}",
-    "R_MBC": r"R_{\mathrm{MBC}}",
     "L_velocity": r"\dot L",
     "L_acceleration": r"\ddot L",
 }
-
-
 #: a letter with a short index, and how often it is differentiated: "X_m", "X_m_velocity"
 _INDEXED = re.compile(r"([A-Za-z])_([A-Za-z0-9]{1,3})(_velocity|_acceleration)?")
 _DOTS = {None: "", "_velocity": r"\dot ", "_acceleration": r"\ddot "}

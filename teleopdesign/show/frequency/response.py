@@ -12,15 +12,7 @@ from typing import TYPE_CHECKING
 from ...base.sentences import unit_at_axis
 from ..figures.style import ONE_COLUMN, TWO_COLUMNS
 from ..registry import shows
-from .axes import (
-    PageColumns,
-    legend_below,
-    look,
-    mark_degrees,
-    panels,
-    points,
-    share_abscissa,
-)
+from .axes import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
 
 if TYPE_CHECKING:
     import matplotlib.axes

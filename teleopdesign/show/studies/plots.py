@@ -158,11 +158,7 @@ def draw_points(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
     columns = min(len(names), 4)
     rows = -(-len(names) // columns)
     figure, axes = plt.subplots(
-        rows,
-        columns,
-        sharey=True,
-        squeeze=False,
-        figsize=(TWO_COLUMNS, 0.5 + 1.7 * rows),
+        rows, columns, sharey=True, squeeze=False, figsize=(TWO_COLUMNS, 0.5 + 1.7 * rows)
     )
     for name, axis in zip(names, axes.flat, strict=False):
         for colour, k in zip(colours, shown, strict=True):
@@ -198,10 +194,7 @@ def draw_indices(plots: StudyPlots, *measures: str) -> matplotlib.figure.Figure:
         1,
         columns,
         squeeze=False,
-        figsize=(
-            ONE_COLUMN if columns == 1 else TWO_COLUMNS,
-            0.9 + 0.34 * len(study.axes),
-        ),
+        figsize=(ONE_COLUMN if columns == 1 else TWO_COLUMNS, 0.9 + 0.34 * len(study.axes)),
     )
     for axis, name, ranked in zip(axes[0], chosen, indices, strict=True):
         ranked = ranked.isel(parameter=np.argsort(ranked["total"].values, kind="stable"))

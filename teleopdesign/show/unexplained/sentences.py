@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from ...base.sentences import amount, number, span
 from ...unexplained.curve import Curve, SignRegion, goes_up_and_down, largest_regions, regions_of
+from ...unexplained.dependence import Contrast
 from ...unexplained.formula import Formula, formula_text
-from ...unexplained.qualifiers import Contrast
 from ...unexplained.shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
 from ..registry import shows
 
