@@ -23,6 +23,7 @@ FOLDERS = (
     "frequency",
     "identify",
     "next_experiment",
+    "passivity",
     "simulate",
     "studies",
     "tuning",
@@ -34,8 +35,10 @@ def classes():
     """Every class of the package's results, with the looks of all of them loaded."""
     for folder in FOLDERS:
         package = import_module(f"{PACKAGE.name}.{folder}")
-        for part in pkgutil.iter_modules(package.__path__):
-            module = import_module(f"{package.__name__}.{part.name}")
+        for part in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if part.name.endswith("__main__"):
+                continue
+            module = import_module(part.name)
             for kind in vars(module).values():
                 if inspect.isclass(kind) and kind.__module__ == module.__name__:
                     yield kind
