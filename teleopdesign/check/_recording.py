@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.finding import Concern, Finding, Graph, Series
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.channel import BODY_QUANTITIES, Channel
 from ..measurement.description import ONE_BODY
 from ..measurement.encoder import reading_step

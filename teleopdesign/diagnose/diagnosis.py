@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
+from ..base.shown import figure_of
 from ..check import why_silent
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
@@ -198,9 +199,7 @@ class Diagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
-        from ..show.figures.diagnosis import plot_diagnosis
-
-        return plot_diagnosis(self)
+        return figure_of(self)
 
     def _repr_html_(self) -> str:
         return ladder_html(self.rungs, floor=self.floor.value, note=sentence(self))

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ..base.notebook import html_table
-from ..base.quantity import unit_after_number, unit_of
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.shown import html_table
+from ..base.units import unit_after_number, unit_of
 from ..blocks import Value
 from ..check.log_reading import short_segment_lines
 from ..measurement.bandwidth import slower_sensors

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..check.sample_clock import jitter_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of

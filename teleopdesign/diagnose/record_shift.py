@@ -35,8 +35,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.plain_data import make_plain
-from ..base.standard_error import with_standard_error
+from ..base.files import make_plain
+from ..base.sentences import with_standard_error
 from ..blocks import Value
 from ..measurement.filtering import Array
 from ..measurement.logger_clock import CLOCK

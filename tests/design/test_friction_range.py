@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.base.rounding import round_down, round_up
+from teleopdesign.base.sentences import round_down, round_up
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design.cancellation import acting_gain
 from teleopdesign.realise.friction_interval import friction_interval

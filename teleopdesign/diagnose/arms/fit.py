@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ...measurement.filtering import Array
 from ...measurement.prepare import Prepared, Stretch
 from ...measurement.shared_links import Knowledge, share, weighted_columns

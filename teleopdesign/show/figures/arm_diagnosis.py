@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...diagnose.comparison import residual_data
+from ..registry import shows
 from .diagnosis import (
     AFTER,
     BEFORE,
@@ -16,7 +17,7 @@ from .diagnosis import (
     draw_over_time,
     label_of,
 )
-from .letters import house_style
+from .style import house_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
 
 
+@shows("figure")
 def plot_arm_diagnosis(diagnosis: ArmDiagnosis) -> Figure:
     """For each joint: forces, residual over time and over velocity; below, the ladder of the arm.
 

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...base.files import make_plain, write_text
 from ...base.finding import Finding
-from ...base.plain_data import make_plain, write_text
+from ...base.sentences import join_names
+from ...base.sentences import percent_on_page as percent
 from ...diagnose import ArmDiagnosis
 from ...diagnose.arms.answer import arm_answer
 from ...diagnose.diagnosis import Diagnosis
@@ -23,7 +25,7 @@ from .figures import ladder_figure
 from .page import DIGITS, Page, limit_size, page_of, version
 from .parameter_table import AddedEffect
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
-from .words import describe_judgement, join_names, percent, sentence_of
+from .words import describe_judgement, sentence_of
 from .write import Figures, figures_of, render_page
 
 
