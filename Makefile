@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?=
 FUZZ ?= 2000
+FAULT_ARGS ?= --warm
 MUTATE ?= teleopdesign/effects tests/effects --number 10
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
@@ -17,7 +18,7 @@ JOBS ?= 2
 PARTS ?= 4
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz mutants lowest lock licences wheel ci clean
+.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz mutants faults lowest lock licences wheel ci clean
 # what one process has compiled to bytecode, hundreds of others need not compile again: collecting the
 # tests takes each process 5.6 s of processor time, 9.5 s without
 unexport PYTHONDONTWRITEBYTECODE
@@ -67,6 +68,10 @@ fuzz: $(VENV)/installed-test $(VENV)/installed-fuzz  ## spoilt files for every r
 mutants: $(VENV)/installed-test  ## small changes that no test notices (MUTATE="FOLDER TESTS --number N")
 	@echo "== Mutants: $(MUTATE)"
 	@$(BIN)/python tests/trust/mutants.py $(MUTATE)
+
+faults: $(VENV)/installed-test  ## planted faults that the plain tests do not notice; hours (FAULT_ARGS="--anchors-only")
+	@echo "== Planted faults"
+	@$(BIN)/python golden/faults.py $(FAULT_ARGS)
 
 benchmarks: $(VENV)/installed-test  ## times against their bounds, one at a time
 	@echo "== Benchmarks"
