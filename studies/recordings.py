@@ -28,7 +28,7 @@ from _one_case import processor_seconds
 
 import teleopdesign as td
 from teleopdesign.base.errors import TeleopDesignError
-from teleopdesign.diagnose.arms import find_missing_in_arm
+from teleopdesign.diagnose import find_missing_in_arm
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
 from teleopdesign.measurement import Experiment
 from teleopdesign.measurement.recordings import RECORDINGS
@@ -82,18 +82,18 @@ def described(diagnosis: Any, output: Path, name: str) -> dict[str, Any]:
     row = {
         "verdict": diagnosis.verdict,
         "ladder": [
-            {"added": rung.title or None, "check_error": rung.fit.check_error}
+            {"added": rung.title or None, "check_error": rung.check_error}
             for rung in diagnosis.rungs
         ],
         "missing": [str(c) for c in diagnosis.missing],
         "text": str(diagnosis).replace(str(diagnosis.experiment.folder), name),
-        "floor": diagnosis.floor if is_arm else diagnosis.floor.value,
+        "floor": diagnosis.floor.value,
         "trees": None if learned is None else learned.alone,
         "learnable": None if learned is None else learned.error,
     }
     if is_arm:
         return row
-    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)[:SENTENCES]
+    left = where_it_fails(diagnosis.model, diagnosis.prepared, diagnosis.floor)[:SENTENCES]
     return row | {
         "indistinguishable": [[str(c) for c in group] for group in diagnosis.groups],
         "cannot_tell": [str(one) for one in diagnosis.undetermined],

@@ -19,8 +19,7 @@ The names that a user types:
     experiments   Experiment, experiment, load_experiment, check_experiment, example
     models        Model, Body
     effects       EFFECTS, load_effect
-    diagnosis     fit, compare, rank, find_missing, find_missing_in_arm, describe,
-                  propose_experiment
+    diagnosis     fit, compare, rank, find_missing, load_answer, describe, propose_experiment
     diagrams      Diagram, haptic_interface, teleoperator, hand, read_diagram, write_diagram
     controllers   CONTROLLERS, controller, from_control
     responses     derive_transfers, transfer_functions, bode, simulate_diagram, simulate_many,
@@ -108,11 +107,11 @@ if TYPE_CHECKING:
     from .design import Assumptions as Assumptions
     from .design import Design as Design
     from .design import design as design_compensation
-    from .diagnose import ArmDiagnosis as ArmDiagnosis
     from .diagnose import Comparison as Comparison
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
-    from .diagnose import compare, find_missing, find_missing_in_arm, fit, rank
+    from .diagnose import compare, find_missing, fit, load_answer, rank
+    from .diagnose import find_missing_in_arm as find_missing_in_arm
     from .diagrams import ANY as ANY
     from .diagrams import Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
     from .effects import EFFECTS, load_effect
@@ -172,11 +171,11 @@ __all__ = [
     "example",
     "experiment",
     "find_missing",
-    "find_missing_in_arm",
     "fit",
     "from_control",
     "hand",
     "haptic_interface",
+    "load_answer",
     "load_effect",
     "load_experiment",
     "measure",
@@ -217,7 +216,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "compare": "diagnose",
         "rank": "diagnose",
         "find_missing": "diagnose",
-        "find_missing_in_arm": "diagnose",
+        "load_answer": "diagnose",
         "describe": "unexplained",
         "propose_experiment": "next_experiment:propose",
     },
@@ -267,7 +266,6 @@ FURTHER: dict[str, dict[str, str]] = {
         "Comparison": "diagnose",
         "Ranking": "diagnose",
         "Diagnosis": "diagnose",
-        "ArmDiagnosis": "diagnose",
         "Simulation": "simulate",
         "Design": "design",
         "Study": "studies",
@@ -299,6 +297,7 @@ FURTHER: dict[str, dict[str, str]] = {
         "fit_simulation": "tuning",
     },
     "recordings": {
+        "find_missing_in_arm": "diagnose",
         "Record": "measurement",
         "fetch": "measurement.recordings",
         "measured_impedance": "frequency",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import combinations, zip_longest
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.prepare import Prepared
-from ..diagnose.repeats import Repeatability, repeatability, repeats_data
+from ..diagnose.repeats import Repeatability, repeatability
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..model import Model
 from .motion_facts import RARE, describe_motion, missing_excitation
@@ -73,7 +73,7 @@ def _describe_passes(repeats: Repeatability) -> Finding:
         f"a motion is made again in {100 * repeats.share:.0f} % of the rows. There "
         f"{100 * repeats.error:.2g} % of the force differs from pass to pass, which no model of "
         f"the motion explains; your model leaves {100 * repeats.left:.2g} %.",
-        repeats_data(repeats) or {},
+        asdict(repeats),
     )
 
 

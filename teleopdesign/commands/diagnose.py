@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,19 +13,14 @@ from ._diagnosis import (
     experiment_of,
     folder_of,
     print_diagnosis,
-    search_missing,
 )
 from ._folders import diagnose_all
 from ._options import add_effect_files, add_search, check_output, count_argument, say, say_written
 from ._paths import shell_word
-from ._report import write_arm_page, write_page
+from ._report import write_page
 
 if TYPE_CHECKING:
-    from ..diagnose import ArmDiagnosis, Diagnosis, SimulationComparison
-    from ..diagnose.arms.prepared import PreparedArm
-    from ..diagnose.prepare import Prepared
-    from ..measurement import Experiment
-    from ..model import Model
+    from ..diagnose import Diagnosis, SimulationComparison
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -106,17 +100,17 @@ def run(options: argparse.Namespace) -> int:
     ):
         if path is not None:
             check_output(path, endings)
-    from ..diagnose.answer import write_answer, write_predictions
+    from ..diagnose import write_answer
+    from ..diagnose.predictions import write_predictions
 
     folder = folder_of(*options.folder)
     experiment = experiment_of(folder)
     print(experiment)
     print()
-    if experiment.arm is not None:
-        return _run_arm(experiment, options)
     diagnosis = diagnose_experiment(experiment, options)
     print_diagnosis(diagnosis)
-    print(f"\n{diagnosis.model}")
+    if not diagnosis.joints:  # of an arm, each effect states its parameters above
+        print(f"\n{diagnosis.model}")
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
         write_answer(diagnosis, options.json, simulation=simulation)
@@ -128,37 +122,15 @@ def run(options: argparse.Namespace) -> int:
     if options.report is not None:
         write_page(diagnosis, options.report)
     say_written(options.report, options.json, options.predictions, options.figure)
-    for line in _suggest_commands(diagnosis, folder, options.json):
+    source = shell_word(options.json or folder)
+    suggest = _suggest_for_joints if diagnosis.joints else _suggest_commands
+    for line in suggest(diagnosis, source):
         print(line)
     return 0
 
 
-def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
-    """Diagnose an arm, print the ladder and write the requested files."""
-    from ..diagnose.arms import find_missing_in_arm
-    from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
-
-    diagnosis = search_missing(find_missing_in_arm, experiment, options)
-    print_diagnosis(diagnosis)
-    simulation = _simulation_of_arm(diagnosis, options)
-    if options.json is not None:
-        write_arm_answer(diagnosis, options.json, simulation=simulation)
-    if options.predictions is not None:
-        write_arm_predictions(diagnosis, options.predictions)
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            diagnosis.plot().savefig(part)
-    if options.report is not None:
-        write_arm_page(diagnosis, options.report)
-    say_written(options.report, options.json, options.predictions, options.figure)
-    source = shell_word(options.folder[0] if options.json is None else options.json)
-    for line in _suggest_for_joints(diagnosis, source):
-        print(line)
-    return 0
-
-
-def _suggest_for_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
-    """Lines with the next command for each joint.
+def _suggest_for_joints(diagnosis: Diagnosis, source: str) -> list[str]:
+    """Lines with the next command for each joint of an arm.
 
     source: the answer if one was written, else the folder, as typed in a shell
     """
@@ -175,56 +147,38 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
     """The final model driven by the recorded command, also printed; None without --simulate."""
     if not options.simulate:
         return None
-    from ..diagnose.by_simulation import compare_by_simulation
-
-    return _simulate(compare_by_simulation, diagnosis.model, diagnosis.prepared, options)
-
-
-def _simulation_of_arm(
-    diagnosis: ArmDiagnosis, options: argparse.Namespace
-) -> SimulationComparison | None:
-    """An arm's final model driven by the recorded command, also printed; None if not requested."""
-    if not options.simulate:
-        return None
-    from ..diagnose.arms.by_simulation import compare_arm_by_simulation
-
-    return _simulate(compare_arm_by_simulation, diagnosis.after.model, diagnosis.prepared, options)
-
-
-def _simulate(
-    compare: Callable[..., SimulationComparison],
-    model: Model,
-    prepared: Prepared | PreparedArm,
-    options: argparse.Namespace,
-) -> SimulationComparison:
     from ..diagnose import RecordedLoop
+    from ..diagnose.arms.by_simulation import compare_arm_by_simulation
+    from ..diagnose.by_simulation import compare_by_simulation
 
     loop = None if options.loop is None else RecordedLoop(*options.loop)
     say("simulating the final model")
-    comparison = compare(model, prepared, loop=loop)
+    if diagnosis.joints:
+        arm = diagnosis.recording.arm
+        comparison = compare_arm_by_simulation(diagnosis.model, arm, loop=loop)
+    else:
+        comparison = compare_by_simulation(diagnosis.model, diagnosis.prepared, loop=loop)
     say("")
     print(f"\n{comparison}")
     return comparison
 
 
-def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -> list[str]:
+def _suggest_commands(diagnosis: Diagnosis, source: str) -> list[str]:
     """Lines with the next commands; with a written answer they need no second diagnosis."""
     from ..diagnose.narrower_band import narrower_band
     from ..measurement.bandwidth import motion_beyond
 
-    source = shell_word(answer or folder)
     lines = []
     if diagnosis.groups:
         lines.append(f"what to measure to distinguish them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
         lines.append(f"where the model fails: teleopdesign describe {source}")
-        narrower = narrower_band(diagnosis.after.model, diagnosis.prepared)
+        narrower = narrower_band(diagnosis.model, diagnosis.prepared)
         if narrower is not None:
             lines.insert(0, f"{narrower}")
-        elif motion_beyond(diagnosis.experiment, diagnosis.prepared.bandwidth) is not None:
-            where = (
-                f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the records still show motion"
-            )
+        elif motion_beyond(diagnosis.experiment, diagnosis.bandwidth) is not None:
+            where = f"beyond {diagnosis.bandwidth:.3g} Hz, where the records still show motion"
+            folder = diagnosis.experiment.folder
             lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
     lines.append(f"to design a compensation: teleopdesign design {source} --output design")
     return ["", *lines]

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError, did_you_mean
 from ..base.plain_data import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer, print_diagnosis
+from ._diagnosis import diagnosis_of, diagnosis_of_part, experiment_and_answer, print_diagnosis
 from ._options import add_experiment, check_output, say
 from ._values import value_from
 
 if TYPE_CHECKING:
-    from ..diagnose import ArmDiagnosis
     from ..measurement import Experiment
     from ..next_experiment import Limits, SimulatedDiagnosis
 
@@ -95,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
     if experiment.arm is not None and options.body is None:
         return _run_arm(experiment, options)
     limits = _limits(_read_limits(options.limit, experiment), experiment)
-    diagnosis = diagnosis_of(experiment, options)
+    diagnosis = diagnosis_of_part(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print_diagnosis(diagnosis)
@@ -124,7 +123,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """Propose paths of all joints of an arm; with --body, `run` plans one joint instead."""
-    from ..next_experiment import propose_paths, write_reference
+    from ..next_experiment import propose_paths, shown_limits, write_reference
 
     for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
         if value is not None:
@@ -132,9 +131,11 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
                 f"{option}: not available for an arm: use --output, or --body JOINT"
             )
     stated = _read_limits(options.limit, experiment)
-    diagnosis = arm_diagnosis_of(experiment, options)
-    shown = {j: _shown_limits(diagnosis, j) for j in stated}
-    limits = {j: shown[j].with_values(**values) for j, values in stated.items()}
+    diagnosis = diagnosis_of(experiment, options)
+    limits = {
+        j: shown_limits(diagnosis.joints[j].prepared)[j].with_values(**values)
+        for j, values in stated.items()
+    }
     paths = propose_paths(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print_diagnosis(diagnosis)
@@ -149,13 +150,6 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         content = {**numbers, "period": paths.period, "standard_errors": dict(paths.errors)}
         write_json(options.json, content)
     return 0
-
-
-def _shown_limits(diagnosis: ArmDiagnosis, joint: str) -> Limits:
-    """The limits that the records of an arm have reached at one joint."""
-    from ..next_experiment import shown_limits
-
-    return shown_limits(diagnosis.prepared.joints[joint])[joint]
 
 
 def _wrap(text: str) -> str:

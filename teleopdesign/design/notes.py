@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable
 
 from ..base.quantity import unit_of
+from ..diagnose import Diagnosis
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import say_floors
 from ..realise.friction_interval import FrictionInterval
-from .from_answer import DiagnosedModel
 from .outcome import Design
 from .prediction import CasePrediction
 from .quasi_static import slow_body
@@ -18,7 +18,7 @@ from .quasi_static import slow_body
 CLOSE = 0.1
 
 
-def notes_on(design: Design, answer: DiagnosedModel) -> tuple[str, ...]:
+def notes_on(design: Design, diagnosis: Diagnosis) -> tuple[str, ...]:
     """The notes of a design; those on its model come first."""
     makers: tuple[Callable[[Design], list[str]], ...] = (
         _friction,
@@ -26,15 +26,15 @@ def notes_on(design: Design, answer: DiagnosedModel) -> tuple[str, ...]:
         _list_left_out,
         _compare_predictions,
     )
-    return (*_model(design, answer), *(line for make in makers for line in make(design)))
+    return (*_model(design, diagnosis), *(line for make in makers for line in make(design)))
 
 
-def _model(design: Design, answer: DiagnosedModel) -> list[str]:
+def _model(design: Design, diagnosis: Diagnosis) -> list[str]:
     lines = []
-    if answer.left > CRITERIA.adequate:
+    if diagnosis.left > CRITERIA.adequate:
         lines.append(
-            f"The model leaves {say_floors(answer.left)} noise floors unexplained (verdict "
-            f"{answer.verdict}): standard errors hold within the model only, so the least level "
+            f"The model leaves {say_floors(diagnosis.left)} noise floors unexplained (verdict "
+            f"{diagnosis.verdict}): standard errors hold within the model only, so the least level "
             "may be lower than these errors state, and the fraction "
             f"{design.assumptions.fraction:g} is the only margin against this."
         )

@@ -12,12 +12,14 @@ from .commoner import compare_look_alikes
 from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
 from .exchange import compare_alternatives, exchange
+from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
 from .led_astray import return_from_astray
 from .moves import add, remove
 from .narrower_band import choose_band, narrower_to_search
 from .noise_floor import noise_floor
 from .pairs import add_pair, replace_by_pair
+from .result import diagnosis_of
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
 from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
@@ -49,16 +51,16 @@ def find_missing(
     if among is not None:
         model = restrict_candidates(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
-    diagnosis = _diagnose(search)
+    diagnosis = diagnosis_of(search_ladder(search))
     if (band := narrower_to_search(diagnosis)) is not None:
         search.progress(f"once more, up to {band.bandwidth:.3g} Hz")
-        narrower = _diagnose(search.at(band.bandwidth))
+        narrower = diagnosis_of(search_ladder(search.at(band.bandwidth)))
         diagnosis = choose_band(diagnosis, narrower)
     return with_candidates_named(among, diagnosis)
 
 
-def _diagnose(search: LadderSearch) -> Diagnosis:
-    """The diagnosis of one search, from the user's model to the end of its ladder."""
+def search_ladder(search: LadderSearch) -> LadderEnd:
+    """The end of one search, which begins at the user's model."""
     state, rungs = climb(search, begin(search), with_last_corrected)
     return conclude(search, state, rungs)
 

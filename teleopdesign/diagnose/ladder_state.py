@@ -15,7 +15,6 @@ from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
-from .diagnosis import SetAside
 from .excerpt import cut_to_windows
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
@@ -27,6 +26,7 @@ from .rung import Rung
 from .search_plan import PLAN, SearchPlan
 from .silent_records import why_silent
 from .stated_fit import estimate_stated
+from .statements import SetAside
 
 
 @dataclass(frozen=True)

@@ -3,63 +3,148 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..base.notebook import html_table
-from ..base.quantity import unit_after_number, unit_of
+from ..base.quantity import unit_after_number
 from ..base.standard_error import with_standard_error
 from ..blocks import Value
-from ..measurement.bandwidth import slower_sensors
 from .adequacy import records_differ
-from .constant_force import constant_force_line
 from .criteria import CRITERIA
-from .fit import Fit
-from .left_out import left_out_lines, percent, possible_next
 from .noise_floor import say_floors
 from .open_parameters import open_parameters_line
-from .record_offsets import offset_groups
-from .record_shift import shifts_of
-from .short_segments import short_segments_line
 
 if TYPE_CHECKING:
-    from .arms.diagnosis import ArmRung
     from .diagnosis import Diagnosis
-    from .rung import Rung
+    from .statements import LadderRow
+
+#: relative difference from which the error at the command is stated in addition
+DIFFERENT = 0.02
 
 
-def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> str:
-    """The ladder as an HTML table for a notebook.
+def percent(error: float) -> str:
+    """An error in percent; "unknown" where it is not finite: the model is blind everywhere."""
+    return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
 
-    floor: relative noise floor;  note: text below the table
-    """
+
+def ladder_html(diagnosis: Diagnosis) -> str:
+    """The ladder as an HTML table for a notebook, with the verdict."""
     rows = [
         (
             "(your model, re-estimated)" if r.added is None else f"+ {r.title}",
-            f"{100 * r.fit.fit_error:.2f} %",
-            f"{100 * r.fit.check_error:.2f} %",
+            f"{100 * r.fit_error:.2f} %",
+            f"{100 * r.check_error:.2f} %",
         )
-        for r in rungs
+        for r in diagnosis.rungs
     ]
-    rows.append(("noise floor", "", f"{100 * floor:.2f} %"))
+    rows.append(("noise floor", "", f"{100 * diagnosis.floor.value:.2f} %"))
+    sentences = (f"{joint}: {sentence(one)}" for joint, one in diagnosis.joints.items())
+    note = "; ".join(sentences) or sentence(diagnosis)
     return html_table("Diagnosis", ("added", "fit error", "check error"), rows, note=note)
 
 
-def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Offsets of single records, estimated with the final model of the diagnosis."""
-    stretches, rows = diagnosis.prepared.stretches, []
-    for group, offsets in offset_groups(diagnosis.model, stretches):
-        motion = stretches[group[0]].motion
-        units = {
-            "position_zero": unit_of("position", offsets.body.axis),
-            "bias": unit_of("force", offsets.body.axis),
-            "friction_level": "of the model's",
-        }
-        rows += [
-            {"record": motion.file, "at": motion.body, "of": n, "value": v, "unit": units[n]}
-            for n, v in offsets.values.items()
-        ]
-    return rows
+def ladder_text(diagnosis: Diagnosis) -> str:
+    """The ladder as a table, with parameters, noise floor and verdict."""
+    lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
+    for row in diagnosis.rungs:
+        name = "(your model, re-estimated)" if row.added is None else f"+ {row.title}"
+        lines.append(f"{name:<42}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>12.2f}%")
+        if row.added is not None:
+            lines += _describe_addition(diagnosis, row)
+    if diagnosis.joints:
+        return "\n".join([*lines, *_lines_of_joints(diagnosis)])
+    lines += [str(offset) for offset in diagnosis.offsets]
+    lines += [str(shift) for shift in diagnosis.record_shift.values()]
+    lines.append(
+        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
+        f"  ({diagnosis.floor.source})"
+    )
+    source = f" ({diagnosis.bandwidth_source})" if diagnosis.bandwidth_source else ""
+    lines.append(f"compared up to {diagnosis.bandwidth:.3g} Hz{source}")
+    if diagnosis.left > CRITERIA.countable:
+        lines.append(
+            f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"
+        )
+    lines += [*_lines_of_rest(diagnosis), *_lines_not_accepted(diagnosis)]
+    lines += [f"set aside: {one}" for one in diagnosis.set_aside]
+    lines += [f"left out: {words}" for words in diagnosis.left_out]
+    if records_differ(diagnosis.after):
+        lines.append(records_line(diagnosis))
+    lines += diagnosis.remarks
+    if diagnosis.verdict == "model_adequate" and (line := open_parameters_line(diagnosis.model)):
+        lines.append(line)
+    return "\n".join([*lines, "", sentence(diagnosis)])
+
+
+def _lines_of_joints(diagnosis: Diagnosis) -> list[str]:
+    """What follows the ladder of an arm: errors of each joint, and what is said of it."""
+    lines = [f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%", ""]
+    lines.append(f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}")
+    for joint, one in diagnosis.joints.items():
+        ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]
+        shown = "".join(f"{100 * e:>9.2f}%" for e in (*ends, one.floor.value))
+        lines.append(f"{joint:<20}{shown}")
+    for joint, one in diagnosis.joints.items():
+        more = _lines_not_accepted(one) if one.more_is_missing else []
+        rest = [*map(str, one.record_shift.values()), *_lines_of_rest(one), *more]
+        rest += [f"set aside: {aside}" for aside in one.set_aside]
+        lines += ["", f"{joint}: {sentence(one)}", *(f"  {line}" for line in rest)]
+    if diagnosis.left_out:
+        lines += ["", *(f"left out: {words}" for words in diagnosis.left_out)]
+    names = ", ".join(map(str, diagnosis.missing))
+    return [*lines, "", f"verdict: {diagnosis.verdict}{': ' + names if names else ''}"]
+
+
+def _lines_of_rest(diagnosis: Diagnosis) -> list[str]:
+    """What the final model leaves: near reversals, what trees learn of it, what repeats."""
+    lines = []
+    if (near := diagnosis.near_reversals) is not None:
+        lines.append(f"check error {near}")
+    if diagnosis.learnable is not None:
+        lines.append(f"black box: {diagnosis.learnable}")
+    if diagnosis.repeats is not None:
+        lines.append(f"repeats: {diagnosis.repeats}")
+    return lines
+
+
+def _lines_not_accepted(diagnosis: Diagnosis) -> list[str]:
+    """The candidates that leave clearly less than the final model, each with the reason."""
+    return [
+        f"refused: {one.candidate} ({percent(one.check_error)}; at the command "
+        f"{percent(one.check_error_at_command)}): {one.reason}"
+        if one.why == "refused"
+        else f"not determined: {one.candidate} leaves least ({percent(one.check_error)}), but "
+        f"{one.reason}"
+        for one in diagnosis.not_accepted
+    ]
+
+
+def _describe_addition(diagnosis: Diagnosis, row: LadderRow) -> list[str]:
+    """Lines on the effect that a row added: its parameters, and other effects that it could be."""
+    added = row.added
+    assert added is not None
+    if diagnosis.joints:  # its joint says more of it
+        diagnosis = diagnosis.joints[added.at]
+        row = next(r for r in diagnosis.rungs if r.added == added)
+    model, lines = diagnosis.model, []
+    for p in added.effect.parameters:
+        full = f"{added.at}.{added.effect.name}.{p}"
+        bound = "  at its bound" if full in diagnosis.at_bound else ""
+        text = _estimate_text(model.parameters[full], model.unit(full))
+        lines.append(f"      {p} = {text}{bound}")
+    if (at_command := command_error_text(row)) is not None:
+        lines.append(f"      {at_command}")
+    if row.alternatives:
+        others = ", ".join(str(one.candidate) for one in row.alternatives)
+        lines.append(f"      equivalent on these records: {others}")
+    if (could_be := could_be_text(row, named=row.named or bool(row.alternatives))) is not None:
+        lines.append(f"      {could_be}")
+    lines += [
+        f"      not determined: {one.sentence}"
+        for one in diagnosis.undetermined
+        if one.candidate == added
+    ]
+    return lines
 
 
 def _estimate_text(value: Value, unit: str) -> str:
@@ -70,33 +155,23 @@ def _estimate_text(value: Value, unit: str) -> str:
     return f"{text}, not determined by these records"
 
 
-#: relative difference from which the error at the command is stated in addition
-DIFFERENT = 0.02
-
-
-def command_error_text(fit: Fit) -> str | None:
+def command_error_text(row: LadderRow) -> str | None:
     """The error at the command and the blind share; None where both add nothing."""
-    command_error = fit.at_command
-    alike = abs(command_error.error - fit.check_error) <= DIFFERENT * fit.check_error
-    if alike and command_error.blind == 0.0:
+    error, blind = row.check_error_at_command, row.blind
+    if abs(error - row.check_error) <= DIFFERENT * row.check_error and blind == 0.0:
         return None
-    blind = (
-        f", undefined in {100 * command_error.blind:.2g} % of the motion"
-        if command_error.blind
-        else ""
-    )
-    return f"check error at the command: {percent(command_error.error)}{blind}"
+    undefined = f", undefined in {100 * blind:.2g} % of the motion" if blind else ""
+    return f"check error at the command: {percent(error)}{undefined}"
 
 
-def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
-    """Other effects that a rung could be; None where none need be named.
+def could_be_text(row: LadderRow, *, named: bool = True) -> str | None:
+    """Other effects that a row's could be; None where none need be named.
 
-    They are named where the model before the rung left only noise, or the rung's effect is not
-    named.
+    They are named where the model before left only noise, or the row's effect is not named.
     """
-    if rung.could_be is None:
+    if row.could_be is None:
         return None
-    others = ", ".join(map(str, rung.could_be))
+    others = ", ".join(map(str, row.could_be))
     if named:
         others = others or "none of the other candidates"
         return f"without this effect the model leaves only noise; other possible effects: {others}"
@@ -104,95 +179,11 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
     return f"unexplained: this effect is less likely than not; {also}"
 
 
-def describe_addition(diagnosis: Diagnosis, rung: Rung) -> list[str]:
-    """Lines on the effect that a rung added: its parameters, and other effects that it could be."""
-    assert rung.added is not None
-    model, lines = diagnosis.model, []
-    for p in rung.added.effect.parameters:
-        full = f"{rung.added.at}.{rung.added.effect.name}.{p}"
-        value = model.parameters[full]
-        bound = "  at its bound" if full in diagnosis.after.at_bound else ""
-        lines.append(f"      {p} = {_estimate_text(value, model.unit(full))}{bound}")
-    if (text := command_error_text(rung.fit)) is not None:
-        lines.append(f"      {text}")
-    if rung.alternatives:
-        others = ", ".join(map(str, rung.alternatives))
-        lines.append(f"      equivalent on these records: {others}")
-    named = rung.added in diagnosis.named or bool(rung.alternatives)
-    if (could_be := could_be_text(rung, named=named)) is not None:
-        lines.append(f"      {could_be}")
-    lines += [
-        f"      not determined: {one.sentence}"
-        for one in diagnosis.undetermined
-        if one.candidate == rung.added
-    ]
-    return lines
-
-
-def ladder_text(diagnosis: Diagnosis) -> str:
-    """The ladder as a table, with parameters, noise floor and verdict."""
-    lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
-    for rung in diagnosis.rungs:
-        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.title}"
-        lines.append(
-            f"{name:<42}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
-        )
-        if rung.added is None:
-            continue
-        lines += describe_addition(diagnosis, rung)
-    lines += [
-        f"offset of {o['record']} alone: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
-        for o in offset_rows(diagnosis)
-    ]
-    lines += [str(shift) for shift in shifts_of(diagnosis.model, diagnosis.prepared.stretches)]
-    lines.append(
-        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
-        f"  ({diagnosis.floor.source})"
-    )
-    lines.append(_bandwidth_line(diagnosis))
-    if diagnosis.left > CRITERIA.countable:
-        lines.append(
-            f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"
-        )
-    if (near := diagnosis.near_reversals) is not None:
-        lines.append(f"check error {near}")
-    if diagnosis.learnable is not None:
-        lines.append(f"black box: {diagnosis.learnable}")
-    if diagnosis.repeats is not None:
-        lines.append(f"repeats: {diagnosis.repeats}")
-    lines += left_out_lines(diagnosis)
-    lines += [f"set aside: {one}" for one in diagnosis.set_aside]
-    lines += [f"left out: {words}" for words in diagnosis.left_out]
-    if records_differ(diagnosis.after):
-        lines.append(records_line(diagnosis))
-    if (short := short_segments_line(diagnosis.prepared.experiment)) is not None:
-        lines.append(short)
-    if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
-        lines.append(constant)
-    if diagnosis.verdict == "model_adequate" and (line := open_parameters_line(diagnosis.model)):
-        lines.append(line)
-    lines.append("")
-    lines.append(sentence(diagnosis))
-    return "\n".join(lines)
-
-
-def _bandwidth_line(diagnosis: Diagnosis) -> str:
-    """A sentence on the frequencies that the errors of the table include."""
-    stated, used = diagnosis.experiment.bandwidth, diagnosis.prepared.bandwidth
-    source = "chosen: up to there the positions show motion"
-    if stated is not None:
-        source = "stated"
-        if used < stated:
-            name, rate = min(slower_sensors(diagnosis.experiment), key=lambda one: one[1])
-            source = f"stated: {stated:.3g} Hz, but {name} has {rate:.4g} readings in a second"
-    return f"compared up to {used:.3g} Hz ({source})"
-
-
 def records_line(diagnosis: Diagnosis) -> str:
     """A sentence that the check error exceeds the fit error, with the likely cause."""
     after, on_all = diagnosis.after, diagnosis.on_all_records
     ratio = after.check_error / after.fit_error
-    if not diagnosis.prepared.of("check"):
+    if diagnosis.held_out:
         return (
             f"blocks: the error on blocks that are left out of the fit in turn is {ratio:.2g} "
             "times that on the fit: the other blocks do not determine the parameters. Record each "
@@ -221,81 +212,82 @@ def floors_apart(left: float, without: float) -> tuple[str, str]:
 
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict of a diagnosis in words."""
-    left = say_floors(diagnosis.left)
-    more = f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"
-    if diagnosis.may_be_noise:
-        more = (
-            f" The remaining error is {left} noise floors of {100 * diagnosis.floor.value:.3g} "
-            f"%. With this model sensor errors leave {100 * diagnosis.floor.drawn:.3g} %: these "
-            "records do not show whether more is missing."
-        )
-    rest = more if diagnosis.more_is_missing else ""
-    if (moment := diagnosis.moment) is not None:
-        whole, without = floors_apart(diagnosis.left, moment.without)
-        rest = (
-            f" The remaining error is {whole} noise floors, but {without} "
-            f"without one moment ({moment})."
-        )
+    rest = _rest(diagnosis)
     if diagnosis.verdict == "model_adequate":
         noise = f" The remaining error is noise ({diagnosis.left:.2f} noise floors)."
         return f"verdict: model_adequate.{rest or noise}"
     if diagnosis.verdict == "effects_missing":
-        added = [r for r in diagnosis.rungs if r.added is not None]
-        names = ", ".join(
-            " or ".join((r.title, *map(str, r.alternatives)))
-            for r in added
-            if r.added in diagnosis.missing
-        )
-        less = [r.title for r in added if r.added not in diagnosis.missing]
-        describe = "this effect describes" if len(less) == 1 else "these effects describe"
-        others = (
-            f" {', '.join(less)}: less likely than not; the force that {describe} counts as "
-            "unexplained."
-            if less
-            else ""
-        )
-        return f"verdict: effects_missing: {names}.{others}{rest}"
+        return f"verdict: effects_missing: {_named_effects(diagnosis)}{rest}"
+    left, added = say_floors(diagnosis.left), [r for r in diagnosis.rungs if r.added is not None]
+    names = ", ".join(r.title for r in added)
     if diagnosis.unlikely:
-        names = ", ".join(r.title for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided, leading candidate {names}: less likely than not, because "
             f"{left} noise floors are left."
         )
-    if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
-        titles = [r.title for r in diagnosis.rungs if r.added is not None]
-        helps = "helps, but explains" if len(titles) == 1 else "help, but explain"
+    if any(not r.alternatives for r in added):
+        helps = "helps, but explains" if len(added) == 1 else "help, but explain"
         return (
-            f"verdict: undecided. {', '.join(titles)} {helps} less than half of what is missing: "
+            f"verdict: undecided. {names} {helps} less than half of what is missing: "
             f"{left} noise floors are left."
         )
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
         return f"verdict: undecided, {names}: these records do not decide.{rest}"
-    if silent := diagnosis.why_silent:
-        return f"verdict: undecided. {silent}"
-    which = "effect that may be named" if left_out_lines(diagnosis) else "candidate effect"
+    if diagnosis.silence:
+        return f"verdict: undecided. {diagnosis.silence}"
+    which = "effect that may be named" if diagnosis.not_accepted else "candidate effect"
     return (
         f"verdict: undecided. No {which} explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"
     )
 
 
-def _nearest(diagnosis: Diagnosis) -> str:
-    """A sentence on the candidate with the least error where none is supported; "": none helps.
+def _named_effects(diagnosis: Diagnosis) -> str:
+    """The effects that are missing, and those that are less likely than not, as a sentence."""
+    added = [r for r in diagnosis.rungs if r.added is not None]
+    names = ", ".join(
+        " or ".join((r.title, *(str(one.candidate) for one in r.alternatives)))
+        for r in added
+        if r.added in diagnosis.missing
+    )
+    less = [r.title for r in added if r.added not in diagnosis.missing]
+    if not less:
+        return f"{names}."
+    describe = "this effect describes" if len(less) == 1 else "these effects describe"
+    return (
+        f"{names}. {', '.join(less)}: less likely than not; the force that {describe} counts as "
+        "unexplained."
+    )
 
-    Candidates that are listed beside an accepted one are not named a second time.
-    """
-    if diagnosis.open is not None:  # read from a file, which has no rankings
-        others = [q.others[0] for q in diagnosis.open if q.added is None]
-    else:
-        others = [(r.candidate, r.fit) for r in possible_next(diagnosis)]
-    least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
-    listed = [candidate for group in diagnosis.groups for candidate in group]
-    for candidate, fit in [o for o in others if o[0] not in listed][:1]:
-        if fit.check_error**2 < least:
-            why = next((a.reason for a in diagnosis.set_aside if a.candidate == candidate), "")
-            return (
-                f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: "
-                f"{why or 'on these records this may be chance'}."
-            )
-    return ""
+
+def _rest(diagnosis: Diagnosis) -> str:
+    """A sentence on what is left above noise; "": only noise is left."""
+    left = say_floors(diagnosis.left)
+    if (moment := diagnosis.moment) is not None:
+        whole, without = floors_apart(diagnosis.left, moment.without)
+        return (
+            f" The remaining error is {whole} noise floors, but {without} "
+            f"without one moment ({moment})."
+        )
+    if diagnosis.may_be_noise:
+        floor = diagnosis.floor
+        return (
+            f" The remaining error is {left} noise floors of {100 * floor.value:.3g} %. With this "
+            f"model sensor errors leave {100 * floor.drawn:.3g} %: these records do not show "
+            "whether more is missing."
+        )
+    if not diagnosis.more_is_missing:
+        return ""
+    return f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"
+
+
+def _nearest(diagnosis: Diagnosis) -> str:
+    """A sentence on the candidate with the least error where none is supported; "": none helps."""
+    near = diagnosis.nearest
+    if near is None:
+        return ""
+    return (
+        f" {near.candidate} comes nearest and would leave {100 * near.check_error:.3g} %: "
+        f"{near.reason or 'on these records this may be chance'}."
+    )

@@ -100,7 +100,7 @@ def column_sizes(columns: Array) -> Array:
         return np.asarray(np.linalg.norm(columns, axis=0))
 
 
-def reduced(columns: Array, residual: Array) -> tuple[Array, Array, Array]:
+def reduce_to_triangle(columns: Array, residual: Array) -> tuple[Array, Array, Array]:
     """Sizes (p,) of columns (n, p), and the least-squares problem reduced to p rows.
 
     With columns of size 1, |columns x + residual| = |triangle x + target| but for a constant. The
@@ -125,7 +125,7 @@ def reduced(columns: Array, residual: Array) -> tuple[Array, Array, Array]:
     return size * peak, triangle / size, factor[:, p]
 
 
-def damped(triangle: Array, target: Array, damping: float) -> tuple[Array, Array]:
+def add_damping(triangle: Array, target: Array, damping: float) -> tuple[Array, Array]:
     """Rows (2 p, p) and right-hand side (2 p,) of |triangle x + target|^2 + damping |x|^2."""
     p = len(target)
     return np.vstack([triangle, np.sqrt(damping) * np.eye(p)]), np.append(-target, np.zeros(p))
@@ -138,10 +138,10 @@ def gauss_newton_step(
 
     below, above: bounds of the step (p,);  returns: (p,), NaN where the Jacobian is not finite
     """
-    size, triangle, target = reduced(jacobian, residual)
+    size, triangle, target = reduce_to_triangle(jacobian, residual)
     if not np.isfinite(size).all():
         return np.full(len(size), np.nan)
-    rows, right = damped(triangle, target, damping + LEAST_DAMPING)
+    rows, right = add_damping(triangle, target, damping + LEAST_DAMPING)
     step = np.linalg.lstsq(rows, right, rcond=None)[0]
     if np.any(step < below * size) or np.any(step > above * size):
         low, high = below * size, above * size

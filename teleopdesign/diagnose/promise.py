@@ -15,7 +15,7 @@ from ..measurement.filtering import Array
 from ..model import Model
 from .bodies_apart import Apart, separate_bodies
 from .fit import Fit, free_parameters
-from .least_squares import damped, reduced, sum_of_squares
+from .least_squares import add_damping, reduce_to_triangle, sum_of_squares
 from .prepare import Prepared
 
 
@@ -61,10 +61,10 @@ class Promises:
 
 def _remaining_squares(columns: Array, residual: Array) -> float:
     """Squares of the residual that no combination of these columns removes."""
-    size, triangle, target = reduced(columns, residual)
+    size, triangle, target = reduce_to_triangle(columns, residual)
     if not np.isfinite(size).all():
         return math.inf
-    rows, right = damped(triangle, target, 1e-9)
+    rows, right = add_damping(triangle, target, 1e-9)
     step = np.linalg.lstsq(rows, right, rcond=None)[0]
     # least squares: the step is at right angles to what it leaves
     return sum_of_squares(residual) - float(right @ (rows @ step))

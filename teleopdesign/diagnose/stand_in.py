@@ -22,12 +22,12 @@ import numpy as np
 
 from .criteria import CRITERIA, Criteria
 from .decision import is_better
-from .diagnosis import SetAside
 from .fit import Fit, estimate
 from .noise_floor import NoiseFloor, say_floors
 from .one_moment import MOMENTS
 from .prepare import Prepared
 from .rung import Rung
+from .statements import SetAside
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:

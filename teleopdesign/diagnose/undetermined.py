@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from ..base.errors import ModelError
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
-from .diagnosis import Undetermined
 from .evidence import whole_score
 from .fit import Fit, estimate
 from .open_parameters import OPEN
@@ -20,6 +19,7 @@ from .plausibility import undetermined_of
 from .prepare import Prepared
 from .products import product_of
 from .rung import Rung
+from .statements import Undetermined
 
 #: a product of open parameters is known far better than each of them, if its relative error is
 #: below this part of the least relative error of the parameters

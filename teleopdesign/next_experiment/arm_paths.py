@@ -20,7 +20,7 @@ import numpy as np
 from ..arms.base_parameters import BaseParameters, base_parameters, columns_with_motors
 from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
-from ..diagnose import ArmDiagnosis
+from ..diagnose import Diagnosis
 from ..measurement.filtering import Array
 from .limits import Limits, shown_limits
 from .proposal import Reference
@@ -80,7 +80,7 @@ class ArmPaths(ByValue):
 
 
 def propose_paths(
-    diagnosis: ArmDiagnosis,
+    diagnosis: Diagnosis,
     *,
     duration: float = 20.0,
     limits: Mapping[str, Limits] | None = None,
@@ -94,7 +94,7 @@ def propose_paths(
         links of the diagnosis, and from Coulomb and viscous friction
     raises ExperimentError: no path keeps the limits
     """
-    experiment, prepared = diagnosis.experiment, diagnosis.prepared
+    experiment, prepared = diagnosis.experiment, diagnosis.recording.arm
     assert experiment.arm is not None
     shown = {j: shown_limits(p)[j] for j, p in prepared.joints.items()} | dict(limits or {})
     judge = _Judge(diagnosis, [shown[j] for j in prepared.joints])
@@ -131,13 +131,13 @@ def propose_paths(
 class _Judge:
     """Evaluation of paths by regressors of base parameters and friction, scaled by force."""
 
-    def __init__(self, diagnosis: ArmDiagnosis, limits: list[Limits]) -> None:
+    def __init__(self, diagnosis: Diagnosis, limits: list[Limits]) -> None:
         assert diagnosis.experiment.arm is not None
         self.arm = diagnosis.experiment.arm.arm
         self.base: BaseParameters = base_parameters(self.arm)
         self.limits = limits
-        self.links = np.array(diagnosis.after.links or self.base.initial)
-        joints = diagnosis.prepared.joints
+        self.links = np.array(diagnosis.model.links or self.base.initial)
+        joints = diagnosis.recording.arm.joints
         self.joints = tuple(joints)
         motions = [[s.motion for s in p.of("fit")] for p in joints.values()]
         force = [

@@ -185,11 +185,11 @@ def _verdict(point: Point) -> Any:
 
     of an experiment, its folder, or a diagnosis that the model's function returns
     """
-    from ..diagnose import ArmDiagnosis, Diagnosis, find_missing, find_missing_in_arm
+    from ..diagnose import Diagnosis, find_missing, find_missing_in_arm
     from ..measurement import Experiment, load_experiment
 
     diagnosis = point.content
-    if not isinstance(diagnosis, Diagnosis | ArmDiagnosis):
+    if not isinstance(diagnosis, Diagnosis):
         experiment = diagnosis
         if not isinstance(experiment, Experiment):
             experiment = load_experiment(experiment)

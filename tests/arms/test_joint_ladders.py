@@ -11,9 +11,9 @@ from arms.arm_simulator import random_arm, write_experiment
 import teleopdesign as td
 from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.arms import ladder, refusal
-from teleopdesign.diagnose.arms.diagnosis import ArmRung
 from teleopdesign.diagnose.arms.joint import Joint
 from teleopdesign.diagnose.arms.refusal import NO_HELP, NO_MORE_THAN_NOISE
+from teleopdesign.diagnose.arms.rung import ArmRung
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.ladder_state import LadderState

@@ -11,12 +11,10 @@ from arms.stated_models import stated_models
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.diagnose.answers import load_answer
-from teleopdesign.diagnose.arms.answer import write_arm_answer
+from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.arms.fit import estimate_arm
 from teleopdesign.diagnose.arms.other_motion import most_coupled, with_other_motions
 from teleopdesign.diagnose.arms.prepared import prepare_arm
-from teleopdesign.diagnose.arms.restored import restore_arm_diagnosis
 from teleopdesign.diagnose.search_plan import QUICK
 
 pytestmark = pytest.mark.slow  # a diagnosis of an arm
@@ -69,17 +67,16 @@ def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupl
     assert f"coupling at {named.at} by the motion of {other}" in repr(diagnosis)
     assert f"coupling at {other} by the motion of {named.at} leaves" in repr(diagnosis)
     path = tmp_path / "answer.json"
-    write_arm_answer(diagnosis, path)
+    write_answer(diagnosis, path)
     content = json.loads(path.read_text())
     assert content["missing"] == [{"effect": "coupling", "at": named.at, "follows": other}]
     assert content["other_motion"][named.at] == other
-    again = restore_arm_diagnosis(load_answer(path), experiment)
-    assert again.after.check_error == pytest.approx(diagnosis.after.check_error, rel=1e-6)
-    assert repr(again.rungs[-1].title) == repr(diagnosis.rungs[-1].title)
+    again = load_answer(path, experiment=experiment)
+    assert again == diagnosis and repr(again) == repr(diagnosis)
     content["other_motion"] = {"joint1": "joint7"}
     path.write_text(json.dumps(content))
     with pytest.raises(ExperimentError, match='other_motion: no joint "joint7", has joint1'):
-        restore_arm_diagnosis(load_answer(path), experiment)
+        load_answer(path, experiment=experiment).joints["joint1"].prepared  # noqa: B018
 
 
 def test_no_coupling_is_named_where_none_is(tmp_path):

@@ -9,7 +9,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.diagnose.arms.answer import write_arm_answer
+from teleopdesign.diagnose.answer import write_answer
 from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.next_experiment import propose_paths, shown_limits
 
@@ -38,7 +38,7 @@ def test_paths_tell_more_than_one_sine_a_joint_within_its_limits(poor):
     assert paths.condition < paths.recorded
     time = paths.reference.time
     for joint, position in paths.reference.position.items():
-        limit = shown_limits(diagnosis.prepared.joints[joint])[joint]
+        limit = shown_limits(diagnosis.joints[joint].prepared)[joint]
         velocity = np.gradient(position, time)
         acceleration = np.gradient(velocity, time)
         assert limit.low <= position.min() and position.max() <= limit.high
@@ -60,7 +60,7 @@ def test_the_same_records_give_the_same_paths(poor):
 @pytest.mark.slow
 def test_a_force_limit_below_gravity_is_one_line(poor):
     diagnosis, _ = poor
-    limits = shown_limits(diagnosis.prepared.joints["joint2"])["joint2"]
+    limits = shown_limits(diagnosis.joints["joint2"].prepared)["joint2"]
     with pytest.raises(ExperimentError, match="more force than the limits allow") as caught:
         propose_paths(diagnosis, limits={"joint2": limits.with_values(force=1e-3)})
     assert "\n" not in str(caught.value)
@@ -70,7 +70,7 @@ def test_a_force_limit_below_gravity_is_one_line(poor):
 def test_the_command_writes_a_reference_with_the_columns_of_the_records(poor, tmp_path, capsys):
     diagnosis, _ = poor
     answer, reference = tmp_path / "answer.json", tmp_path / "next.csv"
-    write_arm_answer(diagnosis, answer)
+    write_answer(diagnosis, answer)
     limit = ["--limit", "joint1.speed=0.2rad/s"]
     assert main(["next", str(answer), "--output", str(reference), *limit]) == 0
     assert "paths of 2 joints" in capsys.readouterr().out.replace("\n", " ")

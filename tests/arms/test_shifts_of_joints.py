@@ -135,7 +135,7 @@ def test_a_right_model_is_adequate_where_few_reversals_mislead_the_shift(tmp_pat
     diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("bias",))
     assert diagnosis.verdict == "model_adequate"
     assert diagnosis.joints["joint1"].left < 1.2
-    assert diagnosis.rungs[-1].fit.check_errors["joint1"] < 0.0045
+    assert diagnosis.rungs[-1].joints["joint1"].check_error < 0.0045
 
 
 def rows_late(diagnosis):

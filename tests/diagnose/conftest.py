@@ -19,10 +19,20 @@ def experiment(stribeck_case):
 
 
 @pytest.fixture(scope="session")
-def diagnosis(experiment):
-    """What is found on `stribeck_case` among the few effects of `simulated_cases.FEW`."""
+def end(experiment):
+    """What the search on `stribeck_case` ends with, among the effects of `simulated_cases.FEW`."""
     from diagnose.simulated_cases import FEW
 
-    from teleopdesign import Model, find_missing
+    from teleopdesign import Model
+    from teleopdesign.diagnose.ladder import search_ladder
+    from teleopdesign.diagnose.ladder_state import search_for
 
-    return find_missing(experiment, Model.from_experiment(experiment, FEW))
+    return search_ladder(search_for(experiment, Model.from_experiment(experiment, FEW)))
+
+
+@pytest.fixture(scope="session")
+def diagnosis(end):
+    """What that search states."""
+    from teleopdesign.diagnose.result import diagnosis_of
+
+    return diagnosis_of(end)

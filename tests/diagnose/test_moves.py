@@ -14,7 +14,6 @@ from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.diagnosis import SetAside
 from teleopdesign.diagnose.exchange import compare_alternatives, exchange
 from teleopdesign.diagnose.ladder_state import LadderSearch, begin, look, search_for
 from teleopdesign.diagnose.moves import add, remove
@@ -22,6 +21,7 @@ from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
 from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
+from teleopdesign.diagnose.statements import SetAside
 from teleopdesign.effects import EFFECTS
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.answer import answer, write_predictions
+from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.record_offsets import find_offsets, follow_records, offset_groups
 from teleopdesign.diagnose.residual import both_residuals, residuals

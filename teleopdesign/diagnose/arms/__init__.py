@@ -3,8 +3,3 @@
 Each joint is diagnosed as a separate body, with the information of the other joints on the links
 (`shared_links`). Effects that are accepted at one joint improve this information.
 """
-
-from .diagnosis import ArmDiagnosis, ArmRung
-from .ladder import find_missing_in_arm
-
-__all__ = ["ArmDiagnosis", "ArmRung", "find_missing_in_arm"]

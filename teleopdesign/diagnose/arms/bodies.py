@@ -13,11 +13,8 @@ from dataclasses import replace
 
 from ...model import Model
 from ..diagnosis import Diagnosis
-from ..fit import Fit
-from ..open_questions import open_questions
-from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit
-from .prepared import PreparedArm, mean_inertias, with_inertia, with_inertias
+from .prepared import PreparedArm, mean_inertias, with_inertias
 
 
 def as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[str, Model]]:
@@ -33,59 +30,47 @@ def as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[s
     return with_inertias(prepared, links), models
 
 
-def with_final_bodies(diagnosis: ArmDiagnosis, motors: Mapping[str, float]) -> ArmDiagnosis:
+def with_final_bodies(
+    diagnosis: Diagnosis, prepared: PreparedArm, motors: Mapping[str, float]
+) -> Diagnosis:
     """The diagnosis with the mean inertia of its final links at each joint; all residuals are kept.
 
     motors: joint -> stated inertia of its motor
     Where a structure divides a joint's body, the joint keeps its inertia: there the residual
     depends on it.
     """
-    means = mean_inertias(diagnosis.prepared, diagnosis.after.links)
-    links = {j: x for j, x in means.items() if not _is_parted(diagnosis.joints[j])}
-    whole = {j: x + motors[j] for j, x in links.items()}
-    parts = {j: with_inertia(diagnosis.prepared.joints[j], x) for j, x in links.items()}
-    return replace(
-        diagnosis,
-        prepared=replace(diagnosis.prepared, joints={**diagnosis.prepared.joints, **parts}),
-        rungs=tuple(_rung(r, links, whole) for r in diagnosis.rungs),
-        joints={
-            j: _joint(d, j, links[j], whole[j]) if j in links else d
-            for j, d in diagnosis.joints.items()
-        },
-    )
+    means = mean_inertias(prepared, diagnosis.model.links)
+    whole = {j: means[j] + motors[j] for j, one in diagnosis.joints.items() if not _is_parted(one)}
+    moved = _with_inertias(diagnosis, whole)
+    joints = {j: _with_inertias(one, whole) for j, one in diagnosis.joints.items()}
+    return replace(moved, joints=joints)
 
 
 def _is_parted(diagnosis: Diagnosis) -> bool:
     """Whether a model of a joint's ladder, or a rival of one, has a structure."""
-    models = [r.fit.model for r in diagnosis.rungs]
-    models += [fit.model for q in open_questions(diagnosis) for _, fit in q.others]
+    models = [r.model for r in diagnosis.rungs]
+    models += [rival.model for q in diagnosis.questions for rival in q.others]
     return any(e.role == "structure" for m in models for b in m.bodies.values() for e in b.effects)
 
 
-def _rung(rung: ArmRung, links: Mapping[str, float], whole: Mapping[str, float]) -> ArmRung:
-    fits = {j: _fit(f, j, whole[j]) if j in whole else f for j, f in rung.fit.fits.items()}
-    records = {
-        j: with_inertia(p, links[j]) if j in links else p for j, p in rung.fit.prepared.items()
-    }
-    return replace(rung, fit=replace(rung.fit, fits=fits, prepared=records))
+def _with_inertias(diagnosis: Diagnosis, whole: Mapping[str, float]) -> Diagnosis:
+    """The diagnosis with other inertias in all of its models; whole: joint -> inertia."""
 
+    def moved(model: Model) -> Model:
+        for joint in [j for j in whole if j in model.bodies]:
+            model = _with_inertia(model, joint, whole[joint])
+        return model
 
-def _joint(diagnosis: Diagnosis, joint: str, links: float, whole: float) -> Diagnosis:
     questions = tuple(
-        replace(q, others=tuple((c, _fit(f, joint, whole)) for c, f in q.others))
-        for q in open_questions(diagnosis)
+        replace(q, others=tuple(replace(r, model=moved(r.model)) for r in q.others))
+        for q in diagnosis.questions
     )
     return replace(
         diagnosis,
-        prepared=with_inertia(diagnosis.prepared, links),
-        rungs=tuple(replace(r, fit=_fit(r.fit, joint, whole)) for r in diagnosis.rungs),
-        estimated=_fit(diagnosis.estimated, joint, whole),
+        rungs=tuple(replace(r, fitted=moved(r.model)) for r in diagnosis.rungs),
+        estimated=None if diagnosis.estimated is None else moved(diagnosis.estimated),
         open=questions,
     )
-
-
-def _fit(fit: Fit, joint: str, inertia: float) -> Fit:
-    return replace(fit, model=_with_inertia(fit.model, joint, inertia))
 
 
 def _with_inertia(model: Model, joint: str, inertia: float) -> Model:

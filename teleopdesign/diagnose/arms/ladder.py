@@ -16,14 +16,14 @@ from ...model import Model
 from ..conclusion import conclude
 from ..diagnosis import Diagnosis
 from ..fit import Fit, fit_squares
-from ..ladder import climb, with_candidates_named
+from ..ladder import climb
+from ..ladder_end import LadderEnd
 from ..ladder_state import LadderSearch, LadderState, restrict_candidates
 from ..moves import add
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
-from .bodies import as_bodies, with_final_bodies
-from .diagnosis import ArmDiagnosis, ArmRung
-from .fit import ArmFit, estimate_arm, link_errors
+from .bodies import as_bodies
+from .fit import ArmFit, estimate_arm
 from .joint import (
     Joint,
     begin_joint,
@@ -36,6 +36,8 @@ from .other_motion import with_other_motions
 from .other_way import undetermined_coupling
 from .prepared import PreparedArm, isolate_joint, prepare_arm
 from .refusal import hold_against_arm
+from .result import arm_diagnosis_of
+from .rung import ArmRung
 
 
 def find_missing_in_arm(
@@ -46,7 +48,7 @@ def find_missing_in_arm(
     seed: int = 0,
     plan: SearchPlan = PLAN,
     among: Collection[str] | None = None,
-) -> ArmDiagnosis:
+) -> Diagnosis:
     """Compare an arm with an experiment and add the effects that its check records support.
 
     model: with a body for each joint; None: the model that the experiment describes
@@ -88,10 +90,9 @@ def find_missing_in_arm(
     prepared = with_other_motions(prepared, others_of(joints))
     last = with_shifts_of(joints, rungs[-1].fit, prepared)
     rungs = (*rungs[:-1], replace(rungs[-1], fit=last))
-    diagnosis = _conclude(experiment, prepared, joints, rungs)
-    limited = {j: with_candidates_named(among, d) for j, d in diagnosis.joints.items()}
-    motors = {j: stated.parameters[f"{j}.inertia"].value for j in limited}
-    return with_final_bodies(replace(diagnosis, joints=limited), motors)
+    ends = _conclude(prepared, joints, rungs)
+    motors = {j: stated.parameters[f"{j}.inertia"].value for j in joints}
+    return arm_diagnosis_of(prepared, rungs, ends, motors, among=among)
 
 
 def _select_beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
@@ -209,14 +210,11 @@ def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
 
 
 def _conclude(
-    experiment: Experiment,
-    prepared: PreparedArm,
-    joints: dict[str, Joint],
-    rungs: tuple[ArmRung, ...],
-) -> ArmDiagnosis:
-    """The verdict on each joint with the final links, and on the arm."""
+    prepared: PreparedArm, joints: dict[str, Joint], rungs: tuple[ArmRung, ...]
+) -> dict[str, LadderEnd]:
+    """The end of each joint's ladder, with the final links."""
     last = rungs[-1].fit
-    diagnoses = {j: _conclude_joint(joints[j], last.fits[j], prepared) for j in prepared.joints}
+    ends = {j: _conclude_joint(joints[j], last.fits[j], prepared) for j in prepared.joints}
     for rung in rungs:
         if rung.added is None or rung.follows is None:
             continue
@@ -224,19 +222,12 @@ def _conclude(
         relevant = joints[at].search.criteria.relevant
         coupling = undetermined_coupling(rung, last, prepared, relevant=relevant)
         if coupling is not None:
-            more = (*diagnoses[at].undetermined, coupling)
-            diagnoses[at] = replace(diagnoses[at], undetermined=more)
-    verdicts = {d.verdict for d in diagnoses.values()}
-    whole = "undecided"
-    if "effects_missing" in verdicts:
-        whole = "effects_missing"
-    elif verdicts == {"model_adequate"}:
-        whole = "model_adequate"
-    errors = () if prepared.base is None else tuple(link_errors(last, prepared).tolist())
-    return ArmDiagnosis(experiment, prepared, whole, rungs, diagnoses, errors)
+            more = (*ends[at].undetermined, coupling)
+            ends[at] = replace(ends[at], undetermined=more)
+    return ends
 
 
-def _conclude_joint(joint: Joint, fit: Fit, prepared: PreparedArm) -> Diagnosis:
-    """The diagnosis of one joint, its last rung with the final links."""
+def _conclude_joint(joint: Joint, fit: Fit, prepared: PreparedArm) -> LadderEnd:
+    """The end of one joint's ladder, its last rung with the final links."""
     rungs = (*joint.state.rungs[:-1], replace(joint.state.rungs[-1], fit=fit))
     return conclude(joint.search, joint.state, rungs, beside=prepared.beside(joint.name))

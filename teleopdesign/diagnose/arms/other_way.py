@@ -8,11 +8,11 @@ base parameters of the links describe the rest.
 from __future__ import annotations
 
 from ..candidates import Candidate
-from ..diagnosis import Undetermined
-from .diagnosis import ArmRung
+from ..statements import Undetermined
 from .fit import ArmFit, estimate_arm
 from .other_motion import follows_another, with_other_motions
 from .prepared import PreparedArm
+from .rung import ArmRung
 
 
 def undetermined_coupling(

@@ -132,16 +132,19 @@ def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
 
     This is the bodies' inertia less the inertia of their motors, which the experiment states.
     """
-    # a search among few effects does not know the other effects of the experiment
-    there = {e.name: e for body in model.bodies.values() for e in body.effects}
-    stated = Model.from_experiment(prepared.experiment, {**EFFECTS, **model.known, **there})
+    motors = motor_inertias(prepared.experiment, model)
     return with_inertias(
         prepared,
-        {
-            j: model.parameters[f"{j}.inertia"].value - stated.parameters[f"{j}.inertia"].value
-            for j in prepared.joints
-        },
+        {j: model.parameters[f"{j}.inertia"].value - motors[j] for j in prepared.joints},
     )
+
+
+def motor_inertias(experiment: Experiment, model: Model) -> dict[str, float]:
+    """Joint -> inertia of its motor, as the experiment states it; model: knows a user's effects."""
+    # a search among few effects does not know the other effects of the experiment
+    there = {e.name: e for body in model.bodies.values() for e in body.effects}
+    stated = Model.from_experiment(experiment, {**EFFECTS, **model.known, **there}).parameters
+    return {joint: stated[f"{joint}.inertia"].value for joint in experiment.bodies}
 
 
 def with_inertia(records: Prepared, inertia: float) -> Prepared:

@@ -12,14 +12,14 @@ from dataclasses import replace
 from itertools import takewhile
 
 from ..decision import is_better
-from ..diagnosis import SetAside
 from ..ladder_state import look
 from ..noise_floor import noise_floor
 from ..stand_in import is_of_readings
-from .diagnosis import ArmRung
+from ..statements import SetAside
 from .fit import ArmFit, estimate_arm
 from .joint import Joint
 from .prepared import PreparedArm
+from .rung import ArmRung
 
 #: reason why an effect is refused although the records of one joint supported it
 NO_HELP = "it lowers the error no more once all joints are estimated together"

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-from ...base.errors import ExperimentError, did_you_mean, quote
-from ...base.toml_table import Table
-from ...blocks import Body, Value, with_block_effects
-from ...blocks.described import body_of
-from ...effects import Effect
-from ...measurement.arm_description import joints_from
-from ...measurement.description import ONE_BODY, TWO_BODIES, bodies_from
-from ...model import Model
-from ...realise.stages_along import RECORD_SHIFT
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.toml_table import Table, describe_toml_value
+from ..blocks import Body, Value, with_block_effects
+from ..blocks.described import body_of
+from ..effects import Effect
+from ..measurement.arm_description import joints_from
+from ..measurement.description import ONE_BODY, TWO_BODIES, bodies_from
+from ..model import Model
+from ..realise.stages_along import RECORD_SHIFT
 
 #: key of an arm's base parameters beside its bodies
 LINKS = "links"
@@ -31,6 +32,12 @@ def model_data(model: Model) -> dict[str, Any]:
     if model.links:
         data[LINKS] = list(model.links)
     return data
+
+
+def model_of_body(model: Model, place: str) -> Model:
+    """The model of one of its bodies, with the shifts of its records and the links of its arm."""
+    late = {n: x for n, x in model.record_shift.items() if n.partition(".")[0] == place}
+    return replace(model, bodies={place: model.bodies[place]}, record_shift=late)
 
 
 def body_data(body: Body) -> dict[str, Any]:
@@ -63,27 +70,32 @@ def _error(value: Value) -> dict[str, float]:
 
 
 def model_from(
-    content: Mapping[str, Any], known: Mapping[str, Effect], *, file: str, key: str
+    content: Any,
+    known: Mapping[str, Effect],
+    where: str,
+    *,
+    may_take: Mapping[str, Effect] | None = None,
 ) -> Model:
     """The model of data that `model_data` wrote.
 
-    known: effects by name
-    file, key: where the data are, for messages
+    known: effects by name;  where: place of the data in their file, for messages
+    may_take: the effects that may be added to the model; None: all that are known
     raises ExperimentError: the data are no model, or an effect is unknown
     """
-    bodies = {}
-    effects = with_block_effects(known)
-    shifts = Table(content, file, key).table(RECORD_SHIFT) if RECORD_SHIFT in content else None
-    links = _links_from(content.get(LINKS, []), f"{file}: {key}.{LINKS}")
+    if not isinstance(content, dict):
+        raise ExperimentError(f"{where}: found {describe_toml_value(content)}, expected a table")
+    bodies, effects = {}, with_block_effects(known)
+    shifts = Table(content, where).table(RECORD_SHIFT) if RECORD_SHIFT in content else None
+    links = _links_from(content.get(LINKS, []), f"{where}.{LINKS}")
     content = {n: body for n, body in content.items() if n not in (RECORD_SHIFT, LINKS)}
     of_arm = bool(content) and not content.keys() & {*ONE_BODY, *TWO_BODIES}
     read = joints_from if of_arm else bodies_from
-    for place, described in read(Table(content, file, key)).items():
+    for place, described in read(Table(content, where)).items():
         for name in described.effects:
             known_effect(name, effects, where=f"{described.where}.effects")
         bodies[place] = body_of(described, effects)
-    model = Model(bodies, known, _shifts_from(shifts) if shifts is not None else {})
-    return model.with_links(links)
+    late = {} if shifts is None else _shifts_from(shifts)
+    return Model(bodies, known if may_take is None else may_take, late, links)
 
 
 def _links_from(entry: object, where: str) -> tuple[float, ...]:

@@ -1,0 +1,147 @@
+"""The diagnosis of an arm, from the ladders of its joints and that of the whole arm."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from ...measurement.reading import reading_data
+from ..answer import with_recording
+from ..diagnosis import Diagnosis
+from ..fingerprint import fingerprint_of
+from ..ladder import with_candidates_named
+from ..ladder_end import LadderEnd
+from ..learnable import Learnable
+from ..noise_floor import NoiseFloor
+from ..recording import DiagnosedRecording
+from ..result import diagnosis_of
+from ..statements import EstimatedValue, JointErrors, LadderRow, finite
+from ..verdict import VerdictName
+from .bodies import with_final_bodies
+from .fit import error_over_joints, link_errors
+from .other_motion import with_other_motions
+from .prepared import PreparedArm, with_bodies_of
+from .rung import ArmRung
+
+
+def arm_diagnosis_of(
+    prepared: PreparedArm,
+    rungs: tuple[ArmRung, ...],
+    ends: Mapping[str, LadderEnd],
+    motors: Mapping[str, float],
+    *,
+    among: Collection[str] | None,
+) -> Diagnosis:
+    """What the search at all joints of an arm states.
+
+    rungs: of the whole arm;  ends: joint -> the end of its ladder
+    motors: joint -> stated inertia of its motor;  among: as in `find_missing`
+    """
+    experiment = prepared.experiment
+    joints = {j: with_candidates_named(among, diagnosis_of(end)) for j, end in ends.items()}
+    each, named = joints.values(), {c.key for d in joints.values() for c in d.missing}
+    first = next(iter(each))
+    rows = tuple(_row(rung, joints, named) for rung in rungs)
+    ours = {row.added.key for row in rows if row.added is not None}
+    diagnosis = Diagnosis(
+        verdict=_verdict(each),
+        rungs=rows,
+        floor=_floor(joints),
+        candidates=tuple(
+            sorted((c for d in each for c in d.candidates), key=lambda c: -c.probability)
+        ),
+        indistinguishable=tuple(
+            group for d in each for group in d.indistinguishable if group[0].key in ours
+        ),
+        check=first.check,
+        held_out=first.held_out,
+        bandwidth=prepared.bandwidth,
+        bandwidth_source=first.bandwidth_source,
+        undetermined=tuple(one for d in each for one in d.undetermined),
+        set_aside=tuple(one for d in each for one in d.set_aside),
+        record_shift={log: shift for d in each for log, shift in d.record_shift.items()},
+        learnable=_learnable(joints),
+        at_bound=tuple(name for d in each for name in d.at_bound),
+        fingerprint=fingerprint_of(experiment),
+        reading=tuple(reading_data(experiment.reading)),
+        estimated=rows[-1].model,
+        open=(),
+        left_out=tuple(dict.fromkeys(words for d in each for words in d.left_out)),
+        considered=first.considered,
+        joints=joints,
+        other_motion=dict(prepared.others),
+        links=_links(rungs[-1], prepared),
+    )
+    diagnosis = with_final_bodies(diagnosis, prepared, motors)
+    recording = DiagnosedRecording(stated=experiment)
+    whole = with_recording(diagnosis, recording)
+    whole.recording.__dict__["arm"] = with_other_motions(
+        with_bodies_of(whole.model, prepared), prepared.others
+    )
+    return whole
+
+
+def _verdict(joints: Collection[Diagnosis]) -> VerdictName:
+    verdicts = {d.verdict for d in joints}
+    if "effects_missing" in verdicts:
+        return "effects_missing"
+    return "model_adequate" if verdicts == {"model_adequate"} else "undecided"
+
+
+def _row(
+    rung: ArmRung, joints: Mapping[str, Diagnosis], named: Collection[tuple[str, str]]
+) -> LadderRow:
+    """A row of the arm's ladder; its look-alikes are those of the joint's own row."""
+    fit, added = rung.fit, rung.added
+    of_joint = None
+    if added is not None:
+        of_joint = next((r for r in joints[added.at].rungs if r.added == added), None)
+    return LadderRow(
+        added=added,
+        fit_error=finite(fit.fit_error),
+        check_error=finite(fit.check_error),
+        fitted=fit.model,
+        instead_of=None if rung.instead_of is None else rung.instead_of.effect.name,
+        alternatives=() if of_joint is None else of_joint.alternatives,
+        named=added is not None and added.key in named,
+        follows=rung.follows,
+        joints={
+            j: JointErrors(finite(fit.fit_errors[j]), finite(fit.check_errors[j])) for j in fit.fits
+        },
+    )
+
+
+def _floor(joints: Mapping[str, Diagnosis]) -> NoiseFloor:
+    """The noise floor of an arm: root mean square over joints, like its errors."""
+    value, drawn = (
+        error_over_joints({j: getattr(d.floor, name) for j, d in joints.items()})
+        for name in ("value", "drawn")
+    )
+    source = next(iter(joints.values())).floor.source
+    return NoiseFloor(value, source, drawn, any(d.floor.held for d in joints.values()))
+
+
+def _learnable(joints: Mapping[str, Diagnosis]) -> Learnable | None:
+    """The part of all joints' residuals that could be learned; None without the extra `learn`.
+
+    Errors are over all joints, as in the ladder; each joint's diagnosis says where the learned
+    force lies.
+    """
+    boxes = {j: d.learnable for j, d in joints.items() if d.learnable is not None}
+    if len(boxes) < len(joints):
+        return None
+    # trees that make a joint worse are not used there
+    return Learnable(
+        left=error_over_joints({j: b.left for j, b in boxes.items()}),
+        error=error_over_joints({j: min(b.error, b.left) for j, b in boxes.items()}),
+        alone=error_over_joints({j: b.alone for j, b in boxes.items()}),
+    )
+
+
+def _links(last: ArmRung, prepared: PreparedArm) -> dict[str, EstimatedValue]:
+    """The base parameters by name; empty where none is estimated."""
+    base = prepared.base
+    if base is None:
+        return {}
+    errors = link_errors(last.fit, prepared).tolist()
+    rows = zip(base.names, last.fit.links, errors, base.units, strict=True)
+    return {name: EstimatedValue(finite(x), finite(e), unit) for name, x, e, unit in rows}
