@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..base.errors import ModelError, did_you_mean
+from ..diagnose.climb import make_next_move
 from ..diagnose.conclusion import conclude
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.error import force_error
-from ..diagnose.ladder import make_next_move
 from ..diagnose.ladder_state import LadderSearch, LadderState, begin, look, search_for
 from ..diagnose.ranking import Ranked
 from ..diagnose.result import diagnosis_of

@@ -60,8 +60,8 @@ def place_at_pose(diagnosis: Diagnosis, joint: str, options: argparse.Namespace)
     """
     import numpy as np
 
-    from ..diagnose.arms.other_motion import follows_another
-    from ..diagnose.arms.prepared import inertias_at, motor_inertias
+    from ..diagnose.other_motion import follows_another
+    from ..diagnose.parts import inertias_at, motor_inertias
     from ..model import Model
 
     name, model = f"{joint}.inertia", diagnosis.model

@@ -126,7 +126,7 @@ def diagnose_experiment(experiment: Experiment, options: argparse.Namespace) -> 
 
     The options choose its plan and its candidate effects.
     """
-    from ..diagnose import find_missing, find_missing_in_arm
+    from ..diagnose import find_missing
     from ..diagnose.search_plan import PLAN, QUICK
 
     among = candidate_effects(
@@ -135,8 +135,7 @@ def diagnose_experiment(experiment: Experiment, options: argparse.Namespace) -> 
     model = stated_model(experiment, options)
     plan = QUICK if getattr(options, "quick", False) else PLAN
     reporter = Reporter()
-    find = find_missing if experiment.arm is None else find_missing_in_arm
-    diagnosis = find(experiment, model, progress=reporter, plan=plan, among=among)
+    diagnosis = find_missing(experiment, model, progress=reporter, plan=plan, among=among)
     reporter.clear()
     return diagnosis
 

@@ -148,16 +148,11 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
     if not options.simulate:
         return None
     from ..diagnose import RecordedLoop
-    from ..diagnose.arms.by_simulation import compare_arm_by_simulation
     from ..diagnose.by_simulation import compare_by_simulation
 
     loop = None if options.loop is None else RecordedLoop(*options.loop)
     say("simulating the final model")
-    if diagnosis.joints:
-        arm = diagnosis.recording.arm
-        comparison = compare_arm_by_simulation(diagnosis.model, arm, loop=loop)
-    else:
-        comparison = compare_by_simulation(diagnosis.model, diagnosis.prepared, loop=loop)
+    comparison = compare_by_simulation(diagnosis.model, diagnosis.recording.parts, loop=loop)
     say("")
     print(f"\n{comparison}")
     return comparison

@@ -7,7 +7,6 @@ from ..base.faces import lazy_face
 if TYPE_CHECKING:
     from .answer import load_answer as load_answer
     from .answer import write_answer as write_answer
-    from .arms.ladder import find_missing_in_arm as find_missing_in_arm
     from .by_simulation import HorizonError as HorizonError
     from .by_simulation import RecordedLoop as RecordedLoop
     from .by_simulation import SimulationComparison as SimulationComparison
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from .estimates import rank as rank
     from .fit import Fit as Fit
     from .ladder import find_missing as find_missing
+    from .ladder import find_missing_in_arm as find_missing_in_arm
     from .ranking import Ranked as Ranked
     from .ranking import Ranking as Ranking
     from .statements import LadderRow as LadderRow

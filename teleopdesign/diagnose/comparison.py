@@ -17,7 +17,6 @@ from ..base.quantity import unit_of
 from ..measurement.experiment import Experiment
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .arms.by_simulation import compare_arm_by_simulation
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
@@ -107,9 +106,7 @@ def compare(
     raises ModelError: a loop is given without a simulation, or the model cannot be simulated
     """
     if by == "simulation":
-        if experiment.arm is not None:
-            return compare_arm_by_simulation(model, experiment, loop=loop)
-        if isinstance(loop, Mapping):
+        if experiment.arm is None and isinstance(loop, Mapping):
             raise ModelError("compare: found a loop for each joint, but the experiment has no arm")
         return compare_by_simulation(model, experiment, loop=loop)
     if loop is not None:

@@ -52,11 +52,6 @@ class LadderSearch:
         """A new random generator that starts at the seed."""
         return np.random.default_rng(self.seed)
 
-    def at(self, bandwidth: float) -> LadderSearch:
-        """The same search at another bandwidth of the comparison (Hz)."""
-        whole = prepare(self.experiment, bandwidth=bandwidth)
-        return replace(self, whole=whole, prepared=cut_to_windows(whole, self.plan))
-
     def rank(
         self,
         base: Fit,
@@ -168,7 +163,7 @@ class LadderState:
 
 
 def search_for(
-    experiment: Experiment,
+    experiment: Experiment | Prepared,
     model: Model | None = None,
     *,
     progress: Callable[[str], None] | None = None,
@@ -177,9 +172,11 @@ def search_for(
 ) -> LadderSearch:
     """A search for the effects that a model lacks; without candidates where records tell nothing.
 
+    experiment: or its records, prepared at the bandwidth of the comparison
     model: None: the model that the experiment describes
     """
-    whole = prepare(experiment)
+    whole = experiment if isinstance(experiment, Prepared) else prepare(experiment)
+    experiment = whole.experiment
     stated = model or Model.from_experiment(experiment)
     if why_silent(whole, stated):
         stated = restrict_candidates((), stated)

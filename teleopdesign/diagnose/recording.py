@@ -13,13 +13,13 @@ from pathlib import Path
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..measurement.experiment import Experiment, load_experiment
 from ..model import Model
-from .arms.other_motion import with_other_motions
-from .arms.prepared import PreparedArm, isolate_joint, prepare_arm, with_bodies_of
 from .effort import EFFORTS
 from .excerpt import cut_to_windows
 from .fingerprint import Fingerprint, bodies_text
 from .fit import Fit, estimate
-from .prepare import Prepared, prepare
+from .other_motion import with_other_motions
+from .parts import PreparedParts, isolate_joint, prepare_parts, with_bodies_of
+from .prepare import Prepared
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,31 +98,30 @@ class DiagnosedRecording:
                 f"{bodies_text(expected)} as in {experiment.folder.name}"
             )
 
-    @cached_property
+    @property
     def prepared(self) -> Prepared:
-        """The records, prepared for comparison; of an arm each joint has its own."""
-        if self.whole is not None:
-            return self.whole.arm.joints[self.joint]
-        return prepare(self.experiment, bandwidth=self.bandwidth)
+        """The records, prepared for comparison."""
+        return (self.whole or self).parts.parts[self.joint]
 
     @cached_property
-    def arm(self) -> PreparedArm:
-        """The records of all joints of an arm, with the bodies of the final model.
+    def parts(self) -> PreparedParts:
+        """The records of all parts; joints of an arm with the bodies of the final model.
 
-        raises ExperimentError: the experiment has no arm, or other joints or links than the model
+        raises ExperimentError: an arm with other joints or links than the model
         """
-        prepared, model = prepare_arm(self.experiment), self.model
-        assert model is not None
+        prepared, model = prepare_parts(self.experiment, bandwidth=self.bandwidth), self.model
+        if not prepared.is_linked or model is None:
+            return prepared
         if len(model.links) != len(prepared.initial):
             raise ExperimentError(
                 f"{self.file}: models.ladder: found {len(model.links)} base parameters, expected "
                 f"{len(prepared.initial)} as the links of {self.experiment.folder.name} have"
             )
         for joint in (*self.other_motion, *self.other_motion.values()):
-            if joint not in prepared.joints:
+            if joint not in prepared.parts:
                 raise ExperimentError(
                     f"{self.file}: other_motion: no joint {quote(joint)}, has "
-                    f"{', '.join(prepared.joints)}{did_you_mean(joint, prepared.joints)}"
+                    f"{', '.join(prepared.parts)}{did_you_mean(joint, prepared.parts)}"
                 )
         return with_other_motions(with_bodies_of(model, prepared), self.other_motion)
 

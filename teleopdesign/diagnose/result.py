@@ -17,6 +17,7 @@ from .fit import Fit
 from .ladder_end import LadderEnd
 from .left_out import nearest, not_accepted
 from .open_questions import open_questions
+from .parts import PreparedParts
 from .prepare import Prepared
 from .probability import CandidateEvidence, evidence_of
 from .ranking import Ranked
@@ -80,7 +81,9 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
 def recording_of(experiment: Experiment, prepared: Prepared) -> DiagnosedRecording:
     """The recording of a search, whose records are prepared already."""
     recording = DiagnosedRecording(stated=experiment)
-    recording.__dict__["prepared"] = prepared
+    recording.__dict__["parts"] = PreparedParts(
+        experiment, prepared.bandwidth, None, {"": prepared}
+    )
     return recording
 
 
@@ -141,7 +144,7 @@ def _indistinguishable(end: LadderEnd) -> tuple[tuple[Candidate, ...], ...]:
     nonetheless. The links of an arm include gravity, so there are no such pairs at its joints.
     """
     groups = [(r.added, *r.alternatives) for r in end.rungs if r.added and r.alternatives]
-    if not end.search.whole.is_of_an_arm:
+    if not end.search.whole.is_linked:
         doubted = dict.fromkeys(one.candidate for one in end.undetermined)
         model = end.after.model
         groups += [(one, other) for one in doubted for other in list_look_alikes(one, model)]

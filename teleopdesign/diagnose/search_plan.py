@@ -30,6 +30,9 @@ class SearchPlan:
     #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
     #: are in what is left, and on a real arm it took 183 in place of 154 s and changed no answer
     partial_pairs: bool = True
+    #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
+    #: its readings are drawn with those of all joints
+    corrected: bool = True
     #: most effects that are added at once where no other move leads on; 0: none, as at a joint of
     #: an arm. Eight: friction of the speed, of the direction, and forces of the place, one of each
     together: int = 8
@@ -148,6 +151,7 @@ class SearchPlan:
             plan,
             trials=min(self.trials, most),
             partial_pairs=False,
+            corrected=False,
             tip_starts=0,
             draws=0,
             together=0,

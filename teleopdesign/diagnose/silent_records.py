@@ -26,7 +26,7 @@ def why_silent(prepared: Prepared, model: Model) -> str:
         )
     if hidden := describe_hidden_motion(prepared, model):
         return hidden
-    if prepared.is_of_an_arm:  # its accelerations come from all joints together
+    if prepared.is_linked:  # its accelerations come from all joints together
         return ""
     if work := describe_work(prepared.experiment):
         return work

@@ -36,7 +36,7 @@ def estimable_on_all(prepared: Prepared) -> Prepared | None:
     None for an arm's joints too: their shared link parameters belong to the fit records.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
-    if not check or prepared.is_of_an_arm:
+    if not check or prepared.is_linked:
         return None
     both = tuple(replace(s, use="fit") for s in (*fit, *check))
     return Prepared(prepared.experiment, prepared.bandwidth, (*both, *check))

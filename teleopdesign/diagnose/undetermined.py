@@ -51,7 +51,7 @@ def alike_on_records(
     For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
     turn the two differ, but where more than noise is left the records may not show the difference.
     """
-    if prepared.is_of_an_arm:  # the links of an arm include gravity
+    if prepared.is_linked:  # the links of an arm include gravity
         return ""
     body = fit.model.body(candidate.at)
     for other in (c.effect for c in list_look_alikes(candidate, fit.model)):

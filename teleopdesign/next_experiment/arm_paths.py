@@ -94,10 +94,10 @@ def propose_paths(
         links of the diagnosis, and from Coulomb and viscous friction
     raises ExperimentError: no path keeps the limits
     """
-    experiment, prepared = diagnosis.experiment, diagnosis.recording.arm
+    experiment, prepared = diagnosis.experiment, diagnosis.recording.parts
     assert experiment.arm is not None
-    shown = {j: shown_limits(p)[j] for j, p in prepared.joints.items()} | dict(limits or {})
-    judge = _Judge(diagnosis, [shown[j] for j in prepared.joints])
+    shown = {j: shown_limits(p)[j] for j, p in prepared.parts.items()} | dict(limits or {})
+    judge = _Judge(diagnosis, [shown[j] for j in prepared.parts])
     period = duration / math.ceil(duration / PERIOD)
     generator = np.random.default_rng(seed)
     best, least = None, math.inf
@@ -120,7 +120,7 @@ def propose_paths(
     position = judge.motion(best, period, time)[0]
     parts = (f"paths of all joints with a period of {period:g} s",)
     return ArmPaths(
-        Reference(time, dict(zip(prepared.joints, position, strict=True)), parts, 1),
+        Reference(time, dict(zip(prepared.parts, position, strict=True)), parts, 1),
         period,
         judge.condition(best, period),
         judge.recorded,
@@ -137,7 +137,7 @@ class _Judge:
         self.base: BaseParameters = base_parameters(self.arm)
         self.limits = limits
         self.links = np.array(diagnosis.model.links or self.base.initial)
-        joints = diagnosis.recording.arm.joints
+        joints = diagnosis.recording.parts.parts
         self.joints = tuple(joints)
         motions = [[s.motion for s in p.of("fit")] for p in joints.values()]
         force = [

@@ -150,7 +150,7 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
 
 def _write_answer(experiment: str, files: Mapping[str, Path], search: FolderSearch) -> Diagnosis:
     """Diagnose a folder and write the answer; returns the diagnosis."""
-    from ..diagnose import find_missing, find_missing_in_arm, write_answer
+    from ..diagnose import find_missing, write_answer
     from ..diagnose.search_plan import PLAN, QUICK
     from ..measurement import load_experiment
     from ..model import Model
@@ -158,8 +158,7 @@ def _write_answer(experiment: str, files: Mapping[str, Path], search: FolderSear
     recorded = load_experiment(experiment)
     model = Model.from_experiment(recorded, search.known)
     plan = QUICK if search.quick else PLAN
-    find = find_missing if recorded.arm is None else find_missing_in_arm
-    diagnosis = find(recorded, model, plan=plan, among=search.among)
+    diagnosis = find_missing(recorded, model, plan=plan, among=search.among)
     write_answer(diagnosis, files[experiment])
     return diagnosis
 

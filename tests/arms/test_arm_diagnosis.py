@@ -15,19 +15,19 @@ from shared_data import shared_folder
 import teleopdesign as td
 from teleopdesign.cli import main
 from teleopdesign.commands.diagnose import _suggest_for_joints
-from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
-from teleopdesign.diagnose.arms.prepared import PreparedArm
 from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.parts import PreparedParts
+from teleopdesign.diagnose.parts_fit import PartsFit, error_over_joints, estimate_parts
 from teleopdesign.diagnose.shared_links import Knowledge
 from teleopdesign.measurement.filtering import Array
 from teleopdesign.measurement.zero_phase import zero_phase
 
 
-def fitted(folder) -> tuple[PreparedArm, ArmFit]:
+def fitted(folder) -> tuple[PreparedParts, PartsFit]:
     """The model of an experiment on an arm, estimated."""
     experiment = td.load_experiment(folder)
     prepared, models = stated_models(experiment)
-    return prepared, estimate_arm(models, prepared)
+    return prepared, estimate_parts(models, prepared)
 
 
 def made(tmp_path, seed, count, hidden=None, seconds=20.0):

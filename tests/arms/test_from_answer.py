@@ -20,9 +20,9 @@ import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import load_answer, write_answer
-from teleopdesign.diagnose.arms.fit import estimate_arm
-from teleopdesign.diagnose.arms.prepared import inertias_at, prepare_arm
 from teleopdesign.diagnose.learnable import learnable
+from teleopdesign.diagnose.parts import inertias_at, prepare_parts
+from teleopdesign.diagnose.parts_fit import estimate_parts
 from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.search_plan import QUICK
@@ -60,7 +60,7 @@ def answer(folder, diagnosis) -> Path:
 def test_two_rounds_settle_links_that_a_missing_effect_had_led_astray(folder):
     experiment = td.load_experiment(folder)
     prepared, models = stated_models(experiment)
-    astray = estimate_arm(models, prepared)
+    astray = estimate_parts(models, prepared)
     assert max(astray.fit_errors.values()) > 0.03
     models = {j: f.model for j, f in astray.fits.items()}
     models["joint2"] = (
@@ -68,8 +68,8 @@ def test_two_rounds_settle_links_that_a_missing_effect_had_led_astray(folder):
         .with_effect(EFFECTS["spring"], at="joint2")
         .with_values({"joint2.spring.stiffness": 1.0})
     )
-    twice = estimate_arm(models, prepared, rounds=2)
-    again = estimate_arm({j: f.model for j, f in twice.fits.items()}, prepared, rounds=2)
+    twice = estimate_parts(models, prepared, rounds=2)
+    again = estimate_parts({j: f.model for j, f in twice.fits.items()}, prepared, rounds=2)
     for joint in twice.fits:
         # rows at rest would hold the links where they were: that left a third more
         assert twice.fit_errors[joint] < 1.03 * again.fit_errors[joint]
@@ -116,14 +116,14 @@ def test_what_trees_learn_is_reported_for_each_joint_and_for_the_arm(answer, fol
 def test_a_force_by_another_joint_s_motion_is_learned_from_that_motion_only(folder):
     """What is added to the command of joint 2 follows the place of joint 1."""
     experiment = td.load_experiment(folder)
-    prepared = prepare_arm(experiment)
+    prepared = prepare_parts(experiment)
     beside = prepared.beside("joint2")
     stretches = []
-    for stretch, (other,) in zip(prepared.joints["joint2"].stretches, beside, strict=True):
+    for stretch, (other,) in zip(prepared.parts["joint2"].stretches, beside, strict=True):
         motion = stretch.motion
         pushed = motion.command + 3.0 * np.sign(other.position)
         stretches.append(replace(stretch, motion=replace(motion, command=pushed)))
-    records = replace(prepared.joints["joint2"], stretches=tuple(stretches))
+    records = replace(prepared.parts["joint2"], stretches=tuple(stretches))
     model = td.Model({"joint2": td.Model.from_experiment(experiment).bodies["joint2"]})
     fit = estimate_from_starts(model.with_links(prepared.initial), records)
     with_other = learnable(fit.model, records, beside=beside)

@@ -12,9 +12,9 @@ from arms.stated_models import stated_models
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.answer import load_answer, write_answer
-from teleopdesign.diagnose.arms.fit import estimate_arm
-from teleopdesign.diagnose.arms.other_motion import most_coupled, with_other_motions
-from teleopdesign.diagnose.arms.prepared import prepare_arm
+from teleopdesign.diagnose.other_motion import most_coupled, with_other_motions
+from teleopdesign.diagnose.parts import prepare_parts
+from teleopdesign.diagnose.parts_fit import estimate_parts
 from teleopdesign.diagnose.search_plan import QUICK
 
 pytestmark = pytest.mark.slow  # a diagnosis of an arm
@@ -36,10 +36,10 @@ def coupled(tmp_path_factory):
 
 
 def test_the_motion_of_a_joint_stands_beside_another(coupled):
-    prepared = with_other_motions(prepare_arm(td.load_experiment(coupled)), {"joint1": "joint3"})
+    prepared = with_other_motions(prepare_parts(td.load_experiment(coupled)), {"joint1": "joint3"})
     assert prepared.others == {"joint1": "joint3"}
     for mine, its in zip(
-        prepared.joints["joint1"].stretches, prepared.joints["joint3"].stretches, strict=True
+        prepared.parts["joint1"].stretches, prepared.parts["joint3"].stretches, strict=True
     ):
         assert np.array_equal(mine.motion.further["other_acceleration"], its.motion.acceleration)
         assert "other_position" not in its.motion.further
@@ -48,7 +48,7 @@ def test_the_motion_of_a_joint_stands_beside_another(coupled):
 def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
     experiment = td.load_experiment(coupled)
     prepared, models = stated_models(experiment)
-    arm = estimate_arm(models, prepared)
+    arm = estimate_parts(models, prepared)
     records, fit = arm.prepared["joint1"], arm.fits["joint1"]
     assert most_coupled("joint1", records, fit, prepared) == "joint2"
     # a log that states what moves beside the joint keeps it

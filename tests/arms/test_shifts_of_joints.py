@@ -10,10 +10,10 @@ from arms.arm_simulator import random_arm, write_experiment
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.diagnose.arms import joint as at_joint
-from teleopdesign.diagnose.arms.fit import estimate_arm
-from teleopdesign.diagnose.arms.prepared import prepare_arm
+from teleopdesign.diagnose import part_search as at_joint
 from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.parts import prepare_parts
+from teleopdesign.diagnose.parts_fit import estimate_parts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.model import Model
 
@@ -40,7 +40,7 @@ def chosen(monkeypatch, *, searched, fitted, left):
     """
     estimated = []
 
-    def estimate_arm(models, _):
+    def estimate_parts(models, _):
         estimated.append(models["joint1"].record_shift)
         return arm_fit(models, left)
 
@@ -48,7 +48,7 @@ def chosen(monkeypatch, *, searched, fitted, left):
         fits = {j: SimpleNamespace(model=m) for j, m in models.items()}
         return SimpleNamespace(fits=fits, check_error=error)
 
-    monkeypatch.setattr(at_joint, "estimate_arm", estimate_arm)
+    monkeypatch.setattr(at_joint, "estimate_parts", estimate_parts)
     joints = {
         j: SimpleNamespace(state=SimpleNamespace(fit=SimpleNamespace(model=Shifted({j: late}))))
         for j, late in (("joint1", searched), ("joint2", ESTIMATED))
@@ -116,9 +116,9 @@ def test_the_links_are_those_of_the_shift_that_is_held(tmp_path):
     known = {n: EFFECTS[n] for n in ("coulomb", "viscous")}
     stated = Model.from_experiment(experiment, known)
     held = stated.with_record_shift({"joint1": Value(-0.8 * ROW, fixed=True)})
-    prepared = prepare_arm(experiment)
-    arm = estimate_arm({"joint1": held.with_links(prepared.initial)}, prepared)
-    model, records = arm.fits["joint1"].model, prepared.joints["joint1"].of("fit")
+    prepared = prepare_parts(experiment)
+    arm = estimate_parts({"joint1": held.with_links(prepared.initial)}, prepared)
+    model, records = arm.fits["joint1"].model, prepared.parts["joint1"].of("fit")
     assert model.log_late("joint1") == pytest.approx(-0.8 * ROW)
     least = force_error(model, records)
     for k in range(len(arm.links)):

@@ -24,10 +24,12 @@ def end(experiment):
     from diagnose.simulated_cases import FEW
 
     from teleopdesign import Model
-    from teleopdesign.diagnose.ladder import search_ladder
-    from teleopdesign.diagnose.ladder_state import search_for
+    from teleopdesign.diagnose.climb import climb
+    from teleopdesign.diagnose.conclusion import conclude
+    from teleopdesign.diagnose.ladder_state import begin, search_for
 
-    return search_ladder(search_for(experiment, Model.from_experiment(experiment, FEW)))
+    search = search_for(experiment, Model.from_experiment(experiment, FEW))
+    return conclude(search, *climb(search, begin(search)))
 
 
 @pytest.fixture(scope="session")

@@ -154,7 +154,7 @@ def look_alikes(undetermined, *there, arm=False):
     """The pairs of a diagnosis that accepted these effects, of which some are `undetermined`."""
     body = SimpleNamespace(has=there.__contains__, axis="revolute")
     model = SimpleNamespace(known=EFFECTS, body=lambda at: body)
-    prepared = SimpleNamespace(is_of_an_arm=arm)
+    prepared = SimpleNamespace(is_linked=arm)
     entries = tuple(Undetermined(candidate(n), "over a travel of 1 rad") for n in undetermined)
     after, search = SimpleNamespace(model=model), SimpleNamespace(whole=prepared)
     return _indistinguishable(

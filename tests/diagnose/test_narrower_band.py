@@ -95,6 +95,7 @@ class Ended:
     bandwidth: float
     more_is_missing: bool
     left_out: tuple = ("pairs",)
+    joints: tuple = ()
 
 
 def test_the_narrower_band_is_kept_where_its_final_model_leaves_far_less():

@@ -264,7 +264,7 @@ def alike(monkeypatch, named, *there, errors, arm=False, axis="revolute"):
     known = {n: EFFECTS[n] for n in ("spring", "gravity", "bias", "cogging")}
     last.model = replace(last.model, known=known, axis=axis)
     monkeypatch.setattr(undetermined_module, "estimate", table.estimate)
-    prepared = SimpleNamespace(is_of_an_arm=arm)
+    prepared = SimpleNamespace(is_linked=arm)
     return alike_on_records(last, Candidate(EFFECTS[named], "device"), prepared)
 
 

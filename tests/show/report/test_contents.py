@@ -228,7 +228,8 @@ def test_what_the_file_states_is_shown_also_with_few_candidates(diagnosis):
 def test_a_record_too_short_for_any_cell_of_the_map_has_a_page(diagnosis):
     few = tuple(replace(s, keep=s.keep[:2]) for s in diagnosis.prepared.stretches)
     short = with_experiment(diagnosis, diagnosis.experiment)
-    vars(short.recording)["prepared"] = replace(diagnosis.prepared, stretches=few)
+    records = replace(diagnosis.prepared, stretches=few)
+    vars(short.recording)["parts"] = replace(diagnosis.recording.parts, parts={"": records})
     views = body_views(short, tuple(str(i) for i in range(len(diagnosis.rungs))))
     for step in views[0].steps:
         assert np.isnan(step.mean).all(), "a mean of fewer than three samples"

@@ -1,43 +1,42 @@
-"""The diagnosis of an arm, from the ladders of its joints and that of the whole arm."""
+"""The diagnosis of all parts, from the ladders of the parts and that of the whole arm."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
-from ...measurement.reading import reading_data
-from ..answer import with_recording
-from ..diagnosis import Diagnosis
-from ..fingerprint import fingerprint_of
-from ..ladder import with_candidates_named
-from ..ladder_end import LadderEnd
-from ..learnable import Learnable
-from ..noise_floor import NoiseFloor
-from ..recording import DiagnosedRecording
-from ..result import diagnosis_of
-from ..statements import EstimatedValue, JointErrors, LadderRow, finite
-from ..verdict import VerdictName
-from .bodies import with_final_bodies
-from .fit import error_over_joints, link_errors
+from ..measurement.reading import reading_data
+from ..model import Model
+from .answer import with_recording
+from .diagnosis import Diagnosis
+from .fingerprint import fingerprint_of
+from .ladder_end import LadderEnd
+from .learnable import Learnable
+from .link_inertias import with_final_bodies
+from .noise_floor import NoiseFloor
 from .other_motion import with_other_motions
-from .prepared import PreparedArm, with_bodies_of
-from .rung import ArmRung
+from .parts import PreparedParts, with_bodies_of
+from .parts_fit import PartsRung, error_over_joints, link_errors
+from .recording import DiagnosedRecording
+from .result import diagnosis_of
+from .statements import EstimatedValue, JointErrors, LadderRow, finite
+from .verdict import VerdictName
 
 
-def arm_diagnosis_of(
-    prepared: PreparedArm,
-    rungs: tuple[ArmRung, ...],
+def diagnosis_of_parts(
+    prepared: PreparedParts,
+    rungs: tuple[PartsRung, ...],
     ends: Mapping[str, LadderEnd],
-    motors: Mapping[str, float],
-    *,
-    among: Collection[str] | None,
+    stated: Model,
 ) -> Diagnosis:
-    """What the search at all joints of an arm states.
+    """What the search over all parts states.
 
-    rungs: of the whole arm;  ends: joint -> the end of its ladder
-    motors: joint -> stated inertia of its motor;  among: as in `find_missing`
+    rungs: of the whole arm;  ends: part -> the end of its ladder
+    stated: the user's model
     """
-    experiment = prepared.experiment
-    joints = {j: with_candidates_named(among, diagnosis_of(end)) for j, end in ends.items()}
+    experiment, joints = prepared.experiment, {j: diagnosis_of(end) for j, end in ends.items()}
+    if not prepared.is_linked:
+        (whole,) = joints.values()
+        return whole
     each, named = joints.values(), {c.key for d in joints.values() for c in d.missing}
     first = next(iter(each))
     rows = tuple(_row(rung, joints, named) for rung in rungs)
@@ -71,10 +70,10 @@ def arm_diagnosis_of(
         other_motion=dict(prepared.others),
         links=_links(rungs[-1], prepared),
     )
+    motors = {j: stated.parameters[f"{j}.inertia"].value for j in joints}
     diagnosis = with_final_bodies(diagnosis, prepared, motors)
-    recording = DiagnosedRecording(stated=experiment)
-    whole = with_recording(diagnosis, recording)
-    whole.recording.__dict__["arm"] = with_other_motions(
+    whole = with_recording(diagnosis, DiagnosedRecording(stated=experiment))
+    whole.recording.__dict__["parts"] = with_other_motions(
         with_bodies_of(whole.model, prepared), prepared.others
     )
     return whole
@@ -88,7 +87,7 @@ def _verdict(joints: Collection[Diagnosis]) -> VerdictName:
 
 
 def _row(
-    rung: ArmRung, joints: Mapping[str, Diagnosis], named: Collection[tuple[str, str]]
+    rung: PartsRung, joints: Mapping[str, Diagnosis], named: Collection[tuple[str, str]]
 ) -> LadderRow:
     """A row of the arm's ladder; its look-alikes are those of the joint's own row."""
     fit, added = rung.fit, rung.added
@@ -137,7 +136,7 @@ def _learnable(joints: Mapping[str, Diagnosis]) -> Learnable | None:
     )
 
 
-def _links(last: ArmRung, prepared: PreparedArm) -> dict[str, EstimatedValue]:
+def _links(last: PartsRung, prepared: PreparedParts) -> dict[str, EstimatedValue]:
     """The base parameters by name; empty where none is estimated."""
     base = prepared.base
     if base is None:

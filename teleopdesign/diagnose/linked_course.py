@@ -16,19 +16,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arms.base_parameters import columns_with_motors
-from ...blocks import Body, matrix_impedance
-from ...controllers import controller
-from ...diagrams import Block, Control, Diagram, Junction, Linked, Moving
-from ...measurement.filtering import Array
-from ...measurement.motion import Motion
-from ...realise.kernel import FASTEST, Timing, fastest_rate, first_memory, grid
-from ...realise.program import Program
-from ...realise.simulated import with_bristle, without_absent
-from ...realise.tips import tip
-from ...simulate import Sampling, Setup, prepare
-from ..simulated_course import MOST_STEPS, dead_times
-from .prepared import PreparedArm
+from ..arms.base_parameters import columns_with_motors
+from ..blocks import Body, matrix_impedance
+from ..controllers import controller
+from ..diagrams import Block, Control, Diagram, Junction, Linked, Moving
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..realise.kernel import FASTEST, Timing, fastest_rate, first_memory, grid
+from ..realise.program import Program
+from ..realise.simulated import with_bristle, without_absent
+from ..realise.tips import tip
+from ..simulate import Sampling, Setup, prepare
+from .parts import PreparedParts
+from .simulated_course import MOST_STEPS, dead_times
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class ArmLinks:
         couplings
     """
 
-    prepared: PreparedArm
+    prepared: PreparedParts
     values: Array
     chosen: NDArray[np.intp]
     carried: Array

@@ -1,45 +1,60 @@
-"""The prepared records of an arm: each joint's motion with the force of the links."""
+"""The parts of an experiment, prepared for comparison: what is searched together.
+
+The one or two bodies of an experiment are one part. Each joint of an arm is a part, whose motion
+comes with the force of the links that all joints share.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from ...arms import BaseParameters, Chain, base_parameters
-from ...arms.base_parameters import columns_with_motors
-from ...base.by_value import ByValue
-from ...base.errors import ExperimentError
-from ...effects import EFFECTS
-from ...measurement.bandwidth import bandwidth_of
-from ...measurement.experiment import Experiment
-from ...measurement.filtering import Array
-from ...measurement.motion import LinkForces, Motion
-from ...model import Model
-from ..noise_floor import DRAWS, read_again
-from ..prepare import Prepared, Stretch, prepare
+from ..arms import BaseParameters, Chain, base_parameters
+from ..arms.base_parameters import columns_with_motors
+from ..base.by_value import ByValue
+from ..base.errors import ExperimentError
+from ..effects import EFFECTS
+from ..measurement.bandwidth import bandwidth_of
+from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
+from ..measurement.motion import LinkForces, Motion
+from ..model import Model
+from .noise_floor import DRAWS, read_again
+from .prepare import Prepared, Stretch, prepare
 
 #: poses of a record over which an inertia is averaged
 POSES = 50
 
 
 @dataclass(frozen=True, eq=False)
-class PreparedArm(ByValue):
-    """An experiment on an arm, prepared for comparison at one bandwidth (Hz).
+class PreparedParts(ByValue):
+    """An experiment, prepared for comparison at one bandwidth (Hz).
 
-    base: the base parameters that are estimated; None: the links are those of the description
-    joints: joint -> its records, like an experiment on one body
-    size: joint -> root of the measured squares on the fit records
+    base: base parameters of an arm's links that are estimated; None: there are no links, or they
+        are those of the description
+    parts: joint -> its records, like an experiment on one body; "" -> those of all bodies
     others: joint -> the joint whose motion is its channel `other_position`
     """
 
     experiment: Experiment
     bandwidth: float
     base: BaseParameters | None
-    joints: Mapping[str, Prepared]
-    size: Mapping[str, float]
+    parts: Mapping[str, Prepared]
     others: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def is_linked(self) -> bool:
+        """Whether the parts are the joints of an arm, which its links join."""
+        return self.experiment.arm is not None
+
+    @cached_property
+    def size(self) -> dict[str, float]:
+        """Part -> root of the measured squares on the fit records."""
+        squares = {n: sum(s.measured for s in p.of("fit")) for n, p in self.parts.items()}
+        return {name: float(np.sqrt(x)) for name, x in squares.items()}
 
     @property
     def initial(self) -> tuple[float, ...]:
@@ -48,8 +63,8 @@ class PreparedArm(ByValue):
 
     def beside(self, joint: str) -> list[tuple[Motion, ...]]:
         """For each stretch of a joint, the motions of the other joints at the same rows."""
-        others = [p.stretches for j, p in self.joints.items() if j != joint]
-        count = len(self.joints[joint].stretches)
+        others = [p.stretches for j, p in self.parts.items() if j != joint]
+        count = len(self.parts[joint].stretches) if others else 0
         return [tuple(stretches[i].motion for stretches in others) for i in range(count)]
 
 
@@ -60,16 +75,20 @@ def isolate_joint(experiment: Experiment, joint: str) -> Experiment:
     return replace(experiment, bodies=bodies, channels=channels, arm=None)
 
 
-def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
-    """Smooth, differentiate and cut all joints' records, with the force of the links at each joint.
+def prepare_parts(
+    experiment: Experiment, *, bandwidth: float | None = None, seed: int = 0
+) -> PreparedParts:
+    """Smooth, differentiate and cut the records of all parts, with the force of links at joints.
 
-    seed: of the simulated readings for the noise floor
-    raises ExperimentError: there is no arm, the bandwidth is too high for the sample rate, no
-        stretch is long enough, or a force is zero throughout
+    bandwidth: Hz; None: the experiment's, or chosen from the records
+    seed: of an arm's simulated readings for the noise floor
+    raises ExperimentError: the bandwidth is too high for the sample rate, no stretch is long
+        enough, or a force is zero throughout
     """
     if experiment.arm is None:
-        raise ExperimentError(f"{experiment.folder.name}/experiment.toml: no [model.arm]")
-    bandwidth = bandwidth_of(experiment)
+        whole = prepare(experiment, bandwidth=bandwidth)
+        return PreparedParts(experiment, whole.bandwidth, None, {"": whole})
+    bandwidth = bandwidth_of(experiment) if bandwidth is None else bandwidth
     arm, joints = experiment.arm.arm, tuple(experiment.bodies)
     base = base_parameters(arm) if experiment.arm.estimate == "base parameters" else None
     prepared = {j: prepare(isolate_joint(experiment, j), bandwidth=bandwidth) for j in joints}
@@ -91,11 +110,11 @@ def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
             mine = replace(links[k], drawn=tuple(forces[k] for forces in drawn))
             stretches[j].append(replace(stretch, motion=replace(stretch.motion, links=mine)))
     made = {j: replace(prepared[j], stretches=tuple(stretches[j])) for j in joints}
-    size = {j: float(np.sqrt(sum(s.measured for s in made[j].of("fit")))) for j in joints}
+    parts = PreparedParts(experiment, bandwidth, base, made)
     for j in joints:
-        if not size[j] > 0:
+        if not parts.size[j] > 0:
             raise ExperimentError(f"{experiment.folder.name}: {j}.actuator_force: zero throughout")
-    return PreparedArm(experiment, bandwidth, base, made, size)
+    return parts
 
 
 def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) -> list[LinkForces]:
@@ -117,17 +136,17 @@ def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) 
     return forces
 
 
-def with_inertias(prepared: PreparedArm, inertias: Mapping[str, float]) -> PreparedArm:
+def with_inertias(prepared: PreparedParts, inertias: Mapping[str, float]) -> PreparedParts:
     """The records, with a part of each joint's links as the inertia of its body.
 
     inertias: joint -> this part (SI); the model's body has it too, and it is subtracted from the
         force of the links
     """
-    joints = {j: with_inertia(one, inertias[j]) for j, one in prepared.joints.items()}
-    return replace(prepared, joints=joints)
+    parts = {j: with_inertia(one, inertias[j]) for j, one in prepared.parts.items()}
+    return replace(prepared, parts=parts)
 
 
-def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
+def with_bodies_of(model: Model, prepared: PreparedParts) -> PreparedParts:
     """The records without that inertia of the links which the bodies of a fitted model have.
 
     This is the bodies' inertia less the inertia of their motors, which the experiment states.
@@ -135,7 +154,7 @@ def with_bodies_of(model: Model, prepared: PreparedArm) -> PreparedArm:
     motors = motor_inertias(prepared.experiment, model)
     return with_inertias(
         prepared,
-        {j: model.parameters[f"{j}.inertia"].value - motors[j] for j in prepared.joints},
+        {j: model.parameters[f"{j}.inertia"].value - motors[j] for j in prepared.parts},
     )
 
 
@@ -162,18 +181,23 @@ def with_inertia(records: Prepared, inertia: float) -> Prepared:
     return replace(records, stretches=tuple(stretches))
 
 
-def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, float]:
+def remove_links(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
+    """Stretches as they were measured, without reduced weight in the directions of the links."""
+    return tuple(replace(s, shared=None) for s in stretches)
+
+
+def mean_inertias(prepared: PreparedParts, links: tuple[float, ...]) -> dict[str, float]:
     """Joint -> mean inertia of the links about it (kg m^2, or kg), along its first record.
 
     links: base parameters
     Each is at least a thousandth of the largest, so that each joint has a positive inertia.
     """
-    motions = [p.stretches[0].motion for p in prepared.joints.values()]
+    motions = [p.stretches[0].motion for p in prepared.parts.values()]
     places = np.linspace(0, len(motions[0].time) - 1, POSES).astype(int)
     position = np.array([m.position[places] for m in motions])
     inertias = dict(
         zip(
-            prepared.joints,
+            prepared.parts,
             np.mean(inertias_at(prepared.experiment, links, position), axis=1).tolist(),
             strict=True,
         )

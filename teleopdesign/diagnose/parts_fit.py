@@ -1,4 +1,4 @@
-"""Parameters of an arm: those of every joint, and the base parameters that all joints share.
+"""Parameters of all parts: those of every joint, and the base parameters that the joints share.
 
 Each joint is fitted with the information of the other joints on the links; then the information of
 this joint goes to the others. Force is linear in the base parameters and nearly linear in those of
@@ -12,23 +12,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...base.by_value import ByValue
-from ...measurement.filtering import Array
-from ...model import Model
-from ...realise.along_motion import residual_along
-from ...realise.tangent_columns import LinkParameter
-from ..effort import EFFORTS, Effort
-from ..error import force_error
-from ..fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
-from ..least_squares import column_sizes
-from ..prepare import Prepared, Stretch
-from ..record_offsets import apply_record_offsets
-from ..record_shift import record_shifts
-from ..residual import relative_residuals
-from ..shared_links import Knowledge, share, weighted_columns
-from ..solve import BLOCK, solve
-from ..stated_fit import estimate_stated
-from .prepared import PreparedArm
+from ..base.by_value import ByValue
+from ..measurement.filtering import Array
+from ..model import Model
+from ..realise.along_motion import residual_along
+from ..realise.tangent_columns import LinkParameter
+from .candidates import Candidate
+from .effort import EFFORTS, Effort
+from .error import force_error
+from .fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
+from .least_squares import column_sizes
+from .parts import PreparedParts, remove_links
+from .prepare import Prepared, Stretch
+from .record_offsets import apply_record_offsets
+from .record_shift import record_shifts
+from .residual import relative_residuals
+from .shared_links import Knowledge, share, weighted_columns
+from .solve import BLOCK, solve
+from .stated_fit import estimate_stated
 
 #: least residual, as a part of the measured force, that sets the weight of a joint: below it the
 #: weight no longer grows
@@ -38,20 +39,30 @@ ROUNDS = 2
 
 
 @dataclass(frozen=True, eq=False)
-class ArmFit(ByValue):
-    """A fitted arm.
+class PartsFit(ByValue):
+    """All parts fitted.
 
     fits: joint -> its fit, with the common base parameters in `fit.model.links`
     prepared: joint -> its records, with the information of the other joints on the links
-    links: (b,) the common base parameters
-    fit_errors, check_errors: joint -> relative force error with these; NaN without such records
     """
 
     fits: Mapping[str, Fit]
     prepared: Mapping[str, Prepared]
-    links: tuple[float, ...]
-    fit_errors: Mapping[str, float]
-    check_errors: Mapping[str, float]
+
+    @property
+    def links(self) -> tuple[float, ...]:
+        """The common base parameters (b,)."""
+        return next(iter(self.fits.values())).model.links
+
+    @property
+    def fit_errors(self) -> dict[str, float]:
+        """Joint -> relative force error on the fit records."""
+        return {j: f.fit_error for j, f in self.fits.items()}
+
+    @property
+    def check_errors(self) -> dict[str, float]:
+        """Joint -> relative force error on the check records; NaN without such records."""
+        return {j: f.check_error for j, f in self.fits.items()}
 
     @property
     def model(self) -> Model:
@@ -72,24 +83,46 @@ class ArmFit(ByValue):
         return error_over_joints(self.check_errors)
 
 
+@dataclass(frozen=True, eq=False)
+class PartsRung(ByValue):
+    """One step of the ladder of all parts: the added effect with its joint, and the fit.
+
+    added: None: the rung of the user's model
+    instead_of: the effect of the user's model that the added one replaced
+    other: the joint whose motion is the channel `other_position` at the effect's joint
+    """
+
+    added: Candidate | None
+    fit: PartsFit
+    instead_of: Candidate | None = None
+    other: str | None = None
+
+    @property
+    def follows(self) -> str | None:
+        """The joint whose motion the added effect depends on; None: on no other joint's."""
+        if self.added is None or "other_position" not in self.added.effect.channels():
+            return None
+        return self.other
+
+
 def error_over_joints(errors: Mapping[str, float]) -> float:
     """Root mean square of the relative errors of all joints."""
     return float(np.sqrt(np.mean(np.square(list(errors.values())))))
 
 
-def estimate_arm(
+def estimate_parts(
     models: Mapping[str, Model],
-    prepared: PreparedArm,
+    prepared: PreparedParts,
     *,
     rounds: int = ROUNDS,
     effort: Effort = EFFORTS.fine,
-) -> ArmFit:
+) -> PartsFit:
     """Estimate all joints' parameters and the base parameters on the fit records.
 
     models: joint -> the model of that joint alone
     rounds: how often all joints are estimated;  effort: of each estimate
     """
-    models, fits, records = dict(models), {}, dict(prepared.joints)
+    models, fits, records = dict(models), {}, dict(prepared.parts)
     for k in range(rounds):
         if prepared.base is not None:
             if not any(m.absent for m in models.values()):
@@ -111,7 +144,7 @@ def estimate_arm(
 
 
 def _estimate_at_common_links(
-    models: Mapping[str, Model], prepared: PreparedArm
+    models: Mapping[str, Model], prepared: PreparedParts
 ) -> dict[str, Model]:
     """Models of all joints, estimated at common base parameters that hold by the present misfits.
 
@@ -119,10 +152,10 @@ def _estimate_at_common_links(
     With such a misfit its joint would have almost no weight in the base parameters.
     """
     sizes = misfits(models, prepared)
-    known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in prepared.joints.items()}
+    known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in prepared.parts.items()}
     common = _together(known)
     there = {}
-    for j, records in prepared.joints.items():
+    for j, records in prepared.parts.items():
         plain = replace(records, stretches=remove_links(records.of("fit")))
         model, free = models[j].with_links(common), free_parameters(models[j])
         there[j] = solve(model, free, plain, plain.stretches, EFFORTS.rough).model
@@ -130,8 +163,8 @@ def _estimate_at_common_links(
 
 
 def with_common_links(
-    fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedArm
-) -> ArmFit:
+    fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedParts
+) -> PartsFit:
     """Fits of all joints, evaluated on the records with common base parameters."""
     links: tuple[float, ...] = ()
     if prepared.base is not None:
@@ -139,13 +172,7 @@ def with_common_links(
         known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
         links = _together(known)
     fits = {j: _evaluate_at(f, f.model.with_links(links), records[j]) for j, f in fits.items()}
-    return ArmFit(
-        fits=fits,
-        prepared=dict(records),
-        links=links,
-        fit_errors={j: f.fit_error for j, f in fits.items()},
-        check_errors={j: f.check_error for j, f in fits.items()},
-    )
+    return PartsFit(fits, dict(records))
 
 
 def _evaluate_at(fit: Fit, model: Model, records: Prepared) -> Fit:
@@ -161,7 +188,7 @@ def _evaluate_at(fit: Fit, model: Model, records: Prepared) -> Fit:
     return replace(fit, check_error=force_error(model, check), at_command=at_command)
 
 
-def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, float]:
+def misfits(models: Mapping[str, Model], prepared: PreparedParts) -> dict[str, float]:
     """Joint -> root of the squares that its model leaves: the scale of its observations.
 
     So a joint that lacks an effect has little weight in the links, which all joints depend on.
@@ -169,9 +196,7 @@ def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, flo
     """
     if any(m.absent for m in models.values()):
         return dict(prepared.size)
-    left = {
-        j: force_error(m, remove_links(prepared.joints[j].of("fit"))) for j, m in models.items()
-    }
+    left = {j: force_error(m, remove_links(prepared.parts[j].of("fit"))) for j, m in models.items()}
     return {j: max(left[j], LEAST) * size for j, size in prepared.size.items()}
 
 
@@ -188,11 +213,6 @@ def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ..
         links = replace(s.motion.links, smooth=-s.motion.lowpassed(slopes))
         made.append(replace(s, motion=replace(s.motion, links=links)))
     return tuple(made)
-
-
-def remove_links(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
-    """Stretches as they were measured, without reduced weight in the directions of the links."""
-    return tuple(replace(s, shared=None) for s in stretches)
 
 
 def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:
@@ -287,7 +307,7 @@ def with_others(
     return replace(prepared, stretches=stretches)
 
 
-def link_errors(arm: ArmFit, prepared: PreparedArm) -> Array:
+def link_errors(arm: PartsFit, prepared: PreparedParts) -> Array:
     """Standard errors (b,) of the base parameters; NaN where no residual depends on one."""
     sizes = misfits({j: f.model for j, f in arm.fits.items()}, prepared)
     rows, left, blocks, first = [], [], [], 0

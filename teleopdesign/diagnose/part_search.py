@@ -1,4 +1,4 @@
-"""One joint of an arm during the search, with the information of the other joints on the links."""
+"""One part during the search; a joint of an arm with what the others tell about the links."""
 
 from __future__ import annotations
 
@@ -7,24 +7,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...blocks import Value
-from ...model import Model
-from ..fit import Fit, estimate, fit_squares
-from ..ladder_state import LadderSearch, LadderState, look
-from ..prepare import Prepared
-from ..record_shift import shifts_of
-from ..rung import Rung
-from .fit import ArmFit, estimate_arm, knowledge, misfits, with_others
+from ..blocks import Value
+from ..model import Model
+from .fit import Fit, estimate, fit_squares
+from .ladder_state import LadderSearch, LadderState, look
 from .other_motion import most_coupled, with_other_motion
-from .prepared import PreparedArm
+from .parts import PreparedParts
+from .parts_fit import PartsFit, estimate_parts, knowledge, misfits, with_others
+from .prepare import Prepared
+from .record_shift import shifts_of
+from .rung import Rung
 
 
 @dataclass(frozen=True)
-class Joint:
-    """State of the search at one joint.
+class PartSearch:
+    """State of the search in one part.
 
     is_stale: whether effects of other joints have changed the information on the links
     other: the joint whose motion is its channel `other_position`; None: none was chosen
+    rungs: of its ladder, with their final errors; empty before it was climbed
     """
 
     name: str
@@ -32,6 +33,7 @@ class Joint:
     state: LadderState
     is_stale: bool = False
     other: str | None = None
+    rungs: tuple[Rung, ...] = ()
 
     @property
     def gain(self) -> float:
@@ -42,9 +44,9 @@ class Joint:
         return max((base - fit_squares(f) for f in fits), default=0.0) / whole
 
 
-def begin_joint(
-    name: str, search: LadderSearch, records: Prepared, model: Model, prepared: PreparedArm
-) -> Joint:
+def begin_part(
+    name: str, search: LadderSearch, records: Prepared, model: Model, prepared: PreparedParts
+) -> PartSearch:
     """A joint at the start of its search, with the present information on the links.
 
     records: of the joint, with this information;  prepared: of the arm
@@ -52,17 +54,19 @@ def begin_joint(
     fit = estimate(model, records)
     other = most_coupled(name, records, fit, prepared)
     if other is not None:
-        records = with_other_motion(records, prepared.joints[other])
+        records = with_other_motion(records, prepared.parts[other])
     search = replace(search, whole=records, prepared=records)
-    return Joint(name, search, look(search, (Rung(None, fit),)), other=other)
+    return PartSearch(name, search, look(search, (Rung(None, fit),)), other=other)
 
 
-def others_of(joints: Mapping[str, Joint]) -> dict[str, str]:
+def others_of(joints: Mapping[str, PartSearch]) -> dict[str, str]:
     """Joint -> the joint whose motion is its channel `other_position`, where one was chosen."""
     return {name: one.other for name, one in joints.items() if one.other is not None}
 
 
-def with_shifts_of(joints: Mapping[str, Joint], fit: ArmFit, prepared: PreparedArm) -> ArmFit:
+def with_shifts_of(
+    joints: Mapping[str, PartSearch], fit: PartsFit, prepared: PreparedParts
+) -> PartsFit:
     """The arm's fit, with those shifts of records held that the searches hold.
 
     A shift that raises the check error of its joint is held in the search at this joint. The fit of
@@ -77,7 +81,7 @@ def with_shifts_of(joints: Mapping[str, Joint], fit: ArmFit, prepared: PreparedA
             changed[j] = model.with_record_shift(shifts)
     if not changed:
         return fit
-    again = estimate_arm({**models, **changed}, prepared)
+    again = estimate_parts({**models, **changed}, prepared)
     return again if again.check_error < fit.check_error else fit
 
 
@@ -112,7 +116,7 @@ def _weighted_median(pairs: Sequence[tuple[float, float]]) -> float:
 
 
 def with_known(
-    records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
+    records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedParts, joint: str
 ) -> Prepared:
     """Records of a joint with what the fits of the other joints say of the links and the clock."""
     mine = with_clock_of_others(records, fits, joint)

@@ -11,15 +11,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
 
-from ..decision import is_better
-from ..ladder_state import look
-from ..noise_floor import noise_floor
-from ..stand_in import is_of_readings
-from ..statements import SetAside
-from .fit import ArmFit, estimate_arm
-from .joint import Joint
-from .prepared import PreparedArm
-from .rung import ArmRung
+from .decision import is_better
+from .ladder_state import look
+from .noise_floor import noise_floor
+from .part_search import PartSearch
+from .parts import PreparedParts
+from .parts_fit import PartsFit, PartsRung, estimate_parts
+from .stand_in import is_of_readings
+from .statements import SetAside
 
 #: reason why an effect is refused although the records of one joint supported it
 NO_HELP = "it lowers the error no more once all joints are estimated together"
@@ -27,9 +26,9 @@ NO_HELP = "it lowers the error no more once all joints are estimated together"
 NO_MORE_THAN_NOISE = "it only weakens the noise of the sensors"
 
 
-def hold_against_arm(
-    joint: Joint, rungs: tuple[ArmRung, ...], prepared: PreparedArm
-) -> tuple[Joint, tuple[ArmRung, ...]]:
+def hold_against_others(
+    joint: PartSearch, rungs: tuple[PartsRung, ...], prepared: PreparedParts
+) -> tuple[PartSearch, tuple[PartsRung, ...]]:
     """The rungs of a joint's ladder, each with all joints estimated again.
 
     rungs: the ladder of the arm so far, those of this joint last; rungs that the joint's ladder
@@ -40,12 +39,12 @@ def hold_against_arm(
     there = [r for r in rungs if r.added is not None and r.added.at == joint.name]
     kept = _count_held(joint, there)
     longer = list(rungs[: len(rungs) - len(there) + kept - 1])
-    waiting, why = list[ArmRung](), ""
+    waiting, why = list[PartsRung](), ""
     for i, rung in enumerate(joint.state.rungs[kept:], kept):
         last = waiting[-1] if waiting else longer[-1]
         models = {n: f.model for n, f in last.fit.fits.items()} | {joint.name: rung.fit.model}
-        fit = estimate_arm(models, prepared)
-        waiting.append(ArmRung(rung.added, fit, rung.instead_of, joint.other))
+        fit = estimate_parts(models, prepared)
+        waiting.append(PartsRung(rung.added, fit, rung.instead_of, joint.other))
         why = refusal(joint, last.fit, fit)
         if why:
             break
@@ -58,7 +57,7 @@ def hold_against_arm(
     return joint, tuple(longer)
 
 
-def _count_held(joint: Joint, there: Sequence[ArmRung]) -> int:
+def _count_held(joint: PartSearch, there: Sequence[PartsRung]) -> int:
     """Number of leading rungs that the ladders of joint and arm share; the user's model counts."""
     ours = ((r.added, r.instead_of) for r in joint.state.rungs[1:])
     held = ((r.added, r.instead_of) for r in there)
@@ -66,7 +65,7 @@ def _count_held(joint: Joint, there: Sequence[ArmRung]) -> int:
     return 1 + sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
-def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
+def refusal(joint: PartSearch, before: PartsFit, after: PartsFit) -> str:
     """Why an effect is removed once all joints are estimated together; "": it stays.
 
     An effect may transmit less of the sensor noise: the hidden tip of a structure follows the
@@ -90,7 +89,7 @@ def refusal(joint: Joint, before: ArmFit, after: ArmFit) -> str:
     return "" if explains else NO_MORE_THAN_NOISE
 
 
-def _cut_ladder(joint: Joint, kept: int, refused: Sequence[ArmRung], why: str) -> Joint:
+def _cut_ladder(joint: PartSearch, kept: int, refused: Sequence[PartsRung], why: str) -> PartSearch:
     """The joint with the first `kept` rungs of its ladder; the refused effects are set aside.
 
     refused: with all joints estimated again

@@ -7,16 +7,15 @@ base parameters of the links describe the rest.
 
 from __future__ import annotations
 
-from ..candidates import Candidate
-from ..statements import Undetermined
-from .fit import ArmFit, estimate_arm
+from .candidates import Candidate
 from .other_motion import follows_another, with_other_motions
-from .prepared import PreparedArm
-from .rung import ArmRung
+from .parts import PreparedParts
+from .parts_fit import PartsFit, PartsRung, estimate_parts
+from .statements import Undetermined
 
 
 def undetermined_coupling(
-    rung: ArmRung, last: ArmFit, prepared: PreparedArm, *, relevant: float
+    rung: PartsRung, last: PartsFit, prepared: PreparedParts, *, relevant: float
 ) -> Undetermined | None:
     """A statement where the records do not determine the direction of an added coupling; else None.
 
@@ -30,7 +29,7 @@ def undetermined_coupling(
         return None
     models[added.at] = models[added.at].without_effect(added.effect.name, at=added.at)
     models[other] = models[other].with_effect(added.effect, at=other)
-    turned = estimate_arm(models, with_other_motions(prepared, {other: added.at}))
+    turned = estimate_parts(models, with_other_motions(prepared, {other: added.at}))
     if turned.check_error**2 > (1.0 + relevant) * last.check_error**2:
         return None
     there = Candidate(added.effect, other)

@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ...effects import Effect
-from ...model import Model
-from ..fit import Fit
-from ..linear_start import linear_starts
-from ..prepare import Prepared
-from .prepared import PreparedArm
+from ..effects import Effect
+from ..model import Model
+from .fit import Fit
+from .linear_start import linear_starts
+from .parts import PreparedParts
+from .prepare import Prepared
 
 
 def follows_another(effect: Effect) -> bool:
@@ -24,16 +24,16 @@ def follows_another(effect: Effect) -> bool:
     return "other_position" in effect.channels()
 
 
-def with_other_motions(prepared: PreparedArm, others: Mapping[str, str]) -> PreparedArm:
+def with_other_motions(prepared: PreparedParts, others: Mapping[str, str]) -> PreparedParts:
     """The arm's records, where some joints have the motion of another joint as a channel.
 
     others: joint -> the other joint
     """
     joints = {
-        j: with_other_motion(records, prepared.joints[others[j]]) if j in others else records
-        for j, records in prepared.joints.items()
+        j: with_other_motion(records, prepared.parts[others[j]]) if j in others else records
+        for j, records in prepared.parts.items()
     }
-    return replace(prepared, joints=joints, others={**prepared.others, **others})
+    return replace(prepared, parts=joints, others={**prepared.others, **others})
 
 
 def with_other_motion(records: Prepared, other: Prepared) -> Prepared:
@@ -49,17 +49,17 @@ def with_other_motion(records: Prepared, other: Prepared) -> Prepared:
     return replace(records, stretches=tuple(stretches))
 
 
-def most_coupled(joint: str, records: Prepared, fit: Fit, prepared: PreparedArm) -> str | None:
+def most_coupled(joint: str, records: Prepared, fit: Fit, prepared: PreparedParts) -> str | None:
     """The other joint with the largest predicted gain of a coupling at a joint.
 
     records, fit: of the joint, with the information of the other joints on the links
     returns: None where the log has the motion of another joint, or no effect needs one
     """
-    if any("other_position" in s.motion.further for s in prepared.joints[joint].stretches):
+    if any("other_position" in s.motion.further for s in prepared.parts[joint].stretches):
         return None
     effects = [e for e in fit.model.known.values() if _asks(e, fit.model, joint)]
     kinds, promised = prepared.experiment.bodies, dict[str, float]()
-    for name, other in prepared.joints.items():
+    for name, other in prepared.parts.items():
         if name == joint or kinds[name].axis != kinds[joint].axis:
             continue
         beside = with_other_motion(records, other)

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ...model import Model
-from ..diagnosis import Diagnosis
-from .fit import ArmFit
-from .prepared import PreparedArm, mean_inertias, with_inertias
+from ..model import Model
+from .diagnosis import Diagnosis
+from .parts import PreparedParts, mean_inertias, with_inertias
+from .parts_fit import PartsFit
 
 
-def as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[str, Model]]:
+def as_bodies(prepared: PreparedParts, first: PartsFit) -> tuple[PreparedParts, dict[str, Model]]:
     """Records and models in which each joint's body has the mean inertia of its links.
 
     first: the fit that the base parameters of the links are those of
@@ -31,7 +31,7 @@ def as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[s
 
 
 def with_final_bodies(
-    diagnosis: Diagnosis, prepared: PreparedArm, motors: Mapping[str, float]
+    diagnosis: Diagnosis, prepared: PreparedParts, motors: Mapping[str, float]
 ) -> Diagnosis:
     """The diagnosis with the mean inertia of its final links at each joint; all residuals are kept.
 
