@@ -17,11 +17,11 @@ from ..model import Model
 from .adequacy import moment_above_noise, records_differ
 from .between_rows import floor_between_rows
 from .candidates import Candidate
-from .corrected_fit import correct_fit
 from .criteria import CRITERIA, Criteria
 from .decision import refusal
 from .error import force_error
 from .error_at_command import refer_to_command
+from .estimates import correct_fit
 from .fit import Fit
 from .identifiability import doubt, explains_most
 from .ladder_end import LadderEnd

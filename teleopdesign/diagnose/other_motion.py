@@ -4,6 +4,10 @@ By geared wrists, differentials and cables that pass a joint, one motor can push
 The kinematics do not say which one. So `other_position` of a joint is the motion of that joint
 whose coupling promises the largest gain by one linear step. A joint whose log has such a channel
 keeps this channel.
+
+A coupling that acts alike in both directions may be a part of the links' inertia. Then a force at
+one joint by the motion of another leaves the same as the opposite force at that other joint: the
+base parameters of the links describe the rest.
 """
 
 from __future__ import annotations
@@ -13,10 +17,13 @@ from dataclasses import replace
 
 from ..effects import Effect
 from ..model import Model
+from .candidates import Candidate
 from .fit import Fit
 from .linear_start import linear_starts
 from .parts import PreparedParts
+from .parts_fit import PartsFit, PartsRung, estimate_parts
 from .prepare import Prepared
+from .statements import Undetermined
 
 
 def follows_another(effect: Effect) -> bool:
@@ -76,4 +83,31 @@ def _asks(effect: Effect, model: Model, joint: str) -> bool:
         follows_another(effect)
         and effect.strength is not None
         and not model.body(joint).has(effect.name)
+    )
+
+
+def undetermined_coupling(
+    rung: PartsRung, last: PartsFit, prepared: PreparedParts, *, relevant: float
+) -> Undetermined | None:
+    """A statement where the records do not determine the direction of an added coupling; else None.
+
+    last: the fit with all added effects;  relevant: part of the squares that counts as a difference
+    """
+    added, other = rung.added, rung.follows
+    if added is None or other is None:
+        return None
+    models = {j: fit.model for j, fit in last.fits.items()}
+    if any(follows_another(e) for e in models[other].body(other).effects):
+        return None
+    models[added.at] = models[added.at].without_effect(added.effect.name, at=added.at)
+    models[other] = models[other].with_effect(added.effect, at=other)
+    turned = estimate_parts(models, with_other_motions(prepared, {other: added.at}))
+    if turned.check_error**2 > (1.0 + relevant) * last.check_error**2:
+        return None
+    there = Candidate(added.effect, other)
+    return Undetermined(
+        added,
+        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm's "
+        f"forces instead of {100 * last.check_error:.3g} %: parameters of the links can imitate a "
+        "coupling that acts both ways",
     )

@@ -11,9 +11,10 @@ from ..blocks import Value
 from ..model import Model
 from .fit import Fit, estimate, fit_squares
 from .ladder_state import LadderSearch, LadderState, look
+from .link_knowledge import joint_knowledge, with_others
 from .other_motion import most_coupled, with_other_motion
 from .parts import PreparedParts
-from .parts_fit import PartsFit, estimate_parts, knowledge, misfits, with_others
+from .parts_fit import PartsFit, estimate_parts
 from .prepare import Prepared
 from .record_shift import shifts_of
 from .rung import Rung
@@ -122,6 +123,5 @@ def with_known(
     mine = with_clock_of_others(records, fits, joint)
     if prepared.base is None:
         return mine
-    sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
-    known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
+    known, sizes = joint_knowledge({j: f.model for j, f in fits.items()}, records, prepared)
     return with_others(mine, known, sizes[joint], fits[joint].model)

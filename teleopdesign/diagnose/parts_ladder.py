@@ -20,10 +20,8 @@ from .fit import Fit, fit_squares
 from .held_against_others import hold_against_others
 from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, begin, search_for
-from .link_inertias import as_bodies
 from .moves import add
-from .other_motion import with_other_motions
-from .other_way import undetermined_coupling
+from .other_motion import undetermined_coupling, with_other_motions
 from .part_search import (
     PartSearch,
     begin_part,
@@ -33,7 +31,7 @@ from .part_search import (
     with_shifts_of,
 )
 from .parts import PreparedParts, isolate_joint, prepare_parts
-from .parts_fit import PartsFit, PartsRung, estimate_parts
+from .parts_fit import PartsFit, PartsRung, as_bodies, estimate_parts
 from .search_plan import SearchPlan
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 
 from ..measurement.reading import reading_data
 from ..model import Model
@@ -11,11 +12,11 @@ from .diagnosis import Diagnosis
 from .fingerprint import fingerprint_of
 from .ladder_end import LadderEnd
 from .learnable import Learnable
-from .link_inertias import with_final_bodies
+from .link_knowledge import link_errors
 from .noise_floor import NoiseFloor
 from .other_motion import with_other_motions
-from .parts import PreparedParts, with_bodies_of
-from .parts_fit import PartsRung, error_over_joints, link_errors
+from .parts import PreparedParts, mean_inertias, with_bodies_of
+from .parts_fit import PartsRung, error_over_joints, with_body_inertia
 from .recording import DiagnosedRecording
 from .result import diagnosis_of
 from .statements import EstimatedValue, JointErrors, LadderRow, finite
@@ -71,7 +72,7 @@ def diagnosis_of_parts(
         links=_links(rungs[-1], prepared),
     )
     motors = {j: stated.parameters[f"{j}.inertia"].value for j in joints}
-    diagnosis = with_final_bodies(diagnosis, prepared, motors)
+    diagnosis = _with_final_bodies(diagnosis, prepared, motors)
     whole = with_recording(diagnosis, DiagnosedRecording(stated=experiment))
     whole.recording.__dict__["parts"] = with_other_motions(
         with_bodies_of(whole.model, prepared), prepared.others
@@ -141,6 +142,50 @@ def _links(last: PartsRung, prepared: PreparedParts) -> dict[str, EstimatedValue
     base = prepared.base
     if base is None:
         return {}
-    errors = link_errors(last.fit, prepared).tolist()
+    models = {j: fit.model for j, fit in last.fit.fits.items()}
+    errors = link_errors(models, last.fit.prepared, prepared).tolist()
     rows = zip(base.names, last.fit.links, errors, base.units, strict=True)
     return {name: EstimatedValue(finite(x), finite(e), unit) for name, x, e, unit in rows}
+
+
+def _with_final_bodies(
+    diagnosis: Diagnosis, prepared: PreparedParts, motors: Mapping[str, float]
+) -> Diagnosis:
+    """The diagnosis with the mean inertia of its final links at each joint; all residuals are kept.
+
+    motors: joint -> stated inertia of its motor
+    Where a structure divides a joint's body, the joint keeps its inertia: there the residual
+    depends on it.
+    """
+    means = mean_inertias(prepared, diagnosis.model.links)
+    whole = {j: means[j] + motors[j] for j, one in diagnosis.joints.items() if not _is_parted(one)}
+    moved = _with_inertias(diagnosis, whole)
+    joints = {j: _with_inertias(one, whole) for j, one in diagnosis.joints.items()}
+    return replace(moved, joints=joints)
+
+
+def _is_parted(diagnosis: Diagnosis) -> bool:
+    """Whether a model of a joint's ladder, or a rival of one, has a structure."""
+    models = [r.model for r in diagnosis.rungs]
+    models += [rival.model for q in diagnosis.questions for rival in q.others]
+    return any(e.role == "structure" for m in models for b in m.bodies.values() for e in b.effects)
+
+
+def _with_inertias(diagnosis: Diagnosis, whole: Mapping[str, float]) -> Diagnosis:
+    """The diagnosis with other inertias in all of its models; whole: joint -> inertia."""
+
+    def moved(model: Model) -> Model:
+        for joint in [j for j in whole if j in model.bodies]:
+            model = with_body_inertia(model, joint, whole[joint])
+        return model
+
+    questions = tuple(
+        replace(q, others=tuple(replace(r, model=moved(r.model)) for r in q.others))
+        for q in diagnosis.questions
+    )
+    return replace(
+        diagnosis,
+        rungs=tuple(replace(r, fitted=moved(r.model)) for r in diagnosis.rungs),
+        estimated=None if diagnosis.estimated is None else moved(diagnosis.estimated),
+        open=questions,
+    )

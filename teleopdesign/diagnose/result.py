@@ -15,8 +15,7 @@ from .evidence import whole_score
 from .fingerprint import fingerprint_of
 from .fit import Fit
 from .ladder_end import LadderEnd
-from .left_out import nearest, not_accepted
-from .open_questions import open_questions
+from .open_questions import nearest, not_accepted, open_questions
 from .parts import PreparedParts
 from .prepare import Prepared
 from .probability import CandidateEvidence, evidence_of

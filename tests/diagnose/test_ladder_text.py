@@ -9,7 +9,7 @@ from diagnose.stand_ins import fit, floor, ranked
 from teleopdesign.diagnose import constant_force, ladder_text
 from teleopdesign.diagnose.constant_force import constant_force_line
 from teleopdesign.diagnose.ladder_text import records_line, say_floors
-from teleopdesign.diagnose.left_out import nearest, not_accepted, possible_next
+from teleopdesign.diagnose.open_questions import nearest, not_accepted, possible_next
 from teleopdesign.show.report.words import _floors
 
 
