@@ -45,15 +45,16 @@ The folders, each importing only from those before it:
     controllers   control laws that the user chooses: one control law = one file
     diagrams      blocks wired by signal names; read from and written to files
     model         bodies with their effects at places; frozen
+    check         what a recording tells without a fit: is it sound, may a diagnosis answer at all
     realise       any block into each form: residual, transfer function, equations, kernel, iosystem
     derive        transfer functions and impedances from the wiring, symbolic
     frequency     Bode plots, describing functions, impedance over amplitude and frequency
     passivity     claims: proved with a certificate, refuted by a motion, or evidence
     simulate      motions and responses in time, sampled or continuous
-    measurement   experiment, record, motion; whether a recording is sound
+    measurement   experiment, record, motion, prepared for comparison
     diagnose      residual, noise floor, ladder, answer
     identify      Coulomb level and largest stiffness by the papers' experiments
-    check         before a diagnosis: is a recording sound, and what can it show
+    fitted_checks  what a recording tells with a fit: signs, units, timing, visible effects
     unexplained   where a model fails, and on which variables the residual depends
     next_experiment  the motion that distinguishes the effects that a diagnosis leaves open
     design        from a diagnosed model to controllers, predictions and claims
@@ -98,7 +99,6 @@ if TYPE_CHECKING:
     from .base.errors import TeleopDesignError as TeleopDesignError
     from .blocks import Body, hand
     from .blocks import Value as Value
-    from .check import check_experiment
     from .controllers import CONTROLLERS, controller, from_control
     from .controllers import Controller as Controller
     from .controllers import load_controller as load_controller
@@ -120,6 +120,7 @@ if TYPE_CHECKING:
     from .effects import Parameter as Parameter
     from .effects import State as State
     from .examples import example
+    from .fitted_checks import check_experiment
     from .frequency import bode
     from .frequency import measured_impedance as measured_impedance
     from .measurement import Experiment, load_experiment
@@ -200,7 +201,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "Experiment": "measurement",
         "experiment": "measurement.from_arrays",
         "load_experiment": "measurement",
-        "check_experiment": "check",
+        "check_experiment": "fitted_checks",
         "example": "examples",
     },
     "models": {
@@ -319,6 +320,7 @@ _FOLDERS = (
     "diagnose",
     "diagrams",
     "effects",
+    "fitted_checks",
     "frequency",
     "identify",
     "measurement",

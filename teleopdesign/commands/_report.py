@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the page, with findings on the recording, the residual, and what to measure next."""
-    from ..check import check_experiment
+    from ..fitted_checks import check_experiment
     from ..show.report import write_report
     from ..unexplained import where_it_fails
 

@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     """Print the findings, warnings first; write the requested file."""
     if options.json is not None:
         check_output(options.json, (".json",))
-    from ..check.soundness_check import check_experiment
+    from ..fitted_checks import check_experiment
     from ..measurement.experiment import describe_content
 
     folder = folder_of(options.folder)
@@ -147,6 +147,7 @@ def finding_data(finding: Finding) -> dict[str, Any]:
     return {
         "topic": finding.topic,
         "concern": finding.concern,
+        "stops": finding.stops,
         "where": finding.where,
         "sentence": finding.sentence,
         "numbers": dict(finding.numbers),

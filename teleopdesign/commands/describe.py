@@ -15,7 +15,7 @@ from ._paths import shell_word
 
 if TYPE_CHECKING:
     from ..diagnose.noise_floor import NoiseFloor
-    from ..diagnose.prepare import Prepared
+    from ..measurement.prepare import Prepared
     from ..model import Model
     from ..unexplained import ResidualDescription
 
@@ -81,8 +81,8 @@ def _model_to_describe(
     options: argparse.Namespace,
 ) -> tuple[Model, Prepared, NoiseFloor | None, str]:
     """The model, its data, its noise floor (if a diagnosis states one), and words for the model."""
-    from ..diagnose.prepare import prepare
     from ..diagnose.stated_fit import estimate_stated
+    from ..measurement.prepare import prepare
 
     experiment = experiment_and_answer(options)
     if options.as_is and options.answer is None and experiment.arm is None:

@@ -160,20 +160,14 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
 
 def _suggest_commands(diagnosis: Diagnosis, source: str) -> list[str]:
     """Lines with the next commands; with a written answer they need no second diagnosis."""
-    from ..diagnose.narrower_band import narrower_band
-    from ..measurement.bandwidth import motion_beyond
+    from ..fitted_checks.bandwidth import check_bandwidth
 
     lines = []
     if diagnosis.groups:
         lines.append(f"what to measure to distinguish them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
         lines.append(f"where the model fails: teleopdesign describe {source}")
-        narrower = narrower_band(diagnosis.model, diagnosis.prepared)
-        if narrower is not None:
-            lines.insert(0, f"{narrower}")
-        elif motion_beyond(diagnosis.experiment, diagnosis.bandwidth) is not None:
-            where = f"beyond {diagnosis.bandwidth:.3g} Hz, where the records still show motion"
-            folder = diagnosis.experiment.folder
-            lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
+        wrong_band = check_bandwidth(diagnosis.model, diagnosis.prepared)
+        lines[:0] = [f.sentence for f in wrong_band]
     lines.append(f"to design a compensation: teleopdesign design {source} --output design")
     return ["", *lines]

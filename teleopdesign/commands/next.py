@@ -205,7 +205,7 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
 
 def _limits(limits: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
     """Body -> limits that its records have reached, replaced by the requested limits."""
-    from ..diagnose.prepare import prepare
+    from ..measurement.prepare import prepare
     from ..next_experiment import shown_limits
 
     if not limits:

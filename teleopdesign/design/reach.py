@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.errors import ExperimentError
-from ..check.motion_facts import RARE
-from ..diagnose.prepare import prepare
 from ..measurement.experiment import Experiment
-from ..measurement.motion import TRAVEL
+from ..measurement.motion import RARE, TRAVEL
+from ..measurement.prepare import prepare
 from ..realise.reach import Reach
 
 

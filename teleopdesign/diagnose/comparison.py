@@ -15,12 +15,12 @@ from ..base.notebook import html_table
 from ..base.plain_data import write_netcdf
 from ..base.quantity import unit_of
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from ..realise.along_motion import residual_along
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
-from .prepare import Prepared, prepare
 from .record_offsets import as_logged
 
 if TYPE_CHECKING:

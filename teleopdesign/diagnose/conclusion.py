@@ -12,7 +12,9 @@ from dataclasses import replace
 from itertools import pairwise
 
 from ..base.errors import ModelError
+from ..check import why_silent
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import moment_above_noise, records_differ
 from .between_rows import floor_between_rows
@@ -29,13 +31,11 @@ from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
 from .order import select_other_helpers
 from .plausibility import implausible_effects
-from .prepare import Prepared
 from .probability import probable
 from .ranking import REFUSALS
 from .repeats import repeatability
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
-from .silent_records import why_silent
 from .stand_in import check_error_on_all
 from .statements import SetAside
 from .undetermined import find_undetermined

@@ -16,6 +16,7 @@ from ..base.by_value import ByValue
 from ..base.codec import INLINE, NEVER, OMIT, At, Bounds, Error, Filled, InUnit
 from ..base.errors import ExperimentError
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
@@ -47,8 +48,8 @@ from .verdict import VerdictName, verdict
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..measurement.prepare import Prepared
     from .fit import Fit
-    from .prepare import Prepared
 
 
 @dataclass(frozen=True, eq=False)

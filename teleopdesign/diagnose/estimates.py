@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import is_adequate, limit_noise_floor
 from .clock import with_paying_shift
@@ -11,7 +12,6 @@ from .evidence import check_squares
 from .fit import Fit, estimate, fit_squares
 from .ladder_state import LadderSearch, search_for
 from .noise_floor import NoiseFloor, noise_floor
-from .prepare import Prepared, prepare
 from .rank import rank_candidates
 from .ranking import Ranking
 from .reading_error import with_reading_error

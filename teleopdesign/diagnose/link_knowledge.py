@@ -12,6 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
+from ..measurement.shared_links import Knowledge, share, weighted_columns
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import LinkParameter
@@ -19,11 +21,9 @@ from .error import force_error
 from .fit import block_numbers, free_parameters, standard_errors
 from .least_squares import column_sizes
 from .parts import PreparedParts, remove_links
-from .prepare import Prepared, Stretch
 from .record_offsets import apply_record_offsets
 from .record_shift import record_shifts
 from .residual import relative_residuals
-from .shared_links import Knowledge, share, weighted_columns
 from .solve import BLOCK
 
 #: least residual, as a part of the measured force, that sets the weight of a joint: below it the

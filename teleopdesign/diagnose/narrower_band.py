@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 
 from ..base.errors import ExperimentError
 from ..measurement.bandwidth import LOWEST
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import Errors
 from .criteria import CRITERIA, Criteria
 from .diagnosis import Diagnosis
 from .fit import estimate
-from .prepare import Prepared, prepare
 
 
 @dataclass(frozen=True)

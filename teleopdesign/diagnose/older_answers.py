@@ -18,8 +18,8 @@ from ..blocks import CONTACT
 from ..effects import Effect, are_alike
 from ..measurement.bandwidth import bandwidth_of
 from ..measurement.experiment import Experiment
+from ..measurement.logger_clock import CLOCK
 from ..model import Model
-from .record_shift import CLOCK
 
 
 @dataclass(frozen=True)

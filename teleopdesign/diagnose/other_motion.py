@@ -16,13 +16,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ..effects import Effect
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit
 from .linear_start import linear_starts
 from .parts import PreparedParts
 from .parts_fit import PartsFit, PartsRung, estimate_parts
-from .prepare import Prepared
 from .statements import Undetermined
 
 

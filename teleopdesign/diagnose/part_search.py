@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..blocks import Value
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .fit import Fit, estimate, fit_squares
 from .ladder_state import LadderSearch, LadderState, look
@@ -15,7 +16,6 @@ from .link_knowledge import joint_knowledge, with_others
 from .other_motion import most_coupled, with_other_motion
 from .parts import PreparedParts
 from .parts_fit import PartsFit, estimate_parts
-from .prepare import Prepared
 from .record_shift import shifts_of
 from .rung import Rung
 

@@ -21,9 +21,9 @@ from ..measurement.bandwidth import bandwidth_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import LinkForces, Motion
+from ..measurement.prepare import Prepared, Stretch, prepare
 from ..model import Model
 from .noise_floor import DRAWS, read_again
-from .prepare import Prepared, Stretch, prepare
 
 #: poses of a record over which an inertia is averaged
 POSES = 50

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.by_value import ByValue
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .effort import EFFORTS, Effort
@@ -20,7 +21,6 @@ from .error import force_error
 from .fit import Fit, command_error_of, estimate, free_parameters
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
-from .prepare import Prepared
 from .solve import solve
 from .stated_fit import estimate_stated
 

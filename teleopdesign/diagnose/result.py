@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..check.log_reading import short_segment_lines
 from ..measurement.bandwidth import slower_sensors
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared
 from ..measurement.reading import reading_data
 from .answer import with_recording
 from .candidates import Candidate, list_look_alikes
-from .constant_force import constant_force_line
 from .diagnosis import Diagnosis
 from .evidence import whole_score
 from .fingerprint import fingerprint_of
@@ -17,14 +18,12 @@ from .fit import Fit
 from .ladder_end import LadderEnd
 from .open_questions import nearest, not_accepted, open_questions
 from .parts import PreparedParts
-from .prepare import Prepared
 from .probability import CandidateEvidence, evidence_of
 from .ranking import Ranked
 from .record_offsets import offsets_of
 from .record_shift import shifts_of
 from .recording import DiagnosedRecording
 from .rung import Rung
-from .short_segments import short_segments_line
 from .statements import (
     Alternative,
     CandidateResult,
@@ -41,7 +40,6 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
     search, whole, model = end.search, end.search.whole, end.after.model
     experiment, rungs = search.experiment, tuple(_row(end, r) for r in end.rungs)
     evidence = evidence_of(end)
-    remarks = (short_segments_line(experiment), constant_force_line(whole.stretches))
     diagnosis = Diagnosis(
         verdict=end.verdict,
         rungs=rungs,
@@ -70,7 +68,7 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         not_accepted=not_accepted(end),
         nearest=nearest(end),
         silence=end.silence,
-        remarks=tuple(line for line in remarks if line is not None),
+        remarks=tuple(short_segment_lines(experiment)),
         left_out=search.plan.omissions(),
         considered=tuple(model.known),
     )

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..base.errors import ModelError
+from ..measurement.prepare import Prepared
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
 from .evidence import whole_score
 from .fit import Fit, estimate
 from .open_parameters import OPEN
 from .plausibility import undetermined_of
-from .prepare import Prepared
 from .products import product_of
 from .rung import Rung
 from .statements import Undetermined

@@ -50,6 +50,11 @@ class Record(ByValue):
         """Length of all segments together, s."""
         return len(self.time) * self.sample_time
 
+    @property
+    def longest(self) -> slice:
+        """Rows of the longest segment."""
+        return max(self.segments, key=lambda rows: rows.stop - rows.start)
+
     def rate_of(self, channel: str) -> float:
         """Readings of a channel in a second, Hz: fewer than samples where it was interpolated."""
         rates = [dict(s.numbers)["rate"] for s in self.reading if s.channel == channel]

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagnose.prepare import Stretch
 from ..measurement.filtering import Array
 from ..measurement.motion import play
+from ..measurement.prepare import Stretch
 from ..model import Model
 from ..realise.along_motion import residual_along
 

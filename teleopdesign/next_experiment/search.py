@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..diagnose.prepare import Prepared, prepare
 from ..diagnose.residual import relative_residuals
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, prepare
 from .family import PathPart
 from .limits import Limits
 from .rivals import Rival, pairs

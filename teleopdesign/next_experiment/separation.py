@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..diagnose.least_squares import solve_normal
-from ..diagnose.prepare import Prepared, Stretch
 from ..diagnose.residual import relative_residuals
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
 from .rivals import Rival
 
 

@@ -16,9 +16,9 @@ from ..base.by_value import ByValue
 from ..base.finding import Finding
 from ..diagnose.fit import Fit
 from ..diagnose.noise_floor import NoiseFloor
-from ..diagnose.prepare import Prepared, prepare
 from ..diagnose.stated_fit import estimate_stated
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .description import BodyResidual, DescribedDependence, describe_body, findings_of
 

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import chance, gain_score
 from ..diagnose.least_squares import solve_normal
-from ..diagnose.prepare import FOLDS
 from ..measurement.filtering import Array
+from ..measurement.prepare import FOLDS
 from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
 from .waves import wave_number

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.finding import Finding, Graph
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import noise_floor
-from ..diagnose.prepare import Prepared
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .amounts import number
 from .curve import Curve, curve_of, without_columns

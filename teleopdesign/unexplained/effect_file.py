@@ -11,8 +11,8 @@ from pathlib import Path
 
 from ..base.errors import ModelError
 from ..base.plain_data import write_text
-from ..diagnose.prepare import Prepared
-from ..diagnose.scales import scales
+from ..measurement.prepare import Prepared
+from ..measurement.scales import scales
 from .amounts import describe_span
 from .description import BodyResidual, DescribedDependence
 from .effect_law import law_of_formula, law_of_points

@@ -18,8 +18,8 @@ from teleopdesign.commands.diagnose import _suggest_for_joints
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.parts import PreparedParts
 from teleopdesign.diagnose.parts_fit import PartsFit, error_over_joints, estimate_parts
-from teleopdesign.diagnose.shared_links import Knowledge
 from teleopdesign.measurement.filtering import Array
+from teleopdesign.measurement.shared_links import Knowledge
 from teleopdesign.measurement.zero_phase import zero_phase
 
 

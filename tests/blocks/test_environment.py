@@ -12,8 +12,8 @@ from teleopdesign.blocks import CONTACT
 from teleopdesign.blocks.environment import contact_force
 from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import SIGNALS
+from teleopdesign.measurement.prepare import prepare
 
 TEXT = """\
 title = "Master and slave"

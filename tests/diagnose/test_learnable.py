@@ -18,8 +18,8 @@ from teleopdesign.diagnose.learnable import (
     error_near_reversals,
     learnable,
 )
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.tree_inputs import inputs_along
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.reversals import mark_reversals
 
 

@@ -13,7 +13,6 @@ from teleopdesign.diagnose.estimates import correct_fit
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.reading_error import (
     ReadingError,
     as_read,
@@ -28,6 +27,7 @@ from teleopdesign.diagnose.simulated_course import (
     simulated_course,
 )
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 
 

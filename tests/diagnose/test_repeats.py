@@ -10,13 +10,13 @@ from diagnose.made_records import write_made
 from teleopdesign import Model, load_experiment
 from teleopdesign.base.codec import from_data, to_data
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.repeats import (
     Repeatability,
     _differences,
     repeatability,
 )
 from teleopdesign.diagnose.verdict import open_to_others
+from teleopdesign.measurement.prepare import prepare
 
 NOISE, EXACT = 0.3, 1e-6  # N m, in each reading of the torque
 PERIOD = 2.5  # s

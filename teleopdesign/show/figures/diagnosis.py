@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ...diagnose.diagnosis import Diagnosis
-    from ...diagnose.prepare import Prepared
+    from ...measurement.prepare import Prepared
     from ...model import Model
 
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
